@@ -1,0 +1,1 @@
+"""The reconstruction itself, free of Blender: numpy, scipy and OpenCV only."""

@@ -1,0 +1,13 @@
+"""What can go wrong, in two kinds: the input is unusable, or the conversion failed."""
+
+
+class KeymarkError(Exception):
+    """Base of every error Keymark raises on purpose; its text is one sentence for a person."""
+
+
+class InputError(KeymarkError):
+    """The input cannot be used: the sentence names file, field, value and what would be valid."""
+
+
+class ConversionError(KeymarkError):
+    """The input was usable, yet no motion could be computed or written from it."""
