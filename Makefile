@@ -1,0 +1,79 @@
+# `make help` lists the targets. Needed: make, Python 3.11 with the module venv, and at the first call a network.
+.DEFAULT_GOAL := help
+.SUFFIXES:
+.DELETE_ON_ERROR:
+
+OUTPUT ?= out/demo
+TESTS ?= tests/core tests/blender
+
+find_python := sh tools/find_python.sh
+settings := pyproject.toml setup.py
+sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
+
+# make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL: a new virtual environment, complete once it has `ready`.
+define make_venv
+python=$$($(find_python) $(2) $(3)) && \
+{ [ -x $(1)/bin/python ] || "$$python" -m venv --clear $(1); } && \
+echo "Installing into $(1) ..." && \
+$(1)/bin/python -m pip install --quiet --disable-pip-version-check $(4) && \
+touch $(1)/ready
+endef
+
+check_libraries = python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/check_libraries.py
+
+.PHONY: help
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
+
+.venv-demo/ready: $(settings) $(sources)
+	@$(check_libraries)
+	@rm -rf build
+	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]')
+
+.venv-dev/ready: $(settings)
+	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]')
+
+.venv-test/ready: $(settings)
+	@$(check_libraries)
+	@$(call make_venv,.venv-test,3.11,$(PYTHON),--editable '.[blender,dev]')
+
+# The newest Blender's Python is optional: without it the tests run in the oldest supported Blender only.
+.venv-test-313/ready: $(settings)
+	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,--editable '.[blender,dev]'); fi
+
+.PHONY: demo
+demo: .venv-demo/ready ## convert the demonstration take into out/demo
+	.venv-demo/bin/keymark demo --output $(OUTPUT)
+
+.PHONY: test
+test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and, where there is a Python 3.13, in 5.2
+	@status=0; \
+	if [ -e .venv-test-313/ready ]; then \
+	    echo "== Blender 5.2, Python 3.13"; \
+	    .venv-test-313/bin/python -m pytest $(TESTS) || status=$$?; \
+	else \
+	    echo "== Blender 5.2 is left out: this machine has no Python 3.13"; \
+	fi; \
+	echo "== Blender 4.5, Python 3.11"; \
+	.venv-test/bin/python -m pytest $(TESTS) || status=$$?; \
+	exit $$status
+
+.PHONY: test-core
+test-core: .venv-dev/ready ## run the tests that need no Blender
+	@.venv-dev/bin/python -m pytest tests/core
+
+.PHONY: lint
+lint: .venv-dev/ready ## check style, formatting and types
+	@.venv-dev/bin/ruff check .
+	@.venv-dev/bin/ruff format --check .
+	@.venv-dev/bin/python tools/check_types.py
+
+.PHONY: format
+format: .venv-dev/ready ## put the code into the project's format
+	@.venv-dev/bin/ruff check --fix --select I .
+	@.venv-dev/bin/ruff format .
+
+.PHONY: clean
+clean: ## remove everything that make has made here
+	rm -rf .venv-demo .venv-dev .venv-test .venv-test-313 .cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .hypothesis build dist out wheels keymark.egg-info

@@ -1,0 +1,183 @@
+"""The rules of the house that no tool checks by itself: who may import whom, file sizes, one version."""
+
+import ast
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+BLENDER_MODULES = {"bpy", "bpy_extras", "bl_math", "blf", "bmesh", "gpu", "gpu_extras", "mathutils"}
+LINES_AT_MOST = 400
+
+# Each room with its height: imports may only run down, or stay inside one room (docs/architecture.md).
+HEIGHTS = {
+    "core.errors": 0,
+    "core.json_file": 1,
+    "core.body": 1,
+    "core.footage": 1,
+    "core.fields": 2,
+    "core.observation": 2,
+    "core.prior": 3,
+    "core.estimate": 4,
+    "core.keyframe_file": 4,
+    "core.take": 5,
+    "core.motion": 5,
+    "core.reconstruct": 6,
+    "core.report": 7,
+    "core": 8,
+    "operators.bridge": 9,
+    "operators": 10,
+}
+
+
+def modules(root: Path, *folders: str) -> dict[str, Path]:
+    """Every module below `folders`: its dotted name from the root, and its file."""
+    files = [file for folder in folders for file in sorted((root / folder).rglob("*.py"))]
+    return {name_of(file.relative_to(root)): file for file in files}
+
+
+def name_of(path: Path) -> str:
+    """`core/body/__init__.py` is `core.body`."""
+    parts = path.with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imports(name: str, is_package: bool, source: str, known: set[str]) -> Iterator[tuple[int, str]]:
+    """Yield (line, dotted name) for each import in `source`, the relative ones resolved from the root.
+
+    `from ..body import rotations` yields `core.body.rotations` where that is a module, else `core.body`.
+    """
+    package = name.split(".") if is_package else name.split(".")[:-1]
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield node.lineno, alias.name
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else []
+            if node.level > len(package) + 1:
+                yield node.lineno, f"(beyond the root){node.module or ''}"
+                continue
+            base = ".".join(above + ([node.module] if node.module else []))
+            for alias in node.names:
+                deeper = f"{base}.{alias.name}" if base else alias.name
+                yield node.lineno, deeper if deeper in known else base
+
+
+def room_of(name: str) -> str | None:
+    """The room a module belongs to: the longest name in HEIGHTS that begins its own; None outside."""
+    inside = [room for room in HEIGHTS if name == room or name.startswith(room + ".")]
+    return max(inside, key=len, default=None)
+
+
+def wrong_imports(name: str, is_package: bool, source: str, known: set[str]) -> list[str]:
+    """What in one module breaks the rules, as sentences."""
+    own = room_of(name)
+    found = []
+    for line, target in imports(name, is_package, source, known):
+        room = room_of(target)
+        if name.startswith("core") and target.split(".")[0] in BLENDER_MODULES:
+            found.append(f"{name}:{line} imports {target}, but core knows nothing of Blender")
+        elif target.split(".")[0] == "keymark" or target.startswith("(beyond the root)"):
+            found.append(f"{name}:{line} imports {target}; inside the package imports are relative")
+        elif room and own and room != own and HEIGHTS[room] >= HEIGHTS[own]:
+            found.append(f"{name}:{line} imports {target}, which is no room below {own}")
+    return found
+
+
+def test_imports_run_in_one_direction_and_core_knows_no_blender(repository: Path) -> None:
+    """No room imports one beside or above itself, and no module of core imports Blender."""
+    known = modules(repository, "core", "operators")
+    assert "core.errors" in known
+    wrong = []
+    for name, file in known.items():
+        wrong += wrong_imports(name, file.name == "__init__.py", file.read_text(encoding="utf-8"), set(known))
+    assert wrong == []
+
+
+@pytest.mark.parametrize(
+    ("name", "source"),
+    [
+        ("core.body.skeleton", "import bpy"),
+        ("core.body.skeleton", "def late():\n    from mathutils import Matrix"),
+        ("core.body.skeleton", "from ...operators import bridge"),
+        ("core.body.skeleton", "from ..footage import camera"),
+        ("core.footage.clip", "from ..take import Take"),
+        ("core.errors", "from .body import skeleton"),
+        ("core.estimate.kalman", "from ..reconstruct import reconstruct"),
+        ("core.reconstruct", "from . import report"),
+        ("core.reconstruct", "from keymark.core import errors"),
+        ("core.take", "from .motion import Motion"),
+        ("operators.bridge.fcurves", "from ..convert import run"),
+        ("operators.convert", "from ....elsewhere import run"),
+    ],
+)
+def test_a_wrong_import_is_found(name: str, source: str) -> None:
+    """The check above can fail: each of these imports breaks a rule and is named."""
+    known = {"core.report", "core.body.skeleton", "core.footage.camera", "operators.bridge", "core.errors"}
+    assert len(wrong_imports(name, False, source, known)) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "source"),
+    [
+        (
+            "core.body.skeleton",
+            "import numpy as np\nfrom . import rotations\nfrom ..errors import InputError",
+        ),
+        ("core.observation.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
+        ("core.reconstruct", "from .take import Take\nfrom .estimate import kalman"),
+        ("operators.bridge.fcurves", "import bpy\nfrom ...core.body import skeleton"),
+        ("operators.convert", "import bpy\nfrom .bridge import fcurves\nfrom ..core import reconstruct"),
+    ],
+)
+def test_a_right_import_passes(name: str, source: str) -> None:
+    """Imports that run downhill, inside a room, or out of the house are let through."""
+    known = {"core.footage.camera", "core.body.skeleton", "core.body.rotations", "core.reconstruct"}
+    assert wrong_imports(name, False, source, known) == []
+
+
+def test_no_file_is_longer_than_four_hundred_lines(repository: Path) -> None:
+    """A file holds one idea; one that outgrows 400 lines is split."""
+    files = modules(repository, "core", "operators", "tests", "benchmarks", "tools").values()
+    long = {str(file): len(file.read_text(encoding="utf-8").splitlines()) for file in files}
+    assert {file: lines for file, lines in long.items() if lines > LINES_AT_MOST} == {}
+
+
+def test_every_folder_of_the_package_is_a_package(repository: Path) -> None:
+    """A folder of modules without `__init__.py` would be missing from the installed package."""
+    folders = {file.parent for file in modules(repository, "core", "operators").values()}
+    assert [str(folder) for folder in folders if not (folder / "__init__.py").is_file()] == []
+
+
+def test_nothing_below_tests_is_a_package(repository: Path) -> None:
+    """Tests are imported by file (importlib mode), so that two may share a name."""
+    assert list((repository / "tests").rglob("__init__.py")) == []
+
+
+def test_manifest_and_pyproject_agree(repository: Path) -> None:
+    """One version, one licence, one name, and the Python of the oldest Blender named."""
+    manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
+    settings = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))
+    project = settings["project"]
+    assert project["name"] == manifest["id"] == "keymark"
+    assert "version" in project["dynamic"] and "version" not in project
+    assert manifest["license"] == ["SPDX:" + project["license"]]
+    oldest = ".".join(manifest["blender_version_min"].split(".")[:2])
+    assert any(pin.startswith(f"bpy=={oldest}.") for pin in project["optional-dependencies"]["blender"])
+
+
+def test_the_changelog_has_the_version(repository: Path) -> None:
+    """The manifest's version is a heading of CHANGELOG.md."""
+    manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
+    changelog = (repository / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert manifest["version"] in re.findall(r"^## \[([^\]]+)\]", changelog, flags=re.MULTILINE)
+
+
+def test_every_tool_a_target_calls_is_there(repository: Path) -> None:
+    """The Makefile and the continuous integration name no script that is missing."""
+    scripts = (repository / "Makefile").read_text(encoding="utf-8")
+    named = set(re.findall(r"tools/\w+\.(?:py|sh)", scripts))
+    assert named
+    assert [name for name in sorted(named) if not (repository / name).is_file()] == []
