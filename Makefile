@@ -7,6 +7,8 @@ OUTPUT ?= out/demo
 TESTS ?= tests/core tests/blender
 
 find_python := sh tools/find_python.sh
+# A variable, because a comma would end an argument of `call`.
+test_parts := --editable '.[blender,dev]'
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
 
@@ -35,11 +37,11 @@ help: ## list the targets
 
 .venv-test/ready: $(settings)
 	@$(check_libraries)
-	@$(call make_venv,.venv-test,3.11,$(PYTHON),--editable '.[blender,dev]')
+	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts))
 
 # The newest Blender's Python is optional: without it the tests run in the oldest supported Blender only.
 .venv-test-313/ready: $(settings)
-	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,--editable '.[blender,dev]'); fi
+	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts)); fi
 
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
