@@ -1,0 +1,96 @@
+"""The performer's sizes: segment lengths in metres, and a body of average proportions where none is given.
+
+Proportions of stature: Drillis & Contini (1966), *Body Segment Parameters*, as tabulated in Winter,
+*Biomechanics and Motor Control of Human Movement*.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from types import MappingProxyType
+from typing import Any
+
+from ..errors import InputError
+from .skeleton import SIDES
+
+SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
+    {
+        "upper_arm.L": 0.186,
+        "upper_arm.R": 0.186,
+        "forearm.L": 0.146,
+        "forearm.R": 0.146,
+        "hand.L": 0.108,
+        "hand.R": 0.108,
+        "thigh.L": 0.245,
+        "thigh.R": 0.245,
+        "shin.L": 0.246,
+        "shin.R": 0.246,
+        "foot.L": 0.110,
+        "foot.R": 0.110,
+        "shoulder_width": 0.220,
+        "hip_width": 0.115,
+        "trunk": 0.285,
+        "neck_head": 0.135,
+    }
+)
+REQUIRED = tuple(name for name in SHARES_OF_STATURE if not name.startswith(("hand", "foot")))
+SHORTEST_M, LONGEST_M = 0.02, 2.0
+
+
+@dataclass(frozen=True)
+class Actor:
+    """Segment lengths of one performer.
+
+    Raises:
+        InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
+    """
+
+    segments_m: Mapping[str, float] = field(hash=False)
+    """Length of every segment [m]; hands and feet are derived from stature where not given."""
+
+    def __post_init__(self) -> None:
+        """Check the lengths and add those that follow from stature."""
+        given = {name: _checked_length(name, value) for name, value in dict(self.segments_m).items()}
+        missing = [name for name in REQUIRED if name not in given]
+        if missing:
+            raise InputError(
+                f"actor.segments_m lacks {', '.join(missing)}; it needs {', '.join(REQUIRED)}, each in metres"
+            )
+        stature = self._stature(given)
+        for name, share in SHARES_OF_STATURE.items():
+            given.setdefault(name, share * stature)
+        object.__setattr__(self, "segments_m", MappingProxyType(given))
+
+    @staticmethod
+    def _stature(lengths: Mapping[str, float]) -> float:
+        legs = [f"{part}.{side}" for part in ("thigh", "shin") for side in SIDES]
+        return sum(lengths[name] for name in legs) / sum(SHARES_OF_STATURE[name] for name in legs)
+
+    @property
+    def stature_m(self) -> float:
+        """Height that the legs suggest [m], from average proportions."""
+        return self._stature(self.segments_m)
+
+    @classmethod
+    def from_stature(cls, stature_m: float) -> "Actor":
+        """An actor of average proportions and a height of `stature_m` [m].
+
+        Raises:
+            InputError: The height is not between 0.5 and 3 m.
+        """
+        if not (isfinite(stature_m) and 0.5 <= stature_m <= 3.0):
+            raise InputError(f"actor height is {stature_m} m; a height between 0.5 and 3 m is valid")
+        return cls({name: share * stature_m for name, share in SHARES_OF_STATURE.items()})
+
+
+def _checked_length(name: str, value: Any) -> float:
+    if name not in SHARES_OF_STATURE:
+        raise InputError(
+            f"actor.segments_m names the unknown segment '{name}'; known are {', '.join(SHARES_OF_STATURE)}"
+        )
+    usable = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    if not usable or not SHORTEST_M <= value <= LONGEST_M:
+        raise InputError(
+            f"actor.segments_m.{name} is {value!r}; a length between {SHORTEST_M} and {LONGEST_M} m is valid"
+        )
+    return float(value)

@@ -1,0 +1,135 @@
+"""Forward kinematics and Jacobians of an actor's skeleton, over any batch of postures."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import rotations
+from .actor import Actor
+from .human import HUMAN
+from .posture import Posture
+from .skeleton import Placement, Skeleton
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Promise that forward kinematics has been run: every joint's frame in the world."""
+
+    posture: Posture
+    rotation: Array
+    """(..., J, 3, 3) world orientation of each joint's frame."""
+    origin: Array
+    """(..., J, 3) world place of each joint's frame [m]."""
+
+    @cached_property
+    def screws(self) -> Array:
+        """(..., 6, D) spatial velocity per unit tangent step: rows 0:3 linear (at the origin), 3:6 angular.
+
+        A point p of a frame that a degree of freedom moves has the derivative v + ω × p.
+        """
+        skeleton = self.posture.skeleton
+        screws = np.zeros((*self.posture.batch, 6, skeleton.dof_count))
+        screws[..., 0:3, 0:3] = np.eye(3)
+        for ball, dofs in zip(skeleton.ball_joints, skeleton.ball_dofs, strict=True):
+            axes = self.rotation[..., ball, :, :]
+            screws[..., 3:6, dofs] = axes
+            screws[..., 0:3, dofs] = np.cross(
+                self.origin[..., ball, :, None], axes, axisa=-2, axisb=-2, axisc=-2
+            )
+        for joint, dof in zip(skeleton.hinge_joints, skeleton.hinge_dofs, strict=True):
+            axis = self.rotation[..., joint, :, :] @ np.asarray(skeleton.joints[joint].axis)
+            screws[..., 3:6, dof] = axis
+            screws[..., 0:3, dof] = np.cross(self.origin[..., joint, :], axis)
+        return screws
+
+    def place(self, joint: int, local: Array) -> Array:
+        """World places (..., 3) of a point given in a joint's frame [m]."""
+        return np.asarray(self.origin[..., joint, :] + self.rotation[..., joint, :, :] @ local)
+
+    def place_jacobian(self, joint: int, world: Array) -> Array:
+        """d place / d tangent, (..., 3, D), of points `world` (..., 3) fixed in a joint's frame."""
+        screws = self.screws
+        linear = screws[..., 0:3, :] + np.cross(
+            screws[..., 3:6, :], world[..., :, None], axisa=-2, axisb=-2, axisc=-2
+        )
+        return np.asarray(linear * self.posture.skeleton.moved_by[joint])
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A skeleton with an actor's sizes."""
+
+    actor: Actor
+    skeleton: Skeleton = HUMAN
+
+    def local(self, placement: Placement) -> Array:
+        """A placement of the skeleton in metres, (3,)."""
+        place = np.zeros(3)
+        for length, factors in placement.items():
+            place += self.actor.segments_m[length] * np.asarray(factors)
+        return place
+
+    @cached_property
+    def offsets(self) -> Array:
+        """(J, 3) place of each joint in its parent's frame [m]."""
+        return np.stack([self.local(joint.placement) for joint in self.skeleton.joints])
+
+    @cached_property
+    def point_places(self) -> Array:
+        """(P, 3) place of each principal point in its joint's frame [m]."""
+        return np.stack([self.local(point.placement) for point in self.skeleton.points])
+
+    def pose(self, posture: Posture) -> Pose:
+        """Forward kinematics: every joint's frame in the world."""
+        skeleton = self.skeleton
+        count = len(skeleton.joints)
+        rotation = np.empty((*posture.batch, count, 3, 3))
+        origin = np.empty((*posture.batch, count, 3))
+        turns = self._joint_rotations(posture)
+        for i, joint in enumerate(skeleton.joints):
+            if joint.parent < 0:
+                rotation[..., i, :, :] = turns[i]
+                origin[..., i, :] = posture.translation + self.offsets[i]
+            else:
+                above = rotation[..., joint.parent, :, :]
+                rotation[..., i, :, :] = above @ turns[i]
+                origin[..., i, :] = origin[..., joint.parent, :] + above @ self.offsets[i]
+        return Pose(posture, rotation, origin)
+
+    def _joint_rotations(self, posture: Posture) -> list[Array]:
+        turns: list[Array] = [np.eye(3)] * len(self.skeleton.joints)
+        for column, ball in enumerate(self.skeleton.ball_joints):
+            turns[ball] = posture.rotations[..., column, :, :]
+        for column, joint in enumerate(self.skeleton.hinge_joints):
+            axis = np.asarray(self.skeleton.joints[joint].axis)
+            turns[joint] = rotations.hinge(axis, posture.angles[..., column])
+        return turns
+
+    def points(self, pose: Pose) -> Array:
+        """World places (..., P, 3) of the principal points [m]."""
+        places = [
+            pose.place(point.joint, local)
+            for point, local in zip(self.skeleton.points, self.point_places, strict=True)
+        ]
+        return np.stack(places, axis=-2)
+
+    def points_jacobian(self, pose: Pose) -> Array:
+        """d points / d tangent, (..., P, 3, D) [m per m or rad]."""
+        world = self.points(pose)
+        rows = [
+            pose.place_jacobian(point.joint, world[..., i, :])
+            for i, point in enumerate(self.skeleton.points)
+        ]
+        return np.stack(rows, axis=-3)
+
+    def segment_ends(self, pose: Pose, name: str) -> tuple[Array, Array]:
+        """World places (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""
+        for segment in self.skeleton.segments:
+            if segment.name == name:
+                start, end = self.local(segment.start), self.local(segment.end)
+                return pose.place(segment.joint, start), pose.place(segment.joint, end)
+        raise KeyError(name)

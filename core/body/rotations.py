@@ -1,0 +1,132 @@
+"""Rotations on SO(3), over any leading batch axes.
+
+Tangent steps act from the right, `R Exp(step)`: the step is expressed in the rotated (child) frame.
+References: Solà, Deray, Atchuthan (2018), *A micro Lie theory for state estimation in robotics*.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+
+SMALL_ANGLE = 1e-4
+"""Below this angle [rad] the closed forms lose digits and their series are used."""
+
+
+def exponential(rotation_vector: Array) -> Array:
+    """Rotation matrices of rotation vectors: Solà (2018), eq. 132.
+
+    Args:
+        rotation_vector: (..., 3) [rad].
+
+    Returns:
+        (..., 3, 3) rotation matrices.
+    """
+    vectors = np.asarray(rotation_vector, dtype=np.float64)
+    matrices: Array = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+    return matrices.reshape(*vectors.shape[:-1], 3, 3)
+
+
+def logarithm(rotation: Array) -> Array:
+    """Rotation vectors of rotation matrices, of angle at most π: Solà (2018), eq. 133.
+
+    Args:
+        rotation: (..., 3, 3).
+
+    Returns:
+        (..., 3) [rad].
+    """
+    matrices = np.asarray(rotation, dtype=np.float64)
+    vectors: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_rotvec()
+    return vectors.reshape(*matrices.shape[:-2], 3)
+
+
+def cross_matrix(vector: Array) -> Array:
+    """The matrix [v]x with [v]x w = v × w, for (..., 3) vectors, as (..., 3, 3)."""
+    v = np.asarray(vector, dtype=np.float64)
+    zero = np.zeros_like(v[..., 0])
+    rows = [
+        np.stack([zero, -v[..., 2], v[..., 1]], axis=-1),
+        np.stack([v[..., 2], zero, -v[..., 0]], axis=-1),
+        np.stack([-v[..., 1], v[..., 0], zero], axis=-1),
+    ]
+    return np.stack(rows, axis=-2)
+
+
+def right_jacobian(rotation_vector: Array) -> Array:
+    """J_r with Exp(v + dv) ≈ Exp(v) Exp(J_r dv): Solà (2018), eq. 143.
+
+    Args:
+        rotation_vector: (..., 3) [rad].
+
+    Returns:
+        (..., 3, 3).
+    """
+    v = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    small = angle < SMALL_ANGLE
+    safe = np.where(small, 1.0, angle)
+    first = np.where(small, 0.5 - angle**2 / 24.0, (1.0 - np.cos(safe)) / safe**2)
+    second = np.where(small, 1.0 / 6.0 - angle**2 / 120.0, (safe - np.sin(safe)) / safe**3)
+    K = cross_matrix(v)
+    return np.asarray(np.eye(3) - first * K + second * (K @ K))
+
+
+def right_jacobian_inverse(rotation_vector: Array) -> Array:
+    """The inverse of `right_jacobian`, for angles below 2π: Solà (2018), eq. 144.
+
+    Args:
+        rotation_vector: (..., 3) [rad].
+
+    Returns:
+        (..., 3, 3).
+    """
+    v = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    small = angle < SMALL_ANGLE
+    safe = np.where(small, 1.0, angle)
+    # (1 + cos) / (2 angle sin), written with the half angle so that it stays finite at π.
+    closed = 1.0 / safe**2 - 1.0 / (2.0 * safe * np.tan(safe / 2.0))
+    factor = np.where(small, 1.0 / 12.0 + angle**2 / 720.0, closed)
+    K = cross_matrix(v)
+    return np.asarray(np.eye(3) + 0.5 * K + factor * (K @ K))
+
+
+def hinge(axis: Array, angle: Array) -> Array:
+    """Rotations by `angle` (...,) [rad] about a fixed unit `axis` (3,), as (..., 3, 3)."""
+    return exponential(np.asarray(angle)[..., None] * np.asarray(axis))
+
+
+def to_quaternions(rotation: Array) -> Array:
+    """Unit quaternions in the order w, x, y, z, with w ≥ 0.
+
+    Args:
+        rotation: (..., 3, 3).
+
+    Returns:
+        (..., 4).
+    """
+    matrices = np.asarray(rotation, dtype=np.float64)
+    xyzw: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(canonical=True)
+    return xyzw[:, [3, 0, 1, 2]].reshape(*matrices.shape[:-2], 4)
+
+
+def continuous_quaternions(quaternions: Array) -> Array:
+    """Flip signs along the first axis so that each quaternion lies nearest the one before.
+
+    Interpolating components, as F-curves do, is right only between quaternions of one sign.
+
+    Args:
+        quaternions: (F, ..., 4).
+
+    Returns:
+        (F, ..., 4), the same rotations.
+    """
+    q = np.asarray(quaternions, dtype=np.float64)
+    if len(q) < 2:
+        return q.copy()
+    turned = np.sum(q[1:] * q[:-1], axis=-1) < 0.0
+    # Whether each frame is turned against the first is the parity of the turns before it.
+    parity = np.concatenate([np.zeros((1, *turned.shape[1:]), int), np.cumsum(turned, axis=0)]) % 2
+    return np.asarray(q * (1 - 2 * parity)[..., None])

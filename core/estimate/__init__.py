@@ -1,0 +1,1 @@
+"""What follows from observations and prior: the filter, the whole-clip estimate, their consistency."""

@@ -1,0 +1,215 @@
+"""The pinhole camera that saw the performance, in Blender's conventions, with its lens distortion.
+
+Camera coordinates look along local -Z with +Y up; *depth* is the distance along the viewing axis, positive in front.
+Pixels are x right, y down, with the origin at the outer corner of the top left pixel. Sensor fit is horizontal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .camera_fields import read_distortion, read_number, read_poses, read_resolution
+
+FloatArray = NDArray[np.float64]
+
+_NEWTON_STEPS = 20
+_NEWTON_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A fixed or moving pinhole camera with polynomial radial distortion.
+
+    Attributes:
+        lens_mm: focal length in millimetres.
+        sensor_width_mm: width of the sensor in millimetres; it spans the image's width.
+        resolution: image width and height in pixels (square pixels).
+        matrix_world: camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; metres.
+        shift_x: shift of the view to the right, in image widths.
+        shift_y: shift of the view upwards, in image widths (as in Blender, not heights).
+        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalised coordinates to
+            distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y².
+    """
+
+    lens_mm: float
+    sensor_width_mm: float
+    resolution: tuple[int, int]
+    matrix_world: FloatArray
+    shift_x: float = 0.0
+    shift_y: float = 0.0
+    distortion: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Keep an own, read-only copy of the pose."""
+        matrix = np.array(self.matrix_world, dtype=np.float64)
+        if matrix.ndim not in (2, 3) or matrix.shape[-2:] != (4, 4):
+            raise ValueError(f"matrix_world must have shape (4, 4) or (F, 4, 4), not {matrix.shape}")
+        matrix.setflags(write=False)
+        object.__setattr__(self, "matrix_world", matrix)
+
+    @classmethod
+    def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> Camera:
+        """Read a camera from the fields of `take.json`.
+
+        Args:
+            fields: `lens_mm`, `sensor_width_mm`, `resolution`, `matrix_world` or `matrix_world_frames`, and
+                optionally `shift_x`, `shift_y`, `distortion`.
+            where: how messages name the place, for instance "take.json: camera".
+
+        Raises:
+            InputError: a field is missing or unusable; the sentence names it.
+        """
+        return cls(
+            lens_mm=read_number(fields, "lens_mm", where, positive=True),
+            sensor_width_mm=read_number(fields, "sensor_width_mm", where, positive=True),
+            resolution=read_resolution(fields, where),
+            matrix_world=read_poses(fields, where),
+            shift_x=read_number(fields, "shift_x", where, default=0.0),
+            shift_y=read_number(fields, "shift_y", where, default=0.0),
+            distortion=read_distortion(fields, where),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields as `take.json` holds them; `from_dict` reads them back unchanged."""
+        fields: dict[str, Any] = {
+            "lens_mm": self.lens_mm,
+            "sensor_width_mm": self.sensor_width_mm,
+            "resolution": list(self.resolution),
+            "shift_x": self.shift_x,
+            "shift_y": self.shift_y,
+        }
+        if any(self.distortion):
+            fields["distortion"] = list(self.distortion)
+        fields["matrix_world_frames" if self.is_moving else "matrix_world"] = self.matrix_world.tolist()
+        return fields
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether the camera has one pose a frame."""
+        return self.matrix_world.ndim == 3
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length in pixels."""
+        return self.lens_mm / self.sensor_width_mm * self.resolution[0]
+
+    @property
+    def principal_point(self) -> FloatArray:
+        """Pixel the optical axis meets, (2,): the image's centre moved against the shifts."""
+        width, height = self.resolution
+        return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
+
+    def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Take world points (..., 3) in metres to camera coordinates (..., 3) in metres.
+
+        Args:
+            points: world points, (..., 3).
+            frame: index of the pose of each point, integers broadcastable to the leading axes; a fixed camera
+                ignores it.
+
+        Raises:
+            ValueError: the camera moves and no frame is given.
+        """
+        rotation, location = self._pose(frame)
+        offset = np.asarray(points, dtype=np.float64) - location
+        return np.einsum("...ji,...j->...i", rotation, offset)
+
+    def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Return the distance along the viewing axis (...) in metres of world points (..., 3)."""
+        return -self.world_to_camera(points, frame)[..., 2]
+
+    def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Return d depth / d world point, (..., 3): the viewing direction, the same for every point."""
+        rotation, _ = self._pose(frame)
+        points = np.asarray(points, dtype=np.float64)
+        shape = np.broadcast_shapes(points.shape, rotation[..., 2].shape)
+        return np.broadcast_to(-rotation[..., 2], shape).copy()
+
+    def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+        """Project world points to the image.
+
+        Args:
+            points: world points, (..., 3), in metres.
+            frame: index of each point's pose; see `world_to_camera`.
+
+        Returns:
+            Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in metres.
+        """
+        normalised, depth = self._normalised(self.world_to_camera(points, frame))
+        radius_squared = np.sum(normalised**2, axis=-1)
+        factor, _ = self._radial_factor(radius_squared)
+        distorted = normalised * factor[..., None]
+        return self.principal_point + self.focal_px * distorted * np.array([1.0, -1.0]), depth
+
+    def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Return d pixel / d world point, (..., 2, 3) in pixels per metre; NaN behind the camera."""
+        rotation, _ = self._pose(frame)
+        normalised, depth = self._normalised(self.world_to_camera(points, frame))
+        factor, slope = self._radial_factor(np.sum(normalised**2, axis=-1))
+        outer = normalised[..., :, None] * normalised[..., None, :]  # (..., 2, 2)
+        lens = factor[..., None, None] * np.eye(2) + 2.0 * slope[..., None, None] * outer
+        pinhole = np.zeros((*normalised.shape[:-1], 2, 3))
+        pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
+        pinhole[..., 2] = normalised  # depth is -Z, so moving along +Z brings the point nearer
+        pinhole /= np.where(depth > 0.0, depth, np.nan)[..., None, None]
+        to_pixels = self.focal_px * np.array([[1.0], [-1.0]])
+        return to_pixels * (lens @ pinhole @ np.swapaxes(rotation, -1, -2))
+
+    def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return the line of sight of each pixel.
+
+        Args:
+            pixels: image points, (..., 2).
+            frame: index of each pixel's pose; see `world_to_camera`.
+
+        Returns:
+            Origin (3,) or (..., 3) in metres and unit direction (..., 3), both in the world. Directions are NaN for
+            pixels the distortion polynomial reaches from nowhere.
+        """
+        rotation, location = self._pose(frame)
+        offset = np.asarray(pixels, dtype=np.float64) - self.principal_point
+        undistorted = self._undistort(offset / self.focal_px * np.array([1.0, -1.0]))
+        camera = np.concatenate([undistorted, np.full((*undistorted.shape[:-1], 1), -1.0)], axis=-1)
+        camera /= np.linalg.norm(camera, axis=-1, keepdims=True)
+        return location, np.einsum("...ij,...j->...i", rotation, camera)
+
+    def _pose(self, frame: ArrayLike | None) -> tuple[FloatArray, FloatArray]:
+        matrix = self.matrix_world
+        if self.is_moving:
+            if frame is None:
+                raise ValueError("a moving camera needs the frame of each point")
+            matrix = matrix[np.asarray(frame)]
+        return matrix[..., :3, :3], matrix[..., :3, 3]
+
+    @staticmethod
+    def _normalised(camera: FloatArray) -> tuple[FloatArray, FloatArray]:
+        depth = -camera[..., 2]
+        return camera[..., :2] / np.where(depth > 0.0, depth, np.nan)[..., None], depth
+
+    def _radial_factor(self, radius_squared: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the distortion factor and its derivative by the squared radius."""
+        k1, k2, k3 = self.distortion
+        factor = 1.0 + radius_squared * (k1 + radius_squared * (k2 + radius_squared * k3))
+        return factor, k1 + radius_squared * (2.0 * k2 + 3.0 * k3 * radius_squared)
+
+    def _undistort(self, distorted: FloatArray) -> FloatArray:
+        """Invert the radial polynomial by Newton's method on the radius, from the distorted radius."""
+        if not any(self.distortion):
+            return distorted
+        target = np.linalg.norm(distorted, axis=-1)
+        radius = target.copy()
+        with np.errstate(all="ignore"):  # a diverging pixel ends as NaN, which is its answer
+            for _ in range(_NEWTON_STEPS):
+                factor, slope = self._radial_factor(radius**2)
+                radius = radius - (radius * factor - target) / (factor + 2.0 * radius**2 * slope)
+            factor, slope = self._radial_factor(radius**2)
+            found = np.abs(radius * factor - target) <= _NEWTON_TOLERANCE * (1.0 + target)
+            # Past the fold of the polynomial a root exists that no light takes.
+            found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
+            scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)
+        return distorted * np.where(found, scale, np.nan)[..., None]

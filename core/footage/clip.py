@@ -1,0 +1,123 @@
+"""A clip on disk, video or numbered images: its size and rate, and its frames in order, one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .clip_timing import is_variable_frame_rate
+from .image_sequence import ImageSequence, find_images
+from .video_file import VideoFile
+
+Image = NDArray[np.uint8]
+
+DEFAULT_SEQUENCE_FPS = 24.0
+"""Frame rate of an image sequence whose rate nobody names, as a new Blender scene has."""
+
+
+class FrameSource(Protocol):
+    """Where a clip's frames come from."""
+
+    size: tuple[int, int]
+    fps: float
+    frame_count: int
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield index, time in seconds and image of every frame."""
+        ...
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield the time of every frame without converting its picture."""
+        ...
+
+    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield the frames of ascending indices, as far as they exist."""
+        ...
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A readable clip; opening it has decoded its first frame.
+
+    Attributes:
+        path: the file, the folder or the pattern it was opened from.
+        source: decoder of the frames.
+    """
+
+    path: Path
+    source: FrameSource
+
+    @classmethod
+    def open(cls, path: str | Path, fps: float | None = None) -> Clip:
+        """Open a video, a folder of images, or a numbered sequence by one of its files or a pattern.
+
+        Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10).
+
+        Args:
+            path: what to open.
+            fps: frames per second of an image sequence; a video knows its own.
+
+        Raises:
+            InputError: nothing is there, or nothing that can be decoded.
+        """
+        path = Path(path)
+        images = find_images(path)
+        if images is not None:
+            return cls(path, ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS))
+        if not path.exists():
+            raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image.")
+        return cls(path, VideoFile(path))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the frames in pixels, after the rotation that the file asks for."""
+        return self.source.size
+
+    @property
+    def fps(self) -> float:
+        """Nominal frames per second."""
+        return self.source.fps
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames the file claims to hold; a pass over them gives the true count."""
+        return self.source.frame_count
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield (index, time in seconds, image) of every frame in order, in one pass and constant memory.
+
+        Images are (height, width, 3) uint8 in the order blue, green, red. Time counts from the first frame and is
+        the file's own stamp, so it is right for variable frame rates too.
+
+        Raises:
+            InputError: an image of a sequence cannot be read or has another size than the first.
+        """
+        return self.source.frames()
+
+    def time_stamps(self) -> NDArray[np.float64]:
+        """Return the time of every frame in seconds, (F,), by a pass that converts no picture."""
+        return np.fromiter(self.source.time_stamps(), dtype=np.float64)
+
+    @property
+    def variable_frame_rate(self) -> bool:
+        """Whether the frames are unevenly spaced in time; takes a pass over the clip."""
+        return is_variable_frame_rate(self.time_stamps())
+
+    def sample(self, count: int) -> list[tuple[int, Image]]:
+        """Return about `count` frames spread evenly over the clip, each with its index.
+
+        Raises:
+            ValueError: count is below 1.
+        """
+        if count < 1:
+            raise ValueError(f"count must be at least 1, not {count}")
+        # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
+        middles = (np.arange(count) + 0.5) * self.frame_count / count
+        indices = sorted({int(index) for index in middles})
+        return list(self.source.at(indices))

@@ -1,0 +1,28 @@
+"""When the frames of a clip were taken: even and uneven time stamps."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+_RELATIVE_TOLERANCE = 0.1
+_STAMP_RESOLUTION_S = 1.1e-3
+"""Containers that store whole milliseconds make even intervals jump by one."""
+
+
+def is_variable_frame_rate(time_s: ArrayLike) -> bool:
+    """Tell whether frames are unevenly spaced in time.
+
+    Args:
+        time_s: (F,) time stamps in seconds.
+
+    Returns:
+        True if an interval differs from the median interval by more than a tenth and more than a container's
+        rounding to milliseconds explains. A dropped frame counts: Blender shows such clips by time, not by index.
+    """
+    intervals = np.diff(np.asarray(time_s, dtype=np.float64))
+    if intervals.size < 2:
+        return False
+    median = float(np.median(intervals))
+    tolerance = max(_RELATIVE_TOLERANCE * median, _STAMP_RESOLUTION_S)
+    return bool(np.abs(intervals - median).max() > tolerance)

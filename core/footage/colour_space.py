@@ -1,0 +1,66 @@
+"""Colours without their shading: opponent chromaticity, and the cells that colours are counted in.
+
+A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the light to a
+good approximation; chroma over luma therefore names the surface and luma alone the light that falls on it. A small
+offset keeps dark pixels, whose ratios are noise, near grey.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int32]
+
+CELL_BITS: Final = 6
+"""Bits kept of each channel: 64³ cells hold every colour to within two levels, less than compression noise."""
+CELLS_PER_CHANNEL: Final = 1 << CELL_BITS
+CELL_COUNT: Final = CELLS_PER_CHANNEL**3
+CELL_WIDTH: Final = 256 // CELLS_PER_CHANNEL
+
+LUMA_OFFSET: Final = 16.0
+"""Levels added to luma before dividing by it: about five times the noise of a compressed dark pixel."""
+
+# Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
+_LUMA_BGR: Final = np.array([0.114, 0.587, 0.299])
+_BLUE_SCALE: Final = 0.564
+_RED_SCALE: Final = 0.713
+
+
+def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Split colours into chromaticity and luma.
+
+    Args:
+        bgr: (..., 3) in 0..255, blue, green, red, gamma-encoded.
+
+    Returns:
+        Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in levels.
+    """
+    colour = np.asarray(bgr, dtype=np.float64)
+    luma = colour @ _LUMA_BGR
+    offset_luma = luma + LUMA_OFFSET
+    differences = np.stack([(colour[..., 0] - luma) * _BLUE_SCALE, (colour[..., 2] - luma) * _RED_SCALE], axis=-1)
+    return differences / offset_luma[..., None], offset_luma
+
+
+def cell_volume(offset_luma: ArrayLike) -> FloatArray:
+    """Return the volume of a cell in (chromaticity, log luma), for densities counted by cells."""
+    luma = np.asarray(offset_luma, dtype=np.float64)
+    # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division scales it.
+    return np.asarray(CELL_WIDTH**3 * _BLUE_SCALE * _RED_SCALE * _LUMA_BGR[1] / luma**3)
+
+
+def cell_index(image: NDArray[np.uint8]) -> IntArray:
+    """Return the cell of every pixel, (...) in 0..CELL_COUNT-1, of a (..., 3) image."""
+    shift = 8 - CELL_BITS
+    reduced = (image >> shift).astype(np.int32)
+    return (reduced[..., 0] << 2 * CELL_BITS) | (reduced[..., 1] << CELL_BITS) | reduced[..., 2]
+
+
+def cell_colours() -> FloatArray:
+    """Return the middle of every cell, (CELL_COUNT, 3) blue, green, red in levels."""
+    level = np.arange(CELLS_PER_CHANNEL) * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0
+    return np.stack(np.meshgrid(level, level, level, indexing="ij"), axis=-1).reshape(-1, 3)

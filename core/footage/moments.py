@@ -1,0 +1,112 @@
+"""Moments of an image region and the four characteristics read from them.
+
+The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A over m00
+(eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3 to 6). Pixels are
+unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1] and its centre is (0.5, 0.5).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+
+PIXEL_VARIANCE = 1.0 / 12.0
+"""Variance along each axis of a unit square of even weight, in px²."""
+
+
+class Characteristics(NamedTuple):
+    """The characteristics of one or more regions; fields (...).
+
+    Attributes:
+        x: S_x, the centroid's column in pixels.
+        y: S_y, the centroid's row in pixels, downwards.
+        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π.
+        ratio: S_λ = λ1/λ2 >= 1, of the squared axes.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    angle_rad: FloatArray
+    ratio: FloatArray
+
+
+def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
+    """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
+
+    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the rectangle.
+
+    Args:
+        weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
+        origin: image coordinates (x, y) of the window's top left corner, in pixels.
+    """
+    weight = np.asarray(weights, dtype=np.float64)
+    x = origin[0] + np.arange(weight.shape[1]) + 0.5
+    y = origin[1] + np.arange(weight.shape[0]) + 0.5
+    columns = weight.sum(axis=0)
+    rows = weight.sum(axis=1)
+    area = columns.sum()
+    return np.array(
+        [
+            area,
+            columns @ x,
+            rows @ y,
+            columns @ x**2 + PIXEL_VARIANCE * area,
+            y @ weight @ x,
+            rows @ y**2 + PIXEL_VARIANCE * area,
+        ]
+    )
+
+
+def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2, 3 and 4).
+
+    Args:
+        moments: raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
+
+    Returns:
+        Centroid and A = [[μ20, μ11], [μ11, μ02]] / m00; NaN where m00 is zero.
+    """
+    m = np.asarray(moments, dtype=np.float64)
+    area = np.where(m[..., 0] > 0.0, m[..., 0], np.nan)[..., None]
+    centroid = m[..., 1:3] / area
+    second = m[..., 3:6] / area
+    x, y = centroid[..., 0], centroid[..., 1]
+    cross = second[..., 1] - x * y
+    matrix = np.stack(
+        [np.stack([second[..., 0] - x**2, cross], axis=-1), np.stack([cross, second[..., 2] - y**2], axis=-1)], axis=-2
+    )
+    return centroid, matrix
+
+
+def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
+    """Return S_x, S_y, S_θ, S_λ of regions.
+
+    S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the sentence
+    after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the axes.
+
+    Args:
+        centroid: (..., 2) in px.
+        second_moment: A, (..., 2, 2) in px².
+    """
+    centroid = np.asarray(centroid, dtype=np.float64)
+    matrix = np.asarray(second_moment, dtype=np.float64)
+    mean = (matrix[..., 0, 0] + matrix[..., 1, 1]) / 2.0
+    difference = (matrix[..., 0, 0] - matrix[..., 1, 1]) / 2.0
+    cross = matrix[..., 0, 1]
+    spread = np.hypot(difference, cross)  # (λ1 - λ2) / 2
+    larger = mean + spread
+    # The product of the eigenvalues over the larger one keeps its digits where mean - spread would cancel.
+    smaller = (matrix[..., 0, 0] * matrix[..., 1, 1] - cross**2) / np.where(larger > 0.0, larger, np.nan)
+    angle = np.arctan2(cross, difference) / 2.0
+    ratio = larger / np.where(smaller > 0.0, smaller, np.nan)
+    return Characteristics(centroid[..., 0], centroid[..., 1], angle, ratio)
+
+
+def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> FloatArray:
+    """Return first - second wrapped to [-π/2, π/2): an axis has no head, so angles count modulo π."""
+    difference = np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64)
+    return np.asarray((difference + np.pi / 2.0) % np.pi - np.pi / 2.0)

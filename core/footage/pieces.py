@@ -1,0 +1,79 @@
+"""Putting a marker's pieces together, and saying how far the result can be trusted."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import percentile_filter
+
+from .association import Candidates
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+_AREA_WINDOW: Final = 31
+"""Frames about each in which the marker's full area is looked for: it turns and comes nearer more slowly."""
+_CLIPPED_QUALITY: Final = 0.4
+
+
+def join_pieces(
+    found: Candidates, path: IntArray, cost: FloatArray, reach_px: float, most_cost: float
+) -> tuple[FloatArray, BoolArray, FloatArray, FloatArray]:
+    """Add to each frame's main region the pieces that an arm before the marker cut off from it.
+
+    Args:
+        found: the marker's regions.
+        path: (F,) main region of each frame, -1 where hidden.
+        cost: (N,) cost of each region; too costly ones are clutter.
+        reach_px: widest gap between a piece and the main region.
+        most_cost: highest cost of a piece.
+
+    Returns:
+        Raw moments (F, 6), zero where hidden; clipped (F,); colour certainty (F,); the main piece's share (F,).
+    """
+    frames = len(path)
+    moments, clipped = np.zeros((frames, 6)), np.zeros(frames, dtype=np.bool_)
+    certainty, share = np.zeros(frames), np.zeros(frames)
+    for frame in np.flatnonzero(path >= 0):
+        main = int(path[frame])
+        here = np.arange(found.start[frame], found.start[frame + 1])
+        gap = _box_gap(found.box[main], found.box[here])
+        taken = here[((gap <= reach_px) & (cost[here] <= most_cost)) | (here == main)]
+        moments[frame] = found.moments[taken].sum(axis=0)
+        clipped[frame] = found.clipped[taken].any()
+        certainty[frame] = np.average(found.certainty[taken], weights=found.area[taken])
+        share[frame] = found.area[main] / moments[frame, 0]
+    return moments, clipped, certainty, share
+
+
+def region_quality(area: FloatArray, clipped: BoolArray, certainty: FloatArray, share: FloatArray) -> FloatArray:
+    """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
+
+    The product of the area against the full area seen in frames around, of clipping by the image's border, of the
+    colour's certainty, and of the scatter of its pieces.
+
+    Args:
+        area: (F,) px, 0 where hidden.
+        clipped: (F,).
+        certainty: (F,) in 0..1.
+        share: (F,) share of the main piece in the area.
+    """
+    if not np.any(area > 0.0):
+        return np.zeros(len(area))
+    seen = area > 0.0
+    full = np.zeros(len(area))
+    full[seen] = percentile_filter(area[seen], 80, size=min(_AREA_WINDOW, int(seen.sum())), mode="nearest")
+    ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
+    whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
+    quality = whole * certainty * (0.5 + 0.5 * share) * np.where(clipped, _CLIPPED_QUALITY, 1.0)
+    return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
+
+
+def _box_gap(box: FloatArray, others: FloatArray) -> FloatArray:
+    """Return the distance between a box (4,) and others (K, 4)."""
+    across = np.maximum(others[:, 0] - box[2], box[0] - others[:, 2])
+    down = np.maximum(others[:, 1] - box[3], box[1] - others[:, 3])
+    return np.asarray(np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)))

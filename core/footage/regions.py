@@ -1,0 +1,152 @@
+"""All regions of one image that have a marker's colour, measured to a fraction of a pixel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from .colour_model import ColourModel
+from .matting import coverage
+from .moments import raw_moments
+from .working_image import reduce, reduction, smooth
+
+FloatArray = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+MOST_REGIONS: Final = 8
+"""Regions kept of each marker in a frame, the largest; a clip's memory is bounded by it."""
+_SURE: Final = 230
+"""A region must hold pixels this sure (in 1/255) to be more than a blend of other colours."""
+_FEWEST_PIXELS: Final = 6
+_KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """One connected region of a marker's colour.
+
+    Attributes:
+        moments: (6,) raw moments m00, m10, m01, m20, m11, m02 in the image's pixels.
+        box: (4,) left, top, right, bottom in pixels.
+        certainty: mean probability of its pixels' colour in 0..1.
+        clipped: whether it touches the image's border.
+    """
+
+    moments: FloatArray
+    box: FloatArray
+    certainty: float
+    clipped: bool
+
+
+def border_width(size: tuple[int, int]) -> int:
+    """Return the half-width in pixels of the band in which a region's edge is blurred, for an image (width, height)."""
+    return 2 if max(size) <= 640 else 3
+
+
+def find_regions(image: Image, model: ColourModel) -> list[list[Region]]:
+    """Return the regions of each marker's colour in an image (rows, columns, 3), the largest first.
+
+    Regions are found on a reduced grid and measured on the full one, each marker in the windows that hold its own.
+    """
+    markers = len(model.distributions)
+    factor = reduction((image.shape[1], image.shape[0]))
+    label, probability = model.classify(smooth(reduce(image, factor)))
+    found: list[list[Region]] = []
+    for marker in range(markers):
+        boxes = _boxes(label == marker, probability, factor)
+        regions = [
+            region for box in _merged(boxes, 4 * factor) for region in _measure(image, model, marker, box, factor)
+        ]
+        regions.sort(key=lambda region: -region.moments[0])
+        found.append(regions[:MOST_REGIONS])
+    return found
+
+
+def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
+    """Return the coverage of each pixel by each marker's colour, (M, rows, columns) in 0..1, for previews."""
+    label, probability = model.classify(smooth(image))
+    border = border_width((image.shape[1], image.shape[0]))
+    masks = [_clean(label == marker, probability) for marker in range(len(model.distributions))]
+    return np.stack([coverage(image, mask, border) for mask in masks])
+
+
+def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Close one-pixel holes and drop specks and regions without a sure core."""
+    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, _KERNEL)
+    count, components, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
+    sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
+    good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
+    good[0] = False
+    return good[components].astype(np.uint8)
+
+
+def _boxes(mask: NDArray[np.bool_], probability: NDArray[np.uint8], factor: int) -> list[tuple[int, int, int, int]]:
+    """Return left, top, right, bottom of the cleaned regions, in pixels of the full image."""
+    if not mask.any():
+        return []
+    _, _, stats, _ = cv2.connectedComponentsWithStats(_clean(mask, probability), connectivity=8)
+    left, top, width, height = (stats[1:, column] for column in range(4))
+    corners = np.stack([left, top, left + width, top + height], axis=-1) * factor
+    largest = np.argsort(-stats[1:, cv2.CC_STAT_AREA])[: 2 * MOST_REGIONS]
+    return [(int(a), int(b), int(c), int(d)) for a, b, c, d in corners[largest]]
+
+
+def _merged(boxes: Sequence[tuple[int, int, int, int]], gap: int) -> list[tuple[int, int, int, int]]:
+    """Join boxes that overlap once grown by a gap, so that no pixel is measured twice."""
+    pending, merged = list(boxes), []
+    while pending:
+        a, b, c, d = pending.pop()
+        for other in pending:
+            if a - gap <= other[2] and other[0] <= c + gap and b - gap <= other[3] and other[1] <= d + gap:
+                pending.remove(other)
+                pending.append((min(a, other[0]), min(b, other[1]), max(c, other[2]), max(d, other[3])))
+                break
+        else:
+            merged.append((a, b, c, d))
+    return merged
+
+
+def _measure(
+    image: Image, model: ColourModel, marker: int, box: tuple[int, int, int, int], factor: int
+) -> list[Region]:
+    """Classify a window of the full image anew and measure its regions."""
+    height, width = image.shape[:2]
+    border = border_width((width, height))
+    margin = 2 * border + factor
+    left, top = max(box[0] - margin, 0), max(box[1] - margin, 0)
+    right, bottom = min(box[2] + margin, width), min(box[3] + margin, height)
+    window = image[top:bottom, left:right]
+    label, probability = model.classify(smooth(window))
+    mask = _clean(label == marker, probability)
+    count, components, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+    if count == 1:
+        return []
+    share = coverage(window, mask, border)
+    owner = components if count == 2 else _nearest_component(components)
+    regions = []
+    for component in range(1, count):
+        weights = share if count == 2 else np.where(owner == component, share, 0.0)
+        x, y, columns, rows, _ = (int(value) for value in stats[component])
+        corners = np.array([left + x, top + y, left + x + columns, top + y + rows], dtype=np.float64)
+        moments = raw_moments(weights, (left, top))
+        if moments[0] < _FEWEST_PIXELS:
+            continue
+        certainty = float(probability[components == component].mean()) / 255.0
+        clipped = bool(corners[0] <= 0 or corners[1] <= 0 or corners[2] >= width or corners[3] >= height)
+        regions.append(Region(moments, corners, certainty, clipped))
+    return regions
+
+
+def _nearest_component(components: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Give every pixel to the nearest component, to share out the coverage beyond their edges."""
+    outside = (components == 0).astype(np.uint8)
+    _, nearest = cv2.distanceTransformWithLabels(outside, cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_CCOMP)
+    inside = components > 0
+    translate = np.zeros(int(nearest.max()) + 1, dtype=np.int32)
+    translate[nearest[inside]] = components[inside]
+    return np.asarray(translate[nearest])

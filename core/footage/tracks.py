@@ -1,0 +1,106 @@
+"""What the extraction hands on: every marker's image region in every frame, and where regions were expected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip_timing import is_variable_frame_rate
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionTracks:
+    """The markers' image regions over a clip of F frames and M markers; NaN where a marker is hidden.
+
+    Attributes:
+        names: the markers, in the order of the second axis.
+        centroid: (F, M, 2) px, origin at the outer corner of the top left pixel.
+        second_moment: (F, M, 2, 2) px², the second central moment matrix A of eq. 2.
+        area: (F, M) px.
+        quality: (F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0 where
+            the marker is hidden.
+        clipped: (F, M), whether the region touches the image's border.
+        time_s: (F,) time stamps of the frames in seconds, from the first frame.
+        size: width and height of the image in px.
+    """
+
+    names: tuple[str, ...]
+    centroid: FloatArray
+    second_moment: FloatArray
+    area: FloatArray
+    quality: FloatArray
+    clipped: BoolArray
+    time_s: FloatArray
+    size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        """Check the shapes and keep own, read-only copies.
+
+        Raises:
+            ValueError: shapes disagree.
+        """
+        frames, markers = len(self.time_s), len(self.names)
+        tails: dict[str, tuple[int, ...]] = {
+            "centroid": (frames, markers, 2),
+            "second_moment": (frames, markers, 2, 2),
+            "area": (frames, markers),
+            "quality": (frames, markers),
+            "clipped": (frames, markers),
+            "time_s": (frames,),
+        }
+        for field in fields(self):
+            if field.name not in tails:
+                continue
+            dtype = np.bool_ if field.name == "clipped" else np.float64
+            array = np.array(getattr(self, field.name), dtype=dtype)
+            if array.shape != tails[field.name]:
+                raise ValueError(f"{field.name} has the shape {array.shape}, not {tails[field.name]}")
+            array.setflags(write=False)
+            object.__setattr__(self, field.name, array)
+
+    @property
+    def visible(self) -> BoolArray:
+        """Whether each marker was found in each frame, (F, M)."""
+        return np.asarray(np.isfinite(self.centroid[..., 0]))
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames, F."""
+        return len(self.time_s)
+
+    @property
+    def variable_frame_rate(self) -> bool:
+        """Whether the frames are unevenly spaced in time, as phones record them."""
+        return is_variable_frame_rate(self.time_s)
+
+
+@dataclass(frozen=True, eq=False)
+class ExpectedRegions:
+    """Where each marker is expected, to tell it from clutter of like hue.
+
+    Attributes:
+        centre: (F, M, 2) px; NaN where nothing is known.
+        radius: (F, M) px, a generous bound of how far the region's centroid may lie from there.
+    """
+
+    centre: FloatArray
+    radius: FloatArray
+
+    def __post_init__(self) -> None:
+        """Check the shapes and keep own, read-only copies.
+
+        Raises:
+            ValueError: shapes disagree.
+        """
+        centre = np.array(self.centre, dtype=np.float64)
+        radius = np.array(self.radius, dtype=np.float64)
+        if centre.ndim != 3 or centre.shape[-1] != 2 or radius.shape != centre.shape[:2]:
+            raise ValueError(f"centre must be (F, M, 2) and radius (F, M), not {centre.shape} and {radius.shape}")
+        for name, array in (("centre", centre), ("radius", radius)):
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)

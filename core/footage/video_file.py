@@ -1,0 +1,142 @@
+"""Frames of a video file, decoded by OpenCV."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+Image = NDArray[np.uint8]
+
+_FALLBACK_FPS = 24.0
+_HIGHEST_PLAUSIBLE_FPS = 2000.0
+_FRAMES_PER_SEEK = 125
+"""Seeking decodes from the last key picture on: half of an encoder's usual 250 frames between them."""
+
+logger = logging.getLogger(__name__)
+
+
+class VideoFile:
+    """A video file that OpenCV can decode.
+
+    Attributes:
+        path: the file.
+        size: width and height in pixels, after the rotation that the file asks for.
+        fps: nominal frames per second.
+        frame_count: number of frames the file claims, at least 1.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open the file and decode its first frame.
+
+        Raises:
+            InputError: it is empty, not a video, or broken before the first frame.
+        """
+        self.path = path
+        if path.is_file() and path.stat().st_size == 0:
+            raise InputError(f"{path}: the file is empty; it must be a video.")
+        with self._capture() as capture:
+            found, image = capture.read()
+            if not found or image is None:
+                raise InputError(f"{path}: not one frame can be decoded; the file is damaged or cut off.")
+            self.size: tuple[int, int] = (int(image.shape[1]), int(image.shape[0]))
+            fps = float(capture.get(cv2.CAP_PROP_FPS))
+            self.fps: float = fps if 0.0 < fps < _HIGHEST_PLAUSIBLE_FPS else _FALLBACK_FPS
+            claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
+            self.frame_count: int = max(int(claimed), 1) if np.isfinite(claimed) else 1
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield index, time in seconds and image of every frame; see `Clip.frames`."""
+        with self._capture() as capture:
+            index, previous = 0, -np.inf
+            while True:
+                found, image = capture.read()
+                if not found or image is None:
+                    break
+                previous = self._stamp(capture, index, previous)
+                yield index, previous, _as_image(image)
+                index += 1
+        self._warn_if_short(index)
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield the time in seconds of every frame."""
+        with self._capture() as capture:
+            index, previous = 0, -np.inf
+            while capture.grab():
+                previous = self._stamp(capture, index, previous)
+                yield previous
+                index += 1
+
+    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield the frames of ascending indices, as far as they exist.
+
+        Short clips are run through once; in long ones the file is searched, and run through where that fails.
+        """
+        if self.frame_count > _FRAMES_PER_SEEK * len(indices):
+            found = [(index, image) for index in indices if (image := self._seek(index)) is not None]
+            if len(found) == len(indices):
+                yield from found
+                return
+        wanted = set(indices)
+        with self._capture() as capture:
+            for index in range(max(wanted, default=-1) + 1):
+                if not capture.grab():
+                    return
+                if index in wanted:
+                    found_image, image = capture.retrieve()
+                    if found_image and image is not None:
+                        yield index, _as_image(image)
+
+    def _seek(self, index: int) -> Image | None:
+        with self._capture() as capture:
+            if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
+                return None
+            found, image = capture.read()
+            return _as_image(image) if found and image is not None else None
+
+    def _stamp(self, capture: cv2.VideoCapture, index: int, previous: float) -> float:
+        """Return the time of the frame just read; where the file has no usable stamps, count frames."""
+        stamp = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0
+        if np.isfinite(stamp) and stamp > previous and (index == 0 or stamp > 0.0):
+            return stamp
+        return index / self.fps if index / self.fps > previous else previous + 1.0 / self.fps
+
+    def _warn_if_short(self, frames: int) -> None:
+        if frames < self.frame_count:
+            logger.warning("%s: %d of %d frames could be decoded", self.path, frames, self.frame_count)
+
+    @contextmanager
+    def _capture(self) -> Iterator[cv2.VideoCapture]:
+        capture = _open_quietly(self.path)
+        try:
+            if not capture.isOpened():
+                raise InputError(f"{self.path}: cannot be decoded; it must be a video that OpenCV can read.")
+            # Blender always shows the rotated picture; OpenCV's default differs between versions.
+            capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
+            yield capture
+        finally:
+            capture.release()
+
+
+def _open_quietly(path: Path) -> cv2.VideoCapture:
+    """Open a file without the decoder's own complaints on standard error, where one sentence of ours shall stand."""
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    level = cv2.getLogLevel()
+    cv2.setLogLevel(0)
+    try:
+        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
+        return capture if capture.isOpened() else cv2.VideoCapture(str(path), cv2.CAP_ANY)
+    finally:
+        cv2.setLogLevel(level)
+
+
+def _as_image(image: NDArray[np.generic]) -> Image:
+    return np.ascontiguousarray(image, dtype=np.uint8)

@@ -1,0 +1,1 @@
+"""What a posture predicts of the observations, with Jacobians."""

@@ -1,0 +1,1 @@
+"""What is believed beforehand: keyframes, and the prior between them."""
