@@ -14,11 +14,14 @@ LINES_AT_MOST = 400
 # Each room with its height: imports may only run down, or stay inside one room (docs/architecture.md).
 HEIGHTS = {
     "core.errors": 0,
+    "core.json_file": 1,
     "core.body": 1,
     "core.footage": 1,
+    "core.fields": 2,
     "core.observation": 2,
     "core.prior": 3,
     "core.estimate": 4,
+    "core.keyframe_file": 4,
     "core.take": 5,
     "core.motion": 5,
     "core.reconstruct": 6,
