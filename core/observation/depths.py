@@ -1,0 +1,42 @@
+"""d(θ): how deep the principal points lie before the camera (paper, section 4, eq. 9).
+
+The image says nothing of depth, so the depths of the a priori posture are taken as observations of their
+own, with a noise wide enough to yield to everything else.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..body.kinematics import Body, Pose
+from ..footage.camera import Camera
+
+Array = NDArray[np.float64]
+
+DEPTH_VARIANCE_M2 = 0.1
+"""Variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²."""
+DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
+
+
+def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
+    """Depths of the principal points along the viewing axis (paper, eq. 9).
+
+    Args:
+        body: the actor's body.
+        camera: the camera.
+        pose: the body's pose, of any batch shape.
+        frame: index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
+
+    Returns:
+        (..., P) [m], positive in front of the camera.
+    """
+    return camera.depth(body.points(pose), _per_point(frame))
+
+
+def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
+    """Derivative of the depths by a tangent step of the posture, (..., P, D) [m per m or rad]; arguments as `evaluate`."""
+    axis = camera.depth_jacobian(body.points(pose), _per_point(frame))  # (..., P, 3)
+    return np.asarray(np.einsum("...pi,...pid->...pd", axis, body.points_jacobian(pose)))
+
+
+def _per_point(frame: ArrayLike | None) -> NDArray[np.intp] | None:
+    return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]
