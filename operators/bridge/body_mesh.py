@@ -43,9 +43,13 @@ def build_body_mesh(
     """
     materials = [_material(SKIN_NAME, SKIN_SRGB)]
     colour_of: dict[str, int] = {}
+    coloured_caps: dict[str, set[int]] = {}
     for marker in markers:
-        for part in marker_parts(marker.segment):
+        parts = marker_parts(marker.segment)
+        for part in parts:
             colour_of[part] = len(materials)
+            # Where two parts of one marker meet, the joint between them is coloured as well.
+            coloured_caps[part] = ({1} if part != parts[-1] else set()) | ({0} if part != parts[0] else set())
         materials.append(_material(marker.name, marker.color_srgb))
     axes = {model.name: model for model in skeleton_bones(armature_object, body.skeleton)}
     vertices: list[Array] = []
@@ -56,15 +60,18 @@ def build_body_mesh(
     for piece in body_pieces(body):
         model = axes[piece.segment]
         rest = np.array(armature_object.data.bones[piece.segment].matrix_local, dtype=np.float64)
-        rings, shaft = _limb(piece)
+        rings = _limb(piece)
         # The joint's frame at the bone's rest, whatever the armature's rest pose is.
         start = body.local(next(s.start for s in body.skeleton.segments if s.name == piece.segment))
         placed = rest[:3, 3] + (rings.reshape(-1, 3) - start) @ model.axes @ rest[:3, :3].T
         quads = _quads(len(rings))
         vertices.append(placed)
         faces.append(quads.reshape(-1, 4) + count)
+        bands = _coloured_bands(coloured_caps.get(piece.segment, set()))
         material = colour_of.get(piece.segment, 0)
-        colours += [material if band in shaft else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)]
+        colours += [
+            material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
+        ]
         groups[piece.segment] = range(count, count + len(placed))
         count += len(placed)
     mesh = _mesh(armature_object.name, np.concatenate(vertices), np.concatenate(faces), colours)
@@ -73,8 +80,14 @@ def build_body_mesh(
     return _skinned(armature_object, mesh, groups)
 
 
-def _limb(piece: Piece) -> tuple[Array, range]:
-    """Rings (R, sides, 3) along a piece in its joint's frame, and the bands between rings that are its shaft."""
+def _coloured_bands(caps: set[int]) -> range:
+    """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
+    first = 0 if 0 in caps else RINGS_OF_CAP
+    return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
+
+
+def _limb(piece: Piece) -> Array:
+    """Rings (R, sides, 3) along a piece in its joint's frame."""
     along = piece.end - piece.start
     axis = along / np.linalg.norm(along)
     angle = np.linspace(0.0, 2.0 * np.pi, SIDES_OF_RING, endpoint=False)
@@ -89,7 +102,7 @@ def _limb(piece: Piece) -> tuple[Array, range]:
             around = circle * widths * max(float(np.cos(share)), 1e-3)
             middle = centre + direction * np.sin(share) * widths.min() * axis
             rings.append(middle + around[:, :1] * piece.lateral + around[:, 1:] * piece.sagittal)
-    return np.stack(rings), range(RINGS_OF_CAP, RINGS_OF_CAP + 1)
+    return np.stack(rings)
 
 
 def _quads(rings: int) -> NDArray[np.intp]:

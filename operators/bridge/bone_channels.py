@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.body.posture import Posture
 from ...core.body import rotations
+from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
 from .actor_lengths import skeleton_bones
 from .bones import BoneModel

@@ -42,7 +42,9 @@ def posture_from_frames(
             angles.update(zip(hinges, fitted, strict=True))
             relative = np.eye(3)
             for joint, angle in zip(hinges, fitted, strict=True):
-                relative = relative @ rotations.hinge(np.asarray(skeleton.joints[joint].axis), np.array(angle))
+                relative = relative @ rotations.hinge(
+                    np.asarray(skeleton.joints[joint].axis), np.array(angle)
+                )
         elif model.chain:
             turns[model.chain[0]] = relative
         else:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from .actor_lengths import skeleton_bones
+from .bone_channels import bone_channels
 from .joint_frames import posture_from_frames
 from .object_space import evaluated, object_space
-from .bone_channels import bone_channels
 from .rotation_modes import set_rotation
 
 Array = NDArray[np.float64]

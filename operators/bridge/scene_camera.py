@@ -32,7 +32,9 @@ def read_camera(scene: bpy.types.Scene, frames: Array) -> Camera:
         raise InputError(f"scene '{scene.name}' has no footage; load a clip first")
     data = camera_object.data
     if data.type != "PERSP":
-        raise InputError(f"camera '{camera_object.name}' is of type {data.type}; footage needs a perspective one")
+        raise InputError(
+            f"camera '{camera_object.name}' is of type {data.type}; footage needs a perspective one"
+        )
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         raise InputError(
             f"scene '{scene.name}' has the pixel aspect {scene.render.pixel_aspect_x:g} to "

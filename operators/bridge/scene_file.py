@@ -23,6 +23,9 @@ from .scene_footage import clip_rate, load_footage, show_footage
 VIEW_TRANSFORM = "Standard"
 """Shows colours as they are given, so that markers look as in the footage; Blender's default filmic look does not."""
 
+BVH_ORDER = "ZXY"
+"""One order of rotation channels for all joints, the customary one: some readers take the first joint's for all."""
+
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> None:
     """Write a motion as a .blend and, if asked for, as a BVH.
@@ -58,12 +61,21 @@ def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.
     count = len(motion.time_s)
     show_footage(scene, take.camera, take.clip, rate, motion.frame_start, count, frames)
     scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))
-    scene.view_settings.view_transform = VIEW_TRANSFORM
+    _set_look(scene)
     armature_object = build_armature(scene, take.body, "Actor")
     write_motion(armature_object, motion, frames=frames)
     build_body_mesh(armature_object, take.body, take.markers)
     scene.frame_set(scene.frame_start)
     return armature_object
+
+
+def _set_look(scene: bpy.types.Scene) -> None:
+    """Workbench in material colours, which every Blender has and renders at once, and light for the others."""
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.display.shading.color_type = "MATERIAL"
+    scene.view_settings.view_transform = VIEW_TRANSFORM
+    scene.world = bpy.data.worlds.new("Soft Light")
+    scene.world.color = (0.8, 0.8, 0.8)
 
 
 def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
@@ -83,6 +95,7 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 filepath=str(path),
                 frame_start=scene.frame_start,
                 frame_end=scene.frame_end,
+                rotate_mode=BVH_ORDER,
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
@@ -91,7 +104,9 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
 
 def _write_blend(scene: bpy.types.Scene, path: Path) -> None:
     try:
-        bpy.data.libraries.write(str(path), {scene}, path_remap="RELATIVE_ALL", fake_user=False, compress=True)
+        bpy.data.libraries.write(
+            str(path), {scene}, path_remap="RELATIVE_ALL", fake_user=False, compress=True
+        )
     except (RuntimeError, OSError) as error:
         raise ConversionError(f"{path}: Blender could not write the file ({str(error).strip()})") from error
 
@@ -101,7 +116,16 @@ def _own_scene(name: str) -> Iterator[bpy.types.Scene]:
     """A scene for the time being; it and everything made meanwhile is removed again."""
     collections = [
         getattr(bpy.data, kind)
-        for kind in ("objects", "meshes", "armatures", "cameras", "materials", "actions", "movieclips", "worlds")
+        for kind in (
+            "objects",
+            "meshes",
+            "armatures",
+            "cameras",
+            "materials",
+            "actions",
+            "movieclips",
+            "worlds",
+        )
     ]
     before = [{block.as_pointer() for block in blocks} for blocks in collections]
     scene = bpy.data.scenes.new(name)

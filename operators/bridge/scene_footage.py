@@ -33,7 +33,9 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
         raise InputError(f"{file}: Blender cannot read this clip; name a video or numbered images") from error
     if not clip.size[0]:
         bpy.data.movieclips.remove(clip)
-        raise InputError(f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images")
+        raise InputError(
+            f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images"
+        )
     return clip
 
 
