@@ -48,8 +48,8 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     the lengths are their least-squares solution.
 
     Raises:
-        InputError: A bone is missing, the object is scaled unevenly, a length is out of range, or the bones do
-            not lie as the skeleton's segments do.
+        InputError: A bone is missing, the object is scaled unevenly, a length is out of range, or the bones
+            do not lie as the skeleton's segments do.
     """
     models = {model.name: model for model in skeleton_bones(armature_object, skeleton)}
     scale = object_space(armature_object).scale
@@ -73,7 +73,7 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     misfit = float(np.abs(matrix @ lengths - place).max())
     if misfit > LARGEST_MISFIT * body.actor.stature_m:
         raise InputError(
-            f"armature '{armature_object.name}' has bones that lie {1000 * misfit:.0f} mm off Keymark's skeleton; "
+            f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's skeleton; "
             "build an actor with Keymark and change its lengths only"
         )
     return body

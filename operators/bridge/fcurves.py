@@ -9,7 +9,7 @@ from ...core.motion import Motion
 from .actions import assign_action, channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .bone_channels import bone_channels
-from .generated_keys import add_generated_keys, copy_keys, ensure_fcurve, remove_generated_keys
+from .keys import add_generated_keys, copy_keys, ensure_fcurve, remove_generated_keys
 from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
 
 Array = NDArray[np.float64]

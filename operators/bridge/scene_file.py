@@ -21,10 +21,10 @@ from .fcurves import write_motion
 from .scene_footage import clip_rate, load_footage, show_footage
 
 VIEW_TRANSFORM = "Standard"
-"""Shows colours as they are given, so that markers look as in the footage; Blender's default filmic look does not."""
+"""Shows colours as they are given, so that markers look as in the footage; the default, AgX, does not."""
 
 BVH_ORDER = "ZXY"
-"""One order of rotation channels for all joints, the customary one: some readers take the first joint's for all."""
+"""One order of rotation channels for all joints: some readers take the first joint's for all."""
 
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> None:
@@ -70,7 +70,7 @@ def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.
 
 
 def _set_look(scene: bpy.types.Scene) -> None:
-    """Workbench in material colours, which every Blender has and renders at once, and light for the others."""
+    """Workbench in material colours, which every Blender has, and light for the other engines."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.display.shading.color_type = "MATERIAL"
     scene.view_settings.view_transform = VIEW_TRANSFORM

@@ -12,7 +12,7 @@ from ...core.errors import InputError
 from ...core.footage.camera import Camera
 from ...core.footage.image_sequence import find_images
 from .actions import assign_action, channelbag_for
-from .generated_keys import add_generated_keys
+from .keys import add_generated_keys
 
 Array = NDArray[np.float64]
 

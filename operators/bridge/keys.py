@@ -1,6 +1,6 @@
-"""Keys that Keymark made, told from the animator's by Blender's key type GENERATED.
+"""Keys on F-curves, in bulk. Those that Keymark made are told from the animator's by Blender's key type.
 
-Only such keys are ever replaced or removed.
+Only keys of the type GENERATED are ever replaced or removed.
 """
 
 from collections.abc import Iterable
@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Keys = dict[str, NDArray[np.generic]]
+"""Properties of N keys by name: (N,), or (N, 2) for places."""
 
 SAME_FRAME = 1e-3
 """Keys nearer than this [frames] lie on the same frame."""
@@ -22,10 +24,10 @@ def _enum_value(name: str, item: str) -> int:
     return int(bpy.types.Keyframe.bl_rna.properties[name].enum_items[item].value)
 
 
-def _read_keys(fcurve: bpy.types.FCurve) -> dict[str, NDArray[np.generic]]:
+def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
     """Every property of every key: (N,) or, for pairs, (N, 2)."""
     points = fcurve.keyframe_points
-    keys: dict[str, NDArray[np.generic]] = {}
+    keys: Keys = {}
     for name in (*PAIRS, *FLOATS, *ENUMS):
         count = len(points) * (2 if name in PAIRS else 1)
         values = np.empty(count, np.int32 if name in ENUMS else np.float32)
@@ -34,7 +36,7 @@ def _read_keys(fcurve: bpy.types.FCurve) -> dict[str, NDArray[np.generic]]:
     return keys
 
 
-def _write_keys(fcurve: bpy.types.FCurve, keys: dict[str, NDArray[np.generic]]) -> None:
+def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     points = fcurve.keyframe_points
     points.clear()
     points.add(len(keys["co"]))
@@ -44,19 +46,19 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: dict[str, NDArray[np.generic]]) 
     fcurve.update()
 
 
-def _new_keys(frames: Array, values: Array) -> dict[str, NDArray[np.generic]]:
+def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
     count = len(frames)
     places = np.column_stack([frames, values]).astype(np.float32)
-    keys: dict[str, NDArray[np.generic]] = {name: places.copy() for name in PAIRS}
+    keys: Keys = {name: places.copy() for name in PAIRS}
     for name in FLOATS:
         default = bpy.types.Keyframe.bl_rna.properties[name].default
         keys[name] = np.full(count, default, np.float32)
     chosen = {
-        "interpolation": "LINEAR",
+        "interpolation": interpolation,
         "easing": "AUTO",
         "handle_left_type": "AUTO_CLAMPED",
         "handle_right_type": "AUTO_CLAMPED",
-        "type": "GENERATED",
+        "type": key_type,
     }
     for name, item in chosen.items():
         keys[name] = np.full(count, _enum_value(name, item), np.int32)
@@ -96,15 +98,48 @@ def add_generated_keys(
         values: (F,) values of the property.
     """
     fcurve = ensure_fcurve(channelbag, path, index, group)
-    keys = _new_keys(frames, values)
+    keys = _new_keys(frames, values, "GENERATED", "LINEAR")
     if len(fcurve.keyframe_points):
         kept = _read_keys(fcurve)
-        distance = np.abs(frames[:, None] - np.asarray(kept["co"][:, 0], dtype=np.float64)[None, :])
-        free = distance.min(axis=1) > SAME_FRAME
-        keys = {name: np.concatenate([kept[name], keys[name][free]]) for name in keys}
-        order = np.argsort(keys["co"][:, 0], kind="stable")
-        keys = {name: values[order] for name, values in keys.items()}
+        free = _distances(frames, kept["co"][:, 0]) > SAME_FRAME
+        keys = _merged(kept, {name: column[free] for name, column in keys.items()})
     _write_keys(fcurve, keys)
+
+
+def set_posed_keys(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+) -> None:
+    """Set keys of the animator's own type with Blender's usual smooth interpolation.
+
+    Keys on the same frames are replaced, all others stay.
+
+    Args:
+        channelbag: Where the curve lies or is added.
+        path: Data path of the posed property.
+        index: Component of the property.
+        group: Name of the curve's group.
+        frames: (K,) scene frames.
+        values: (K,) values of the property.
+    """
+    fcurve = ensure_fcurve(channelbag, path, index, group)
+    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    if len(fcurve.keyframe_points):
+        kept = _read_keys(fcurve)
+        free = _distances(kept["co"][:, 0], frames) > SAME_FRAME
+        keys = _merged({name: column[free] for name, column in kept.items()}, keys)
+    _write_keys(fcurve, keys)
+
+
+def _distances(frames: NDArray[np.generic], others: NDArray[np.generic]) -> Array:
+    """(N,) distance from each frame to the nearest of others."""
+    apart = np.subtract.outer(frames.astype(np.float64), others.astype(np.float64))
+    return np.asarray(np.abs(apart).min(axis=1))
+
+
+def _merged(keys: Keys, others: Keys) -> Keys:
+    both = {name: np.concatenate([keys[name], others[name]]) for name in keys}
+    order = np.argsort(both["co"][:, 0], kind="stable")
+    return {name: column[order] for name, column in both.items()}
 
 
 def ensure_fcurve(
