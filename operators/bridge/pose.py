@@ -28,7 +28,7 @@ class PoseReading:
 
     @property
     def furthest_m(self) -> float:
-        """The largest of the distances [m]: rounding only, where the pose keeps to the skeleton's freedoms."""
+        """The largest of the distances [m]: rounding only, where the pose keeps to the skeleton."""
         return float(self.distance_m.max())
 
 

@@ -18,6 +18,7 @@ from ...core.take import Take
 from .armature import build_armature
 from .body_mesh import build_body_mesh
 from .fcurves import write_motion
+from .frame_times import scene_frames
 from .scene_footage import clip_rate, load_footage, show_footage
 
 VIEW_TRANSFORM = "Standard"
@@ -57,7 +58,7 @@ def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.
     """Put footage, camera, actor with motion, and body into a scene; returns the armature object."""
     clip = load_footage(take.clip)
     rate = clip_rate(clip, motion.fps)
-    frames = motion.frame_start + motion.time_s * rate
+    frames = scene_frames(motion.time_s, motion.frame_start, rate)
     count = len(motion.time_s)
     show_footage(scene, take.camera, take.clip, rate, motion.frame_start, count, frames)
     scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))

@@ -83,6 +83,29 @@ def show_footage(
     return camera_object
 
 
+def attach_footage(scene: bpy.types.Scene, path: Path) -> bpy.types.MovieClip:
+    """Put a clip behind the scene's camera and give the scene the clip's size, rate and range.
+
+    A scene without a camera gets one at eye height, four metres in front of the world's origin.
+
+    Raises:
+        InputError: Blender cannot read the clip.
+    """
+    clip = load_footage(path)
+    rate = clip_rate(clip, scene.render.fps / scene.render.fps_base)
+    size, count = (clip.size[0], clip.size[1]), clip.frame_duration
+    if scene.camera is None:
+        stand = np.array(
+            [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, -4.0], [0.0, 1.0, 0.0, 1.2], [0.0, 0.0, 0.0, 1.0]]
+        )
+        show_footage(scene, Camera(35.0, 36.0, size, stand), path, rate, clip.frame_start, count)
+        return clip
+    set_scene_range(scene, size, rate, clip.frame_start, count)
+    set_background(scene.camera.data, clip)
+    scene.active_clip = clip
+    return clip
+
+
 def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
     """Frames per second by which Blender places the clip's frames on the time line.
 

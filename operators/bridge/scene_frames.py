@@ -29,7 +29,7 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
-    """Let `action` animate the armature meanwhile; then give back its Action and pose, unkeyed changes too."""
+    """Let `action` animate the armature meanwhile; then give back its Action and its unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
     bones = armature_object.pose.bones

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.clip import Clip
-from ...core.footage.clip_timing import is_variable_frame_rate
 from ...core.footage.markers import MarkerStyle
 from ...core.progress import Job, Progress
 from ...core.take import Take
 from .actor_lengths import read_body
+from .frame_times import scene_frames
 from .keyframes import read_keyframes
 from .scene_camera import read_camera
 from .scene_footage import clip_rate
@@ -56,10 +56,7 @@ def clip_frames(scene: bpy.types.Scene, clip: bpy.types.MovieClip) -> Job[Array]
     for stamp in source.source.time_stamps():
         stamps.append(stamp)
         yield Progress(READING, min(len(stamps) / source.frame_count, 1.0))
-    time_s = np.array(stamps)
-    if is_variable_frame_rate(time_s):
-        return np.asarray(first + time_s * rate)
-    return np.asarray(first + np.arange(len(time_s), dtype=np.float64))
+    return scene_frames(np.array(stamps), first, rate)
 
 
 def read_scene_take(
