@@ -5,7 +5,7 @@ body parts hide samples; centroid and second moments are those of what stays vis
 predicted instead of measured). Derivatives hold the samples' weights fixed.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,10 @@ class MarkerPlacement:
     """Share of the segment at which the colour begins."""
     last: float = 0.95
     """Share at which it ends."""
-    offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Displacement in the segment's joint frame [m]."""
+    lateral_m: float = 0.0
+    """Displacement along the segment's lateral direction [m]."""
+    sagittal_m: float = 0.0
+    """Displacement along its sagittal direction [m]."""
     girth: float = 1.0
     """Thickness relative to the average body's."""
 
@@ -46,12 +48,9 @@ class MarkerPlacement:
             scale = lengths.sum() / lengths[i]
             first = (self.first - edges[i]) * scale if i == 0 else 0.0
             last = (self.last - edges[i]) * scale if i == len(parts) - 1 else 1.0
-            pieces.append(part.cut(first, last).changed(np.array(self.offset_m), self.girth))
+            offset = self.lateral_m * part.lateral + self.sagittal_m * part.sagittal
+            pieces.append(part.cut(first, last).changed(offset, self.girth))
         return tuple(pieces)
-
-    def moved(self, **changes: object) -> "MarkerPlacement":
-        """A copy with some values changed."""
-        return replace(self, **changes)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True, eq=False)
