@@ -12,8 +12,8 @@ import pytest
 BLENDER_MODULES = {"bpy", "bpy_extras", "bl_math", "blf", "bmesh", "gpu", "gpu_extras", "mathutils"}
 LINES_AT_MOST = 400
 
-# The rooms of docs/architecture.md with their heights: between these, imports may only run down. Any other file
-# in core/ is a room of its own without a height; it must not close a circle.
+# The rooms of docs/architecture.md with their heights: between these, imports may only run down. Any other
+# file in core/ is a room of its own without a height; it must not close a circle.
 HEIGHTS = {
     "core.errors": 0,
     "core.body": 1,
