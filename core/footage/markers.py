@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .association import Candidates, candidates, main_path, region_costs, typical_area
+from .association import Candidates, candidates, main_path, region_costs, still_clutter, typical_area
 from .clip import Clip
 from .colour_learning import learn_colours
 from .colour_model import ColourModel
@@ -76,8 +76,8 @@ def learn_model(
         str(list(colour)) for colour in nearest_colours(learned.background_counts, style.color_srgb)
     )
     raise InputError(
-        f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches nothing in the clip; "
-        f"pick it on the marker in a frame (the nearest colours found are {nearest})."
+        f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches "
+        f"nothing in the clip; pick it on the marker in a frame (the nearest colours found are {nearest})"
     )
 
 
@@ -86,8 +86,8 @@ def track_markers(
 ) -> Generator[float, None, RegionTracks]:
     """Follow the markers through a clip.
 
-    One pass over the clip in constant memory records the regions of each marker's colour; the marker is then told
-    from clutter of like hue over the whole clip at once.
+    One pass over the clip in constant memory records the regions of each marker's colour; the marker is then
+    told from clutter of like hue over the whole clip at once.
 
     Args:
         clip: the footage.
@@ -123,14 +123,15 @@ def _tracks(
     time_s: FloatArray,
     size: tuple[int, int],
 ) -> RegionTracks:
-    usual = [typical_area(one) for one in found]
+    clutter = [still_clutter(one) for one in found]
+    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
     reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
     joined = []
     for marker, one in enumerate(found):
         centre = None if expected is None else expected.centre[:, marker]
         radius = None if expected is None else expected.radius[:, marker]
-        cost = region_costs(one, usual[marker], centre, radius)
-        path = main_path(one, cost, _length(one, usual[marker]))
+        cost = region_costs(one, clutter[marker], usual[marker], centre, radius)
+        path = main_path(one, cost, _length(one, clutter[marker], usual[marker]))
         joined.append(join_pieces(one, path, cost, reach, _DEAREST_PIECE))
     moments = np.stack([row[0] for row in joined], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
@@ -147,11 +148,12 @@ def _tracks(
     )
 
 
-def _length(found: Candidates, usual_area: float) -> float:
+def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
     """Return the marker's length in px: the long axis of regions of the usual size."""
-    if not len(found.frame):
+    full = ~clutter & (found.area >= 0.7 * usual_area)
+    if not full.any():
         return 1.0
-    _, second = centroid_and_second_moment(found.moments[found.area >= 0.7 * usual_area])
+    _, second = centroid_and_second_moment(found.moments[full])
     return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
 
 

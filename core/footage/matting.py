@@ -1,8 +1,8 @@
 """How much of each pixel a region covers: its border to a fraction of a pixel.
 
-A border pixel mixes the region's colour and its surroundings'; encoded colours mix linearly to a good approximation.
-The share follows from the colours just inside and just outside, which makes areas unbiased where a threshold would
-grow a region over dark neighbours and shrink it before bright ones.
+A border pixel mixes the region's colour and its surroundings'; encoded colours mix linearly to a good
+approximation. The share follows from the colours just inside and just outside, which makes areas unbiased
+where a threshold would grow a region over dark neighbours and shrink it before bright ones.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ def coverage(image: NDArray[np.uint8], mask: Mask, border: int) -> NDArray[np.fl
         border: half-width in pixels of the band about the mask's edge that is weighed anew.
     """
     inside = (mask > 0).astype(np.uint8)
-    # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of it.
+    # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of
+    # it.
     grown = cv2.dilate(inside, _KERNEL, iterations=border)
     depth = cv2.distanceTransform(
         cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3

@@ -1,8 +1,9 @@
 """Moments of an image region and the four characteristics read from them.
 
-The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A over m00
-(eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3 to 6). Pixels are
-unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1] and its centre is (0.5, 0.5).
+The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A
+over m00 (eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3
+to 6). Pixels are unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1]
+and its centre is (0.5, 0.5).
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ class Characteristics(NamedTuple):
     Attributes:
         x: S_x, the centroid's column in pixels.
         y: S_y, the centroid's row in pixels, downwards.
-        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π.
+        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful
+            modulo π.
         ratio: S_λ = λ1/λ2 >= 1, of the squared axes.
     """
 
@@ -37,7 +39,8 @@ class Characteristics(NamedTuple):
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
     """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
 
-    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the rectangle.
+    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
+    rectangle.
 
     Args:
         weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
@@ -62,7 +65,7 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2, 3 and 4).
+    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
 
     Args:
         moments: raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
@@ -89,8 +92,9 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArr
 def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
     """Return S_x, S_y, S_θ, S_λ of regions.
 
-    S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the sentence
-    after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the axes.
+    S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the
+    sentence after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the
+    axes.
 
     Args:
         centroid: (..., 2) in px.

@@ -44,14 +44,15 @@ class Region:
 
 
 def border_width(size: tuple[int, int]) -> int:
-    """Return the half-width in pixels of the band in which a region's edge is blurred, for an image (width, height)."""
+    """Return the half-width in px of the band in which edges are blurred in an image (width, height)."""
     return 2 if max(size) <= 640 else 3
 
 
 def find_regions(image: Image, model: ColourModel) -> list[list[Region]]:
     """Return the regions of each marker's colour in an image (rows, columns, 3), the largest first.
 
-    Regions are found on a reduced grid and measured on the full one, each marker in the windows that hold its own.
+    Regions are found on a reduced grid and measured on the full one, each marker in the windows that hold its
+    own.
     """
     factor = reduction((image.shape[1], image.shape[0]))
     label, probability = model.classify(smooth(reduce(image, factor)))
@@ -83,20 +84,20 @@ def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[n
     sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
     good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
-    return good[components].astype(np.uint8)
+    return np.asarray(good[components], dtype=np.uint8)
 
 
 def _boxes(
     label: NDArray[np.uint8], probability: NDArray[np.uint8], marker: int, factor: int
 ) -> list[tuple[int, int, int, int]]:
     """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the full image."""
-    mask = cv2.compare(label, float(marker), cv2.CMP_EQ)
-    x, y, columns, rows = cv2.boundingRect(mask)
+    mask = label == marker
+    x, y, columns, rows = cv2.boundingRect(mask.astype(np.uint8))
     if not columns:
         return []
     inside = np.s_[y : y + rows, x : x + columns]
     _, _, stats, _ = cv2.connectedComponentsWithStats(
-        _clean(mask[inside] > 0, probability[inside]), connectivity=8
+        _clean(mask[inside], probability[inside]), connectivity=8
     )
     left, top, width, height = (stats[1:, column] for column in range(4))
     corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
@@ -135,7 +136,7 @@ def _measure(
     if count == 1:
         return []
     share = coverage(window, mask, border)
-    owner = components if count == 2 else _nearest_component(components)
+    owner = components if count == 2 else _nearest_component(np.asarray(components, dtype=np.int32))
     regions = []
     for component in range(1, count):
         weights = share if count == 2 else np.where(owner == component, share, 0.0)
