@@ -48,8 +48,8 @@ class Take:
     def notes(self) -> tuple[str, ...]:
         """What is usable but looks wrong, one sentence each."""
         return tuple(
-            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} cm "
-            "on average from any posture of this actor; check them and the actor's segment lengths"
+            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
+            "cm on average from any posture of this actor; check them and the actor's segment lengths"
             for keyframe in self.keyframes
             if keyframe.residual_m > POORLY_FITTED_M
         )

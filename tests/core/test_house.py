@@ -175,9 +175,16 @@ def test_the_changelog_has_the_version(repository: Path) -> None:
     assert manifest["version"] in re.findall(r"^## \[([^\]]+)\]", changelog, flags=re.MULTILINE)
 
 
+def test_the_citation_has_the_version(repository: Path) -> None:
+    """CITATION.cff names the manifest's version."""
+    manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
+    citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r"^version: (.*)$", citation, flags=re.MULTILINE) == [manifest["version"]]
+
+
 def test_every_tool_a_target_calls_is_there(repository: Path) -> None:
     """The Makefile and the continuous integration name no script that is missing."""
-    scripts = (repository / "Makefile").read_text(encoding="utf-8")
+    scripts = "".join((repository / name).read_text(encoding="utf-8") for name in ("Makefile", ".ci/run"))
     named = set(re.findall(r"tools/\w+\.(?:py|sh)", scripts))
     assert named
     assert [name for name in sorted(named) if not (repository / name).is_file()] == []
