@@ -64,7 +64,7 @@ def learn_colours(
     and so on.
 
     Args:
-        images: sampled frames, (rows, columns, 3) uint8, on the working grid.
+        images: sampled frames, (rows, columns, 3) uint8, on the searching grid.
         samples_srgb: one (red, green, blue) in 0..255 per marker.
         allowed: per image, (M, rows, columns) where each marker may be looked for, or None for everywhere.
     """

@@ -19,7 +19,7 @@ from .moments import centroid_and_second_moment
 from .pieces import join_pieces, region_quality
 from .regions import Region, find_regions
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import reduce, reduction
+from .working_image import searching_image
 
 FloatArray = NDArray[np.float64]
 
@@ -59,11 +59,10 @@ def learn_model(
     Raises:
         InputError: a marker's colour matches nothing in the clip; the sentence names colours that are there.
     """
-    factor = reduction(clip.size)
     for count in (_SAMPLED_FRAMES, _MOST_SAMPLED_FRAMES):
-        frames = [(index, reduce(image, factor)) for index, image in clip.sample(count)]
+        frames = [(index, searching_image(image)) for index, image in clip.sample(count)]
         allowed = (
-            None if expected is None else [_allowed(i, im.shape[:2], factor, expected) for i, im in frames]
+            None if expected is None else [_allowed(i, im.shape[:2], clip.size, expected) for i, im in frames]
         )
         learned = learn_colours(
             [image for _, image in frames], [style.color_srgb for style in styles], allowed
@@ -158,13 +157,14 @@ def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) ->
 
 
 def _allowed(
-    frame: int, shape: tuple[int, ...], factor: int, expected: ExpectedRegions
+    frame: int, shape: tuple[int, ...], size: tuple[int, int], expected: ExpectedRegions
 ) -> NDArray[np.bool_] | None:
-    """Return where each marker may be looked for on the working grid, (M, rows, columns)."""
+    """Return where each marker may be looked for on the searching grid, (M, rows, columns)."""
     if frame >= len(expected.centre):
         return None
     rows, columns = np.mgrid[: shape[0], : shape[1]]
-    pixels = np.stack([(columns + 0.5) * factor, (rows + 0.5) * factor], axis=-1)
+    step = size[0] // shape[1]
+    pixels = np.stack([(columns + 0.5) * step, (rows + 0.5) * step], axis=-1)
     offset = np.linalg.norm(pixels - expected.centre[frame][:, None, None], axis=-1)
     # The radius bounds the centroid; the region itself reaches beyond it.
     return np.asarray(~(offset > 1.5 * expected.radius[frame][:, None, None]))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -46,22 +47,15 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
         weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
         origin: image coordinates (x, y) of the window's top left corner, in pixels.
     """
-    weight = np.asarray(weights, dtype=np.float64)
-    x = origin[0] + np.arange(weight.shape[1]) + 0.5
-    y = origin[1] + np.arange(weight.shape[0]) + 0.5
-    columns = weight.sum(axis=0)
-    rows = weight.sum(axis=1)
-    area = columns.sum()
-    return np.array(
-        [
-            area,
-            columns @ x,
-            rows @ y,
-            columns @ x**2 + PIXEL_VARIANCE * area,
-            y @ weight @ x,
-            rows @ y**2 + PIXEL_VARIANCE * area,
-        ]
-    )
+    # OpenCV takes pixels for points and the first pixel's centre for the origin.
+    points = cv2.moments(np.asarray(weights, dtype=np.float64))
+    area, x, y = points["m00"], origin[0] + 0.5, origin[1] + 0.5
+    m10 = points["m10"] + x * area
+    m01 = points["m01"] + y * area
+    m20 = points["m20"] + 2.0 * x * points["m10"] + (x * x + PIXEL_VARIANCE) * area
+    m11 = points["m11"] + x * points["m01"] + y * points["m10"] + x * y * area
+    m02 = points["m02"] + 2.0 * y * points["m01"] + (y * y + PIXEL_VARIANCE) * area
+    return np.array([area, m10, m01, m20, m11, m02])
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArray]:
