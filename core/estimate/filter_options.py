@@ -23,7 +23,7 @@ class FilterOptions:
     """How far a region's centroid lies from the middle of its segment's line [segment widths]."""
     angle_std_rad: float = 0.1
     """Noise of the direction of a region as thin as a line [rad]; rounder regions have more."""
-    log_ratio_std: float = 3.0
+    log_ratio_std: float = 1.0
     """Noise of log S_λ: wide, since sleeves and occlusion change the ratio more than the posture does."""
     depth_std_m: float = DEPTH_STD_M
     """Noise of the a priori depths [m]."""

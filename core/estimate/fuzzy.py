@@ -45,12 +45,12 @@ class Memberships:
 
     def near(self, distance: ArrayLike) -> Array:
         """Degree (...) to which a distance (...) [half gaps] is near."""
-        return np.clip(1.0 - np.asarray(distance, dtype=np.float64) / self.near_ends, 0.0, 1.0)
+        return np.asarray(np.clip(1.0 - np.asarray(distance, dtype=np.float64) / self.near_ends, 0.0, 1.0))
 
     def far(self, distance: ArrayLike) -> Array:
         """Degree (...) to which a distance (...) [half gaps] is far."""
         beyond = np.asarray(distance, dtype=np.float64) - self.far_starts
-        return np.clip(beyond / (self.far_full - self.far_starts), 0.0, 1.0)
+        return np.asarray(np.clip(beyond / (self.far_full - self.far_starts), 0.0, 1.0))
 
 
 def keyframe_distance(frame_count: int, keyframes: ArrayLike) -> Array:
@@ -83,7 +83,7 @@ class OutputSet:
 
     def membership(self, value: Array) -> Array:
         """Clipped membership (N, D) of values (N, D)."""
-        return np.clip(1.0 - np.abs(value - self.centre) / self.width, 0.0, self.degree)
+        return np.asarray(np.clip(1.0 - np.abs(value - self.centre) / self.width, 0.0, self.degree))
 
     @property
     def corners(self) -> Array:
@@ -139,10 +139,10 @@ def nearness(near_degree: ArrayLike, far_degree: ArrayLike, near_width: float, f
     With δ = θ̂ - θ_p the deviation from the a priori posture, the far rule's step is θ_p,t+1 - θ_p,t and
     keeps δ; the near rule's is shorter by δ and ends at δ = 0. Measured from the far step the two output sets
     stand at -δ and at 0. Sets that do not overlap have a joined mean of -δ A_near / (A_near + A_far), where
-    A = width · degree · (2 - degree) is the area of a clipped triangle. Hence
-    δ_t+1 = δ_t + mean = (1 - μ) δ_t with μ = A_near / (A_near + A_far). Sets that overlap share area, which the maximum counts once; the
-    joined mean then differs from -μ δ by less than a width, which is within the process noise. Where only
-    one rule applies both forms agree exactly: μ is 1 or 0.
+    A = width · degree · (2 - degree) is the area of a clipped triangle. Hence δ_t+1 = δ_t + mean, which is
+    (1 - μ) δ_t with μ = A_near / (A_near + A_far). Sets that overlap share area, which the maximum counts
+    once; the joined mean then differs from -μ δ by less than a width, which is within the process noise.
+    Where only one rule applies both forms agree exactly: μ is 1 or 0.
 
     Args:
         near_degree: (...) degree of the near rule.

@@ -182,7 +182,7 @@ class FuzzyKalmanFilter:
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
     ) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-        """Scaled rows and innovations of the markers seen and believed; (M,) which were seen but not believed."""
+        """Scaled rows and innovations of the markers seen and believed; which were seen only, (M,)."""
         predicted = self.line_ends.evaluate(pose, frame)
         std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))
         scaled = residual(observed, predicted) / std

@@ -165,7 +165,7 @@ def angle_weight(log_ratio: ArrayLike) -> Array:
     The direction is half the angle of (A_xx - A_yy, 2 A_xy), whose length is λ1 - λ2; an error of A in
     proportion to its size λ1 + λ2 therefore turns it by the inverse of this weight.
     """
-    return np.tanh(0.5 * np.maximum(np.asarray(log_ratio, dtype=np.float64), 0.0))
+    return np.asarray(np.tanh(0.5 * np.maximum(np.asarray(log_ratio, dtype=np.float64), 0.0)))
 
 
 def _squared_shape(line: Array, width_px: Array) -> Array:
