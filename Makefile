@@ -4,9 +4,12 @@
 .DELETE_ON_ERROR:
 
 OUTPUT ?= out/demo
-TESTS ?= tests/core tests/blender
+TESTS ?=
+BENCHMARKS ?= extraction accuracy speed
 
 find_python := sh tools/find_python.sh
+# A variable, because a comma would end an argument of `call`.
+test_parts := --editable '.[blender,dev]'
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
 
@@ -35,11 +38,11 @@ help: ## list the targets
 
 .venv-test/ready: $(settings)
 	@$(check_libraries)
-	@$(call make_venv,.venv-test,3.11,$(PYTHON),--editable '.[blender,dev]')
+	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts))
 
 # The newest Blender's Python is optional: without it the tests run in the oldest supported Blender only.
 .venv-test-313/ready: $(settings)
-	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,--editable '.[blender,dev]'); fi
+	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts)); fi
 
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
@@ -62,16 +65,36 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 test-core: .venv-dev/ready ## run the tests that need no Blender
 	@.venv-dev/bin/python -m pytest tests/core
 
+# BLENDER=/path/to/blender tests in that one; without it, Debian's newest is fetched into a cache folder.
+.PHONY: test-blender
+test-blender: .venv-test/ready ## run the tests in a real Blender, and install the package there
+	@blender=$${BLENDER:-$$(sh tools/fetch_blender.sh)} || exit 1; status=0; \
+	echo "== Inside $$blender"; \
+	.venv-test/bin/python tools/test_in_blender.py "$$blender" $(TESTS) || status=$$?; \
+	echo "== The package, installed in $$blender"; \
+	BLENDER="$$blender" .venv-test/bin/python -m pytest tests/real_blender || status=$$?; \
+	exit $$status
+
 .PHONY: lint
 lint: .venv-dev/ready ## check style, formatting and types
-	@.venv-dev/bin/ruff check .
-	@.venv-dev/bin/ruff format --check .
-	@.venv-dev/bin/python tools/check_types.py
+	@status=0; \
+	.venv-dev/bin/ruff check . || status=1; \
+	.venv-dev/bin/ruff format --check . || status=1; \
+	.venv-dev/bin/python tools/check_types.py || status=1; \
+	exit $$status
 
 .PHONY: format
 format: .venv-dev/ready ## put the code into the project's format
 	@.venv-dev/bin/ruff check --fix --select I .
 	@.venv-dev/bin/ruff format .
+
+.PHONY: package
+package: .venv-test/ready ## build the extension's zips for every platform into dist/
+	@.venv-test/bin/python tools/build_package.py
+
+.PHONY: bench
+bench: .venv-test/ready ## measure accuracy and speed
+	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean
 clean: ## remove everything that make has made here

@@ -147,7 +147,10 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
 
 
 def region_costs(
-    found: Candidates, usual_area: float, expected_centre: FloatArray | None, expected_radius: FloatArray | None
+    found: Candidates,
+    usual_area: float,
+    expected_centre: FloatArray | None,
+    expected_radius: FloatArray | None,
 ) -> FloatArray:
     """Return the cost of taking each region for the marker, (N,), by area, colour, rest and expected place.
 

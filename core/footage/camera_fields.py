@@ -103,7 +103,9 @@ def _rotation(matrix: FloatArray, place: str) -> FloatArray:
     linear = matrix[:3, :3]
     determinant = float(np.linalg.det(linear))
     if determinant <= 0.0:
-        raise InputError(f"{place} has the determinant {determinant:.3g}; it must turn, not mirror or flatten.")
+        raise InputError(
+            f"{place} has the determinant {determinant:.3g}; it must turn, not mirror or flatten."
+        )
     rotation = linear / np.cbrt(determinant)
     error = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
     if error > _ROTATION_TOLERANCE:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from .colour_model import NOISE_LEVELS, ColourDistribution, ColourModel, colour_model
-from .colour_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_index, chromaticity
+from .colour_model import ColourDistribution, ColourModel, colour_model, weigh
+from .colour_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_colours, cell_index, chromaticity
 from .working_image import smooth
 
 FloatArray = NDArray[np.float64]
@@ -25,11 +25,13 @@ _LOG_LUMA_DEVIATION: Final = 0.45
 
 _STRONG: Final = 7.8  # squared distances: 95 % and 99.9 % of a chi-squared with 3 degrees of freedom
 _WEAK: Final = 16.3
-_ROUNDS: Final = 4
+_ROUNDS: Final = 3
 _FEWEST_PIXELS: Final = 40
 _LARGEST_SHARE: Final = 0.25
 """A region over a quarter of the image is a wall or a floor."""
-_SMALLEST_LOG_LUMA_DEVIATION: Final = 0.15
+_SMALLEST_LOG_LUMA_DEVIATION: Final = 0.3
+_UNSEEN_SHARE: Final = 0.2
+"""Share of the sample's own uncertainty that remains after learning."""
 _STEEPEST_SLOPE: Final = 0.25
 _BACKGROUND_MARGIN: Final = 3
 _KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
@@ -57,30 +59,32 @@ def learn_colours(
 ) -> LearnedColours:
     """Learn each marker's distribution of colour and the background's colours.
 
-    Regions about each sample's colour are grown over connected pixels of like chromaticity, the distribution is
-    fitted anew to what they hold, and so on a few rounds; all that lies clear of the regions is background.
+    Regions near each sample's colour are found, the distribution is fitted to what they hold, and all that lies clear
+    of them is counted as background; the next round finds the regions again by weighing the two, and so on.
 
     Args:
         images: sampled frames, (rows, columns, 3) uint8, on the working grid.
         samples_srgb: one (red, green, blue) in 0..255 per marker.
         allowed: per image, (M, rows, columns) where each marker may be looked for, or None for everywhere.
     """
-    smoothed = [smooth(image) for image in images]
-    where = allowed if allowed is not None else [None] * len(smoothed)
+    sampled = _Sampled(images, allowed if allowed is not None else [None] * len(images))
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
-    found = np.zeros(len(initial), dtype=np.int64)
+    labels = sampled.near(initial)
     for _ in range(_ROUNDS):
-        regions = [_grow(image, distributions, place) for image, place in zip(smoothed, where, strict=True)]
+        regions = sampled.regions(labels, initial)
+        background = sampled.background_counts(regions)
+        found = np.array(
+            [sum(np.count_nonzero(image == m) for image in regions) for m in range(len(initial))]
+        )
         for marker, start in enumerate(initial):
-            pixels = np.concatenate(
-                [image[_interior(label == marker)] for image, label in zip(smoothed, regions, strict=True)]
-            )
-            found[marker] = sum(int(np.count_nonzero(label == marker)) for label in regions)
-            if len(pixels) >= _FEWEST_PIXELS:
-                distributions[marker] = fit_distribution(pixels, start)
-    regions = [_grow(image, distributions, place) for image, place in zip(smoothed, where, strict=True)]
-    background = _background_counts(smoothed, regions)
+            chroma, luma = sampled.colours([_interior(image == marker) for image in regions])
+            # What the sample itself would not take for its own is a blend at a border or clutter beside the marker;
+            # learning from it would widen the distribution round by round.
+            own = start.distance(chroma, luma)[0] < _WEAK
+            if np.count_nonzero(own) >= _FEWEST_PIXELS:
+                distributions[marker] = fit_distribution(chroma[own], luma[own], start)
+        labels = sampled.weighed(distributions, np.maximum(found, 1), background)
     return LearnedColours(colour_model(distributions, np.maximum(found, 1), background), found, background)
 
 
@@ -95,26 +99,28 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution
     return ColourDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
 
 
-def fit_distribution(pixels: NDArray[np.uint8], start: ColourDistribution) -> ColourDistribution:
+def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> ColourDistribution:
     """Fit a distribution to a surface's pixels, robustly, and never narrower than pixel noise.
 
     Args:
-        pixels: (N, 3) blue, green, red.
+        chroma: (N, 2) chromaticity.
+        luma: (N,) offset luma in levels.
         start: the sample's own distribution; the fit's centre stays within its reach.
     """
-    chroma, luma = chromaticity(pixels)
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
     deviation = max(float(high - low) / 2.563, _SMALLEST_LOG_LUMA_DEVIATION)
     light = log_luma - middle
     centre = np.median(chroma, axis=0)
     keep = np.sum((chroma - centre) ** 2, axis=1) <= np.quantile(np.sum((chroma - centre) ** 2, axis=1), 0.9)
-    spread = float(light[keep] @ light[keep]) + len(pixels) * 0.01  # ridge: even light has no slope to tell
+    spread = float(light[keep] @ light[keep]) + len(luma) * 0.01  # ridge: even light has no slope to tell
     slope = np.clip(light[keep] @ (chroma[keep] - centre) / spread, -_STEEPEST_SLOPE, _STEEPEST_SLOPE)
     residual = (chroma - centre - np.outer(light, slope))[keep]
-    # The trimmed tenth holds a quarter to a half of the variance; noise is added where distances are taken.
+    # Of a normal distribution's variance in the plane the trimmed tenth takes a third.
+    # Pixel noise is not added here but where distances are taken.
     covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
-    covariance += (NOISE_LEVELS / np.exp(middle)) ** 2 * np.eye(2)
+    # The frames between the sampled ones show other light, folds and blur; the background limits what this admits.
+    covariance += _UNSEEN_SHARE * start.covariance
     fitted = replace(
         start,
         log_luma=float(middle),
@@ -131,34 +137,74 @@ def _within_reach(fitted: ColourDistribution, start: ColourDistribution) -> bool
     return float(offset @ np.linalg.solve(start.covariance, offset)) <= _WEAK
 
 
-def _grow(
-    image: Image, distributions: Sequence[ColourDistribution], allowed: NDArray[np.bool_] | None
-) -> NDArray[np.int16]:
-    """Label the connected regions that hold enough of a marker's core colour; -1 elsewhere."""
-    cells, inverse = np.unique(cell_index(image), return_inverse=True)
-    shift = CELLS_PER_CHANNEL.bit_length() - 1
-    middle = 256 / CELLS_PER_CHANNEL
-    colours = np.stack([cells >> 2 * shift, cells >> shift & CELLS_PER_CHANNEL - 1, cells & CELLS_PER_CHANNEL - 1], -1)
-    pairs = [distribution.distance((colours + 0.5) * middle) for distribution in distributions]
-    nearest = np.argmax([density for _, density in pairs], axis=0)
-    distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(cells))]
-    shape = image.shape[:2]
-    nearest_image, distance_image = nearest[inverse].reshape(shape), distance[inverse].reshape(shape)
-    label = np.full(shape, -1, dtype=np.int16)
-    for marker in range(len(distributions)):
-        weak = (nearest_image == marker) & (distance_image < _WEAK)
-        if allowed is not None:
-            weak &= allowed[marker]
-        label[_with_core(weak, weak & (distance_image < _STRONG))] = marker
-    return label
+class _Sampled:
+    """The sampled frames as indices into the table of the colours that occur in them."""
+
+    def __init__(self, images: Sequence[Image], allowed: Sequence[NDArray[np.bool_] | None]) -> None:
+        cells = [cell_index(smooth(image)) for image in images]
+        present = np.zeros(CELL_COUNT, dtype=np.bool_)
+        for cell in cells:
+            present[cell] = True
+        self._table = np.flatnonzero(present).astype(np.int32)
+        self._chroma, self._luma = chromaticity(cell_colours(self._table))
+        rank = np.zeros(CELL_COUNT, dtype=np.int32)
+        rank[self._table] = np.arange(len(self._table), dtype=np.int32)
+        self._images = [rank[cell] for cell in cells]
+        self._allowed = allowed
+
+    def near(self, distributions: Sequence[ColourDistribution]) -> NDArray[np.int64]:
+        """Label each colour of the table by the distribution in whose core it lies; -1 for none."""
+        pairs = [distribution.distance(self._chroma, self._luma) for distribution in distributions]
+        nearest = np.argmax([density for _, density in pairs], axis=0)
+        distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
+        return np.where(distance < _STRONG, nearest, -1)
+
+    def weighed(
+        self, distributions: Sequence[ColourDistribution], pixels: NDArray[np.int64], background: FloatArray
+    ) -> NDArray[np.int64]:
+        """Label each colour of the table by its likeliest marker; -1 where the background is likelier."""
+        label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
+        return np.where(probability >= 0.5, label, -1)
+
+    def regions(
+        self, labels: NDArray[np.int64], initial: Sequence[ColourDistribution]
+    ) -> list[NDArray[np.int16]]:
+        """Label the connected regions of each frame that hold enough colours near a marker's sample; -1 elsewhere."""
+        core = self.near(initial)
+        result = []
+        for image, allowed in zip(self._images, self._allowed, strict=True):
+            label_image, core_image = labels[image], core[image]
+            regions = np.full(image.shape, -1, dtype=np.int16)
+            for marker in range(len(initial)):
+                mask = label_image == marker
+                if allowed is not None:
+                    mask &= allowed[marker]
+                regions[_with_core(mask, mask & (core_image == marker))] = marker
+            result.append(regions)
+        return result
+
+    def colours(self, masks: Sequence[NDArray[np.bool_]]) -> tuple[FloatArray, FloatArray]:
+        """Return chromaticity (N, 2) and offset luma (N,) of the masked pixels of all frames."""
+        index = np.concatenate([image[mask] for image, mask in zip(self._images, masks, strict=True)])
+        return self._chroma[index], self._luma[index]
+
+    def background_counts(self, regions: Sequence[NDArray[np.int16]]) -> FloatArray:
+        """Count the colours clear of all regions by cells, (CELL_COUNT,), spread over neighbouring cells."""
+        counts = np.zeros(CELL_COUNT)
+        for image, label in zip(self._images, regions, strict=True):
+            near = cv2.dilate((label >= 0).astype(np.uint8), _KERNEL, iterations=_BACKGROUND_MARGIN)
+            counts[self._table] += np.bincount(image[near == 0], minlength=len(self._table))
+        cube = counts.reshape((CELLS_PER_CHANNEL,) * 3).astype(np.float32)
+        spread = gaussian_filter(cube, sigma=1.0, mode="nearest", truncate=2.0)
+        return spread.ravel().astype(np.float64)
 
 
-def _with_core(weak: NDArray[np.bool_], strong: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _with_core(mask: NDArray[np.bool_], strong: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Keep connected regions of which enough is of the core colour and which are not most of the image."""
-    count, components, stats, _ = cv2.connectedComponentsWithStats(weak.astype(np.uint8), connectivity=8)
+    count, components, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
     core = np.bincount(components[strong], minlength=count)
     area = stats[:, cv2.CC_STAT_AREA]
-    good = (core >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * weak.size)
+    good = (core >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * mask.size)
     good[0] = False
     return np.asarray(good[components])
 
@@ -167,12 +213,3 @@ def _interior(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the mask without its mixed border where that leaves enough of it."""
     inner = cv2.erode(mask.astype(np.uint8), _KERNEL).astype(np.bool_)
     return inner if np.count_nonzero(inner) >= 0.25 * np.count_nonzero(mask) else mask
-
-
-def _background_counts(images: Sequence[Image], regions: Sequence[NDArray[np.int16]]) -> FloatArray:
-    counts = np.zeros(CELL_COUNT)
-    for image, label in zip(images, regions, strict=True):
-        near = cv2.dilate((label >= 0).astype(np.uint8), _KERNEL, iterations=_BACKGROUND_MARGIN)
-        counts += np.bincount(cell_index(image[near == 0]), minlength=CELL_COUNT)
-    cube = counts.reshape((CELLS_PER_CHANNEL,) * 3)
-    return np.asarray(gaussian_filter(cube, sigma=1.0, mode="nearest", truncate=2.0)).ravel()

@@ -13,7 +13,7 @@ from .colour_space import cell_colours, cell_index, cell_volume, chromaticity
 
 FloatArray = NDArray[np.float64]
 
-NOISE_LEVELS: Final = 3.0
+NOISE_LEVELS: Final = 5.0
 """Standard deviation of a decoded, lightly smoothed colour difference in levels: sensor and compression."""
 OUTLIER_DISTANCE: Final = 16.0
 """Squared distance past which a colour is no marker's even if the background never shows it: 99.9 % of a χ² with 3."""
@@ -41,16 +41,16 @@ class ColourDistribution:
     slope: FloatArray
     covariance: FloatArray
 
-    def distance(self, bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    def distance(self, chroma: FloatArray, luma: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the squared Mahalanobis distance and the log density of colours.
 
         Args:
-            bgr: (..., 3) in levels.
+            chroma: (..., 2) chromaticity.
+            luma: (...) offset luma in levels, as `chromaticity` gives it.
 
         Returns:
             Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
         """
-        chroma, luma = chromaticity(bgr)
         light = np.log(luma) - self.log_luma
         offset = chroma - self.mean - self.slope * light[..., None]
         noise = (NOISE_LEVELS / luma) ** 2
@@ -88,28 +88,47 @@ class ColourModel:
 def colour_model(
     distributions: Sequence[ColourDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
 ) -> ColourModel:
-    """Weigh every colour cell between the markers, the background and the unknown by their likelihoods.
+    """Weigh every colour cell between the markers, the background and the unknown.
 
     Args:
         distributions: the markers' colours.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
         background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighbouring cells.
     """
-    colours = cell_colours()
-    counts = np.asarray(pixel_counts, dtype=np.float64)
-    volume = cell_volume(chromaticity(colours)[1])
-    evidence = np.empty((len(distributions), len(colours)))
-    distance = np.empty_like(evidence)
-    for marker, distribution in enumerate(distributions):
-        distance[marker], log_density = distribution.distance(colours)
-        evidence[marker] = counts[marker] * np.exp(log_density) * volume
-    label = np.argmax(evidence, axis=0)
-    columns = np.arange(len(colours))
-    best = evidence[label, columns]
-    # The unknown: as likely as the marker itself at the outlier distance, everywhere.
-    unknown = best * np.exp(0.5 * (distance[label, columns] - OUTLIER_DISTANCE))
-    total = evidence.sum(axis=0) + np.asarray(background_counts, dtype=np.float64) + unknown
-    with np.errstate(invalid="ignore"):
-        probability = np.nan_to_num(best / total)
+    chroma, luma = chromaticity(cell_colours())
+    label, probability = weigh(distributions, pixel_counts, background_counts, chroma, luma)
     table = np.where(probability >= 0.5, label, BACKGROUND).astype(np.uint8)
     return ColourModel(tuple(distributions), table, np.round(255.0 * probability).astype(np.uint8))
+
+
+def weigh(
+    distributions: Sequence[ColourDistribution],
+    pixel_counts: ArrayLike,
+    background_counts: ArrayLike,
+    chroma: FloatArray,
+    luma: FloatArray,
+) -> tuple[NDArray[np.intp], FloatArray]:
+    """Return the likeliest marker of each of N colour cells, (N,), and its posterior probability, (N,).
+
+    Args:
+        distributions: the markers' colours.
+        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
+        background_counts: (N,) background pixels in each cell.
+        chroma: (N, 2) chromaticity of the cells' middles.
+        luma: (N,) their offset luma in levels.
+    """
+    counts = np.asarray(pixel_counts, dtype=np.float64)
+    volume = cell_volume(luma)
+    evidence = np.empty((len(distributions), len(luma)))
+    distance = np.empty_like(evidence)
+    for marker, distribution in enumerate(distributions):
+        distance[marker], log_density = distribution.distance(chroma, luma)
+        evidence[marker] = counts[marker] * np.exp(log_density) * volume
+    label = np.argmax(evidence, axis=0)
+    columns = np.arange(len(luma))
+    best = evidence[label, columns]
+    # The unknown: as likely as the marker itself at the outlier distance, everywhere.
+    with np.errstate(over="ignore", invalid="ignore"):
+        unknown = best * np.exp(0.5 * (distance[label, columns] - OUTLIER_DISTANCE))
+        total = evidence.sum(axis=0) + np.asarray(background_counts, dtype=np.float64) + unknown
+        return label, np.nan_to_num(best / total)

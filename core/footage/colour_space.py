@@ -42,7 +42,9 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
     colour = np.asarray(bgr, dtype=np.float64)
     luma = colour @ _LUMA_BGR
     offset_luma = luma + LUMA_OFFSET
-    differences = np.stack([(colour[..., 0] - luma) * _BLUE_SCALE, (colour[..., 2] - luma) * _RED_SCALE], axis=-1)
+    differences = np.stack(
+        [(colour[..., 0] - luma) * _BLUE_SCALE, (colour[..., 2] - luma) * _RED_SCALE], axis=-1
+    )
     return differences / offset_luma[..., None], offset_luma
 
 
@@ -55,12 +57,18 @@ def cell_volume(offset_luma: ArrayLike) -> FloatArray:
 
 def cell_index(image: NDArray[np.uint8]) -> IntArray:
     """Return the cell of every pixel, (...) in 0..CELL_COUNT-1, of a (..., 3) image."""
-    shift = 8 - CELL_BITS
-    reduced = (image >> shift).astype(np.int32)
-    return (reduced[..., 0] << 2 * CELL_BITS) | (reduced[..., 1] << CELL_BITS) | reduced[..., 2]
+    shift = np.uint8(8 - CELL_BITS)
+    reduced = image >> shift
+    index = reduced[..., 0].astype(np.int32)
+    for channel in (1, 2):
+        index <<= CELL_BITS
+        index |= reduced[..., channel]
+    return index
 
 
-def cell_colours() -> FloatArray:
-    """Return the middle of every cell, (CELL_COUNT, 3) blue, green, red in levels."""
-    level = np.arange(CELLS_PER_CHANNEL) * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0
-    return np.stack(np.meshgrid(level, level, level, indexing="ij"), axis=-1).reshape(-1, 3)
+def cell_colours(cells: IntArray | None = None) -> FloatArray:
+    """Return the middles of cells, (..., 3) blue, green, red in levels; of all CELL_COUNT where none are named."""
+    index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
+    last = CELLS_PER_CHANNEL - 1
+    levels = np.stack([index >> 2 * CELL_BITS, index >> CELL_BITS & last, index & last], axis=-1)
+    return levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0

@@ -46,7 +46,9 @@ class MarkerStyle:
     color_srgb: tuple[int, int, int]
 
 
-def learn_model(clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None) -> ColourModel:
+def learn_model(
+    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> ColourModel:
     """Learn the markers' colours from frames spread over a clip.
 
     Args:
@@ -60,13 +62,19 @@ def learn_model(clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedReg
     factor = reduction(clip.size)
     for count in (_SAMPLED_FRAMES, _MOST_SAMPLED_FRAMES):
         frames = [(index, reduce(image, factor)) for index, image in clip.sample(count)]
-        allowed = None if expected is None else [_allowed(i, im.shape[:2], factor, expected) for i, im in frames]
-        learned = learn_colours([image for _, image in frames], [style.color_srgb for style in styles], allowed)
+        allowed = (
+            None if expected is None else [_allowed(i, im.shape[:2], factor, expected) for i, im in frames]
+        )
+        learned = learn_colours(
+            [image for _, image in frames], [style.color_srgb for style in styles], allowed
+        )
         missing = np.flatnonzero(learned.found < _FEWEST_LEARNED)
         if not len(missing):
             return learned.model
     style = styles[int(missing[0])]
-    nearest = ", ".join(str(list(colour)) for colour in nearest_colours(learned.background_counts, style.color_srgb))
+    nearest = ", ".join(
+        str(list(colour)) for colour in nearest_colours(learned.background_counts, style.color_srgb)
+    )
     raise InputError(
         f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches nothing in the clip; "
         f"pick it on the marker in a frame (the nearest colours found are {nearest})."

@@ -29,7 +29,9 @@ def coverage(image: NDArray[np.uint8], mask: Mask, border: int) -> NDArray[np.fl
     inside = (mask > 0).astype(np.uint8)
     # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of it.
     grown = cv2.dilate(inside, _KERNEL, iterations=border)
-    depth = cv2.distanceTransform(cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3)
+    depth = cv2.distanceTransform(
+        cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3
+    )
     depth = depth[1:-1, 1:-1]
     colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
     colour[..., 0] /= _LUMA_DEVIATION
@@ -37,12 +39,16 @@ def coverage(image: NDArray[np.uint8], mask: Mask, border: int) -> NDArray[np.fl
     foreground, has_foreground = _local_mean(colour, depth**2, size)
     background, has_background = _local_mean(colour, (1 - grown).astype(np.float32), size)
     axis = foreground - background
-    length = np.einsum("...i,...i->...", axis, axis)
-    share = np.einsum("...i,...i->...", colour - background, axis) / np.maximum(length, 1.0)
+    length = _dot(axis, axis)
+    share = _dot(colour - background, axis) / np.maximum(length, 1.0)
     share = np.where(has_foreground & has_background, np.clip(share, 0.0, 1.0), inside)
     share[grown == 0] = 0.0
     share[depth > border] = 1.0
     return np.asarray(share, dtype=np.float32)
+
+
+def _dot(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.asarray(cv2.transform(first * second, np.ones((1, 3), dtype=np.float32)), dtype=np.float32)
 
 
 def _local_mean(

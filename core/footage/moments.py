@@ -77,7 +77,11 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArr
     x, y = centroid[..., 0], centroid[..., 1]
     cross = second[..., 1] - x * y
     matrix = np.stack(
-        [np.stack([second[..., 0] - x**2, cross], axis=-1), np.stack([cross, second[..., 2] - y**2], axis=-1)], axis=-2
+        [
+            np.stack([second[..., 0] - x**2, cross], axis=-1),
+            np.stack([cross, second[..., 2] - y**2], axis=-1),
+        ],
+        axis=-2,
     )
     return centroid, matrix
 

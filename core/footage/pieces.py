@@ -49,7 +49,9 @@ def join_pieces(
     return moments, clipped, certainty, share
 
 
-def region_quality(area: FloatArray, clipped: BoolArray, certainty: FloatArray, share: FloatArray) -> FloatArray:
+def region_quality(
+    area: FloatArray, clipped: BoolArray, certainty: FloatArray, share: FloatArray
+) -> FloatArray:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
     The product of the area against the full area seen in frames around, of clipping by the image's border, of the

@@ -53,14 +53,15 @@ def find_regions(image: Image, model: ColourModel) -> list[list[Region]]:
 
     Regions are found on a reduced grid and measured on the full one, each marker in the windows that hold its own.
     """
-    markers = len(model.distributions)
     factor = reduction((image.shape[1], image.shape[0]))
     label, probability = model.classify(smooth(reduce(image, factor)))
     found: list[list[Region]] = []
-    for marker in range(markers):
-        boxes = _boxes(label == marker, probability, factor)
+    for marker in range(len(model.distributions)):
+        boxes = _boxes(label, probability, marker, factor)
         regions = [
-            region for box in _merged(boxes, 4 * factor) for region in _measure(image, model, marker, box, factor)
+            region
+            for box in _merged(boxes, 4 * factor)
+            for region in _measure(image, model, marker, box, factor)
         ]
         regions.sort(key=lambda region: -region.moments[0])
         found.append(regions[:MOST_REGIONS])
@@ -85,13 +86,20 @@ def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[n
     return good[components].astype(np.uint8)
 
 
-def _boxes(mask: NDArray[np.bool_], probability: NDArray[np.uint8], factor: int) -> list[tuple[int, int, int, int]]:
-    """Return left, top, right, bottom of the cleaned regions, in pixels of the full image."""
-    if not mask.any():
+def _boxes(
+    label: NDArray[np.uint8], probability: NDArray[np.uint8], marker: int, factor: int
+) -> list[tuple[int, int, int, int]]:
+    """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the full image."""
+    mask = cv2.compare(label, float(marker), cv2.CMP_EQ)
+    x, y, columns, rows = cv2.boundingRect(mask)
+    if not columns:
         return []
-    _, _, stats, _ = cv2.connectedComponentsWithStats(_clean(mask, probability), connectivity=8)
+    inside = np.s_[y : y + rows, x : x + columns]
+    _, _, stats, _ = cv2.connectedComponentsWithStats(
+        _clean(mask[inside] > 0, probability[inside]), connectivity=8
+    )
     left, top, width, height = (stats[1:, column] for column in range(4))
-    corners = np.stack([left, top, left + width, top + height], axis=-1) * factor
+    corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
     largest = np.argsort(-stats[1:, cv2.CC_STAT_AREA])[: 2 * MOST_REGIONS]
     return [(int(a), int(b), int(c), int(d)) for a, b, c, d in corners[largest]]
 

@@ -100,7 +100,9 @@ class ExpectedRegions:
         centre = np.array(self.centre, dtype=np.float64)
         radius = np.array(self.radius, dtype=np.float64)
         if centre.ndim != 3 or centre.shape[-1] != 2 or radius.shape != centre.shape[:2]:
-            raise ValueError(f"centre must be (F, M, 2) and radius (F, M), not {centre.shape} and {radius.shape}")
+            raise ValueError(
+                f"centre must be (F, M, 2) and radius (F, M), not {centre.shape} and {radius.shape}"
+            )
         for name, array in (("centre", centre), ("radius", radius)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)

@@ -14,11 +14,14 @@ LINES_AT_MOST = 400
 # Each room with its height: imports may only run down, or stay inside one room (docs/architecture.md).
 HEIGHTS = {
     "core.errors": 0,
+    "core.json_file": 1,
     "core.body": 1,
     "core.footage": 1,
+    "core.fields": 2,
     "core.observation": 2,
     "core.prior": 3,
     "core.estimate": 4,
+    "core.keyframe_file": 4,
     "core.take": 5,
     "core.motion": 5,
     "core.reconstruct": 6,
@@ -172,9 +175,16 @@ def test_the_changelog_has_the_version(repository: Path) -> None:
     assert manifest["version"] in re.findall(r"^## \[([^\]]+)\]", changelog, flags=re.MULTILINE)
 
 
+def test_the_citation_has_the_version(repository: Path) -> None:
+    """CITATION.cff names the manifest's version."""
+    manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
+    citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r"^version: (.*)$", citation, flags=re.MULTILINE) == [manifest["version"]]
+
+
 def test_every_tool_a_target_calls_is_there(repository: Path) -> None:
     """The Makefile and the continuous integration name no script that is missing."""
-    scripts = (repository / "Makefile").read_text(encoding="utf-8")
+    scripts = "".join((repository / name).read_text(encoding="utf-8") for name in ("Makefile", ".ci/run"))
     named = set(re.findall(r"tools/\w+\.(?:py|sh)", scripts))
     assert named
     assert [name for name in sorted(named) if not (repository / name).is_file()] == []

@@ -1,0 +1,1 @@
+"""What the whole-clip estimate weighs against each other, one term a file."""

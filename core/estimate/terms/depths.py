@@ -1,0 +1,30 @@
+"""Depths of the principal points near those of the prior (paper, eq. 9): what the image cannot say."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...footage.camera import Camera
+from ...observation import depths
+from ..clip_state import ClipState
+from .term import NormalEquations
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DepthTerm:
+    """d(θ) against d(θ_p)."""
+
+    camera: Camera
+    prior_depth: Array
+    """(F, P) [m]."""
+    std_m: float = depths.DEPTH_STD_M
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add one row for each point."""
+        frame = np.arange(state.frames)
+        residual = depths.evaluate(state.body, self.camera, state.pose, frame) - self.prior_depth
+        jacobian = depths.jacobian(state.body, self.camera, state.pose, frame) @ state.chain
+        equations.add_rows(residual / self.std_m, jacobian / self.std_m)

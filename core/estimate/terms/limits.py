@@ -1,0 +1,26 @@
+"""Hinges stay within their range of motion: knees and elbows do not bend backwards."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..clip_state import ClipState
+from .term import NormalEquations
+
+
+@dataclass(frozen=True)
+class LimitTerm:
+    """A one-sided spring on every hinge past its range."""
+
+    std_rad: float = 0.03
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each hinge, zero within its range."""
+        skeleton = state.prior.skeleton
+        hinges = skeleton.hinge_dofs
+        lower, upper = skeleton.limits[hinges].T
+        angles = state.posture.angles
+        excess = (angles - np.clip(angles, lower, upper)) / self.std_rad
+        jacobian = np.zeros((state.frames, len(hinges), skeleton.dof_count))
+        jacobian[:, np.arange(len(hinges)), hinges] = (excess != 0.0) / self.std_rad
+        equations.add_rows(excess, jacobian)

@@ -1,0 +1,155 @@
+"""The markers' image regions against their prediction: centroid and second moments, in pixels.
+
+A second-moment residual is turned into the observed region's own axes and divided by twice the mean
+deviation along them, the linearised difference of matrix square roots: three numbers in pixels, with no
+angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...footage.tracks import RegionTracks
+from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
+from ..clip_state import ClipState
+from .term import NormalEquations, student_weight
+
+Array = NDArray[np.float64]
+
+FEATURES = 5
+"""Rows of one marker: centroid x, y and three of shape."""
+SMALLEST_DEVIATION_PX = 0.6
+
+
+@dataclass(frozen=True)
+class RegionNoise:
+    """How far an observed region may lie from a perfect model of the body.
+
+    Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
+    sleeves shift), which scales with the image of a metre.
+    """
+
+    pixel_std_px: float = 0.35
+    surface_centroid_std_m: float = 0.007
+    surface_shape_std_m: float = 0.005
+    bias_centroid_std_m: float = 0.010
+    bias_shape_std_m: float = 0.007
+    bias_time_s: float = 0.67
+    degrees: float = 4.0
+    """Student's t degrees of freedom of a marker's rows."""
+    least_visible: float = 0.15
+    """A region predicted to be hidden further than this is not compared."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedRegions:
+    """Tracks in the form the term compares."""
+
+    centroid: Array
+    """(F, M, 2), NaN where hidden."""
+    second_moment: Array
+    axes: Array
+    """(F, M, 2, 2) columns are the observed axes."""
+    deviation: Array
+    """(F, M, 2) standard deviation of the region along them [px]."""
+    quality: Array
+    """(F, M)."""
+
+    @classmethod
+    def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
+        """Axes and deviations of every visible region."""
+        seen = tracks.visible
+        moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
+        values, axes = np.linalg.eigh(moments)
+        deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+        return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
+
+
+def feature_rows(
+    observed: ObservedRegions, predicted: RegionPrediction
+) -> tuple[Array, Array | None]:
+    """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
+    centroid = predicted.centroid - observed.centroid
+    turned = np.swapaxes(observed.axes, -1, -2) @ (
+        predicted.second_moment - observed.second_moment
+    ) @ observed.axes
+    divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
+    shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
+    residual = np.concatenate([centroid, shape], axis=-1)
+    if predicted.centroid_jacobian is None or predicted.moment_jacobian is None:
+        return residual, None
+    # Turning is linear in the entries xx, xy, yy: a 3 x 3 matrix a region.
+    u = observed.axes
+    turn = np.stack(
+        [
+            np.stack(
+                [
+                    u[..., 0, a] * u[..., 0, b],
+                    u[..., 0, a] * u[..., 1, b] + u[..., 1, a] * u[..., 0, b],
+                    u[..., 1, a] * u[..., 1, b],
+                ],
+                axis=-1,
+            )
+            / divisor[..., a, b, None]
+            for a, b in MOMENTS
+        ],
+        axis=-2,
+    )
+    rows = [predicted.centroid_jacobian, turn @ predicted.moment_jacobian]
+    return residual, np.concatenate(rows, axis=-2)
+
+
+def pixels_per_metre(model: RegionModel, state_points: Array, frame: NDArray[np.intp]) -> Array:
+    """(F,) image length of a metre at the body's mean depth."""
+    depth = model.camera.depth(state_points, frame[:, None]).mean(axis=1)
+    return np.asarray(model.camera.focal_px / np.maximum(depth, 0.1))
+
+
+@dataclass(frozen=True, eq=False)
+class RegionTerm:
+    """Compares every visible marker with its prediction."""
+
+    model: RegionModel
+    observed: ObservedRegions
+    noise: RegionNoise
+    scale: Array
+    """(F,) pixels per metre."""
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add five rows for each marker that is seen and predicted to be seen."""
+        frames = np.arange(state.frames)
+        predicted = self.model.evaluate(state.pose, frames, jacobian=True)
+        residual, jacobian = feature_rows(self.observed, predicted)
+        assert jacobian is not None
+        count = len(self.model.placements)
+        residual = residual + state.bias.reshape(state.frames, count, FEATURES)
+        weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
+        residual = np.where(weight > 0.0, residual, 0.0) * weight
+        jacobian = (jacobian @ state.chain[:, None]) * weight[..., None]
+        wide = np.zeros((state.frames, count, FEATURES, equations.matrix.size))
+        dofs = state.deviation.shape[1]
+        wide[..., :dofs] = jacobian
+        for marker in range(count):
+            first = dofs + marker * FEATURES
+            feature = np.arange(FEATURES)
+            wide[:, marker, feature, first + feature] = weight[:, marker]
+        rows = count * FEATURES
+        equations.add_rows(residual.reshape(-1, rows), wide.reshape(state.frames, rows, -1))
+
+    def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
+        """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
+        trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
+        surface = np.repeat(
+            [self.noise.surface_centroid_std_m, self.noise.surface_shape_std_m], (2, FEATURES - 2)
+        )
+        variance = self.noise.pixel_std_px**2 + (self.scale[:, None, None] * surface) ** 2
+        information = np.where(usable, trust, 0.0)[..., None] / (variance * temperature)
+        squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
+        for group in (slice(0, 2), slice(2, FEATURES)):
+            size = group.stop - group.start
+            information[..., group] *= student_weight(
+                squared[..., group].sum(-1), self.noise.degrees, size
+            )[..., None]
+        return np.asarray(information)

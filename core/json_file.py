@@ -1,0 +1,132 @@
+"""JSON files, read strictly and written whole: no NaN, no endless numbers, nothing half-written."""
+
+import json
+import os
+import tempfile
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from .errors import ConversionError, InputError
+
+LARGEST_BYTES = 64 * 2**20
+"""A moving camera of an hour fits; a video handed in by mistake does not."""
+MOST_DIGITS = 15
+"""Whole numbers of more digits have no exact float64."""
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Read a JSON object.
+
+    Args:
+        path: The file, UTF-8, with or without a byte order mark.
+
+    Returns:
+        The object's fields; every number in it is finite.
+
+    Raises:
+        InputError: The file is missing, larger than 64 MiB, not UTF-8, no JSON object, names a field
+            twice or holds a number that is not finite.
+    """
+    try:
+        value = json.loads(
+            _read_text(path),
+            object_pairs_hook=_object,
+            parse_constant=_refuse_constant,
+            parse_float=_float,
+            parse_int=_int,
+        )
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{path}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
+            "the file may be cut off or edited by mistake"
+        ) from error
+    except RecursionError as error:
+        raise InputError(f"{path}: its lists and objects are nested too deeply to be read") from error
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
+    if not isinstance(value, dict):
+        raise InputError(f"{path}: holds {shown(value)}; it must hold an object, {{...}}")
+    return value
+
+
+def write_json(path: Path, value: Any, indent: int | None = None) -> None:
+    """Write a value as strict JSON beside `path`, then move it into place.
+
+    The same value always gives the same bytes.
+
+    Args:
+        path: The file; one that is there is replaced whole.
+        value: What `json` can write; a number that is not finite is refused.
+        indent: Spaces a level for files that people edit; None writes without spaces.
+
+    Raises:
+        ValueError: A number is NaN or infinite.
+        ConversionError: The file cannot be written.
+    """
+    separators = (",", ":") if indent is None else (",", ": ")
+    text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
+    write_whole(path, lambda beside: beside.write_text(text + "\n", encoding="utf-8", newline="\n"))
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Let `write` make a file beside `path` and move it into place, so that `path` is never half a file.
+
+    Raises:
+        ConversionError: The file cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".keymark-", dir=path.parent) as folder:
+            beside = Path(folder) / path.name
+            write(beside)
+            os.replace(beside, path)
+    except OSError as error:
+        raise ConversionError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def shown(value: Any, longest: int = 60) -> str:
+    """A value as people can read it in a sentence: one line, cut where it is long."""
+    text = repr(value)
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."
+
+
+def _read_text(path: Path) -> str:
+    valid = "it must be a JSON file in UTF-8"
+    try:
+        if path.stat().st_size > LARGEST_BYTES:
+            size = path.stat().st_size / 2**20
+            raise InputError(f"{path}: has {size:.0f} MiB; at most {LARGEST_BYTES // 2**20} MiB are read")
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: no such file; {valid}") from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{path}: cannot be read ({reason}); {valid}") from error
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    fields: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in fields:
+            raise ValueError(f"the field {shown(name)} stands twice in one object; it must stand once")
+        fields[name] = value
+    return fields
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number in JSON; every number must be finite")
+
+
+def _float(text: str) -> float:
+    value = float(text)
+    if not isfinite(value):
+        raise ValueError(f"the number {text[:40]} is too large; every number must be finite")
+    return value
+
+
+def _int(text: str) -> int:
+    if len(text.lstrip("-")) > MOST_DIGITS:
+        raise ValueError(f"the whole number {text[:40]} is too large; at most {MOST_DIGITS} digits are read")
+    return int(text)

@@ -1,0 +1,167 @@
+"""Where the visible outline of a tapered elliptical cylinder lies, as weighted sample points.
+
+Samples fill the silhouette between the two contour lines, and the elliptical ends. Each is a point of
+the solid: a contour line touches the surface where the cross-section reaches farthest across the view,
+so moving the samples rigidly with the segment moves the silhouette rightly to first order.
+
+Arrays lead with F frames and Q pieces.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Pose
+from ..body.shapes import PieceStack
+from ..footage.camera import Camera
+
+Array = NDArray[np.float64]
+
+ALONG, ACROSS = 8, 4
+RINGS, SPOKES = 2, 5
+SAMPLES = ALONG * ACROSS + 2 * RINGS * SPOKES
+TINY = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """Pieces' axes as the camera sees them, in the world: (F, Q, 3), or (F, Q) for lengths."""
+
+    start: Array
+    end: Array
+    toward: Array
+    """Viewing direction, away from the camera."""
+    across: Array
+    """Unit direction across both the view and the axis."""
+    along: Array
+    """Unit direction of the axis, across the view."""
+    apparent_length: Array
+    """Length of the axis across the view [m]."""
+    lateral: Array
+    sagittal: Array
+
+    def reach(self, direction: Array) -> Array:
+        """(F, Q, 2) cosines of a direction with the cross-section's axes."""
+        return np.stack([_dot(direction, self.lateral), _dot(direction, self.sagittal)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Sample points of the pieces' silhouettes."""
+
+    world: Array
+    """(F, Q, S, 3) [m]."""
+    area: Array
+    """(F, Q, S) share of the silhouette [m², across the view]."""
+    area_rate: Array
+    """(F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening."""
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("...i,...i->...", a, b))
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product over the last axis; `numpy.cross` spends most of its time on generality."""
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    u, v, w = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
+def _unit(vector: Array) -> tuple[Array, Array]:
+    length = np.sqrt(_dot(vector, vector))
+    return vector / np.maximum(length, TINY)[..., None], length
+
+
+def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> View:
+    """How the camera sees each piece in each frame."""
+    start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)
+    matrix = camera.matrix_world[frame][:, None] if camera.is_moving else camera.matrix_world
+    toward, _ = _unit(0.5 * (start + end) - matrix[..., :3, 3])
+    lateral, sagittal = pieces.turn(pose, pieces.lateral), pieces.turn(pose, pieces.sagittal)
+    axis = end - start
+    along, length = _unit(axis - _dot(axis, toward)[..., None] * toward)
+    # Seen end on, any direction across the view will do.
+    spare, _ = _unit(lateral - _dot(lateral, toward)[..., None] * toward)
+    along = np.where(length[..., None] > 1e-6, along, spare)
+    return View(start, end, toward, cross(toward, along), along, length, lateral, sagittal)
+
+
+def outline(pieces: PieceStack, view: View) -> Outline:
+    """Samples of the pieces' silhouettes."""
+    parts = [_wall(pieces.half_widths, view)]
+    for centre, widths, sign in (
+        (view.start, pieces.half_widths[:, 0], -1.0),
+        (view.end, pieces.half_widths[:, 1], 1.0),
+    ):
+        parts.append(_cap(centre, widths, sign, view))
+    world, area, rate = (np.concatenate(rows, axis=2) for rows in zip(*parts, strict=True))
+    return Outline(world, area, rate)
+
+
+def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
+    """Samples between the contour lines (F, Q, ALONG * ACROSS, 3), their areas and area rates."""
+    u = ((np.arange(ALONG) + 0.5) / ALONG)[:, None]
+    v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
+    widths = half_widths[:, None, 0] + u * (half_widths[:, None, 1] - half_widths[:, None, 0])  # (Q, U, 2)
+    reach = view.reach(view.across)[:, :, None]  # (F, Q, 1, 2)
+    stretched = widths * reach
+    half = np.maximum(np.hypot(stretched[..., 0], stretched[..., 1]), TINY)  # (F, Q, U)
+    touch = widths * stretched / half[..., None]  # (F, Q, U, 2)
+    contour = touch[..., :1] * view.lateral[:, :, None] + touch[..., 1:] * view.sagittal[:, :, None]
+    axis = view.end - view.start
+    centre = view.start[:, :, None] + u * axis[:, :, None]
+    world = centre[..., None, :] + v[:, None] * contour[..., None, :]  # (F, Q, U, V, 3)
+    cell = 2.0 / (ALONG * ACROSS)
+    length = view.apparent_length[..., None]
+    # d half = touch · d reach; d length = ω · (axis × along).
+    half_rate = touch @ _reach_rate(view, axis)  # (F, Q, U, 3)
+    length_rate = cross(axis, view.along)[:, :, None]
+    rate = cell * (length_rate * half[..., None] + length[..., None] * half_rate)
+    return (
+        world.reshape(*world.shape[:2], -1, 3),
+        np.repeat(cell * length * half, ACROSS, axis=2),
+        np.repeat(rate, ACROSS, axis=2),
+    )
+
+
+def _reach_rate(view: View, axis: Array) -> Array:
+    """(F, Q, 2, 3) d (across · lateral, across · sagittal) / d angular velocity.
+
+    Turning a foreshortened axis also turns its image, and with it the direction across.
+    """
+    image_turn = cross(axis, view.across) / np.maximum(view.apparent_length, 1e-4)[..., None]
+    rows = [
+        cross(side, view.across) - image_turn * _dot(view.along, side)[..., None]
+        for side in (view.lateral, view.sagittal)
+    ]
+    return np.stack(rows, axis=2)
+
+
+def _cap(centre: Array, widths: Array, sign: float, view: View) -> tuple[Array, Array, Array]:
+    """Samples of the half of an elliptical end that shows beyond the contour lines, areas and rates."""
+    pole, length = _unit(sign * widths * view.reach(view.along))
+    pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
+    side = np.stack([-pole[..., 1], pole[..., 0]], axis=-1)
+    radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
+    angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
+    disc = (radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)).reshape(-1, 2)
+    flat = disc[:, :1] * side[:, :, None] + disc[:, 1:] * pole[:, :, None]  # (F, Q, C, 2)
+    flat = flat * widths[:, None]
+    world = (
+        centre[:, :, None]
+        + flat[..., :1] * view.lateral[:, :, None]
+        + flat[..., 1:] * view.sagittal[:, :, None]
+    )
+    # The end's plane shows by the cosine between its normal and the view.
+    normal = cross(view.lateral, view.sagittal)
+    cosine = _dot(normal, view.toward)[..., None]
+    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / len(disc)  # (Q, 1)
+    rate = full * np.sign(cosine) * cross(normal, view.toward)
+    shape = world.shape[:-1]
+    return (
+        world,
+        np.broadcast_to(full * np.abs(cosine), shape),
+        np.broadcast_to(rate[:, :, None], (*shape, 3)),
+    )

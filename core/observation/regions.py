@@ -1,0 +1,177 @@
+"""What a posture predicts of the markers' image regions, with Jacobians: the model g of method `map`.
+
+Each marker covers a calibrated part of its segment's volume. Its visible silhouette is sampled; nearer
+body parts hide samples; centroid and second moments are those of what stays visible (paper, eqs 1 to 4,
+predicted instead of measured). Derivatives hold the samples' weights fixed.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Body, Pose
+from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
+from ..footage.camera import Camera
+from .cover import covers, visible_share
+from .outline import TINY, Outline, cross, outline, view_pieces
+
+Array = NDArray[np.float64]
+
+MOMENTS = ((0, 0), (0, 1), (1, 1))
+"""Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerPlacement:
+    """Where a marker sits on its segment and how thick it is there: what calibration finds."""
+
+    segment: str
+    first: float = 0.05
+    """Share of the segment at which the colour begins."""
+    last: float = 0.95
+    """Share at which it ends."""
+    lateral_m: float = 0.0
+    """Displacement along the segment's lateral direction [m]."""
+    sagittal_m: float = 0.0
+    """Displacement along its sagittal direction [m]."""
+    girth: float = 1.0
+    """Thickness relative to the average body's."""
+
+    def pieces(self, body: Body) -> tuple[Piece, ...]:
+        """The volume that wears the colour."""
+        parts = [segment_piece(body, name) for name in marker_parts(self.segment)]
+        lengths = np.array([np.linalg.norm(part.end - part.start) for part in parts])
+        edges = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
+        pieces = []
+        for i, part in enumerate(parts):
+            scale = lengths.sum() / lengths[i]
+            first = (self.first - edges[i]) * scale if i == 0 else 0.0
+            last = (self.last - edges[i]) * scale if i == len(parts) - 1 else 1.0
+            offset = self.lateral_m * part.lateral + self.sagittal_m * part.sagittal
+            pieces.append(part.cut(first, last).changed(offset, self.girth))
+        return tuple(pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class RegionPrediction:
+    """Predicted regions of M markers in F frames."""
+
+    centroid: Array
+    """(F, M, 2) [px]."""
+    second_moment: Array
+    """(F, M, 2, 2) [px²]."""
+    area: Array
+    """(F, M) visible area [px²]."""
+    visible: Array
+    """(F, M) share of the silhouette that nothing hides."""
+    centroid_jacobian: Array | None = None
+    """(F, M, 2, D) [px per m or rad]."""
+    moment_jacobian: Array | None = None
+    """(F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class RegionModel:
+    """Predicts the regions of given markers on an actor seen by a camera."""
+
+    body: Body
+    camera: Camera
+    placements: tuple[MarkerPlacement, ...]
+
+    @cached_property
+    def _pieces(self) -> PieceStack:
+        """The volumes that wear a colour, Q of them, marker after marker."""
+        return PieceStack.of(piece for placement in self.placements for piece in placement.pieces(self.body))
+
+    @cached_property
+    def _marker_of(self) -> NDArray[np.intp]:
+        """(Q,) the marker of each piece."""
+        counts = [len(marker_parts(placement.segment)) for placement in self.placements]
+        return np.repeat(np.arange(len(counts)), counts)
+
+    @cached_property
+    def _parts(self) -> PieceStack:
+        """The whole body, O parts."""
+        return PieceStack.of(body_pieces(self.body))
+
+    @cached_property
+    def _own(self) -> NDArray[np.bool_]:
+        """(Q, O) whether a part of the body belongs to the marker of a piece."""
+        own = [marker_parts(self.placements[m].segment) for m in self._marker_of]
+        return np.array([[part in names for part in self._parts.segments] for names in own])
+
+    def evaluate(self, pose: Pose, frame: NDArray[np.intp], jacobian: bool = False) -> RegionPrediction:
+        """Predict every marker's region.
+
+        Args:
+            pose: Forward kinematics of F postures.
+            frame: (F,) index of each posture's frame in the clip, for a moving camera.
+            jacobian: Whether to derive centroid and moments by the posture's tangent as well.
+
+        Returns:
+            The prediction; markers that are wholly hidden keep the moments of their whole silhouette.
+        """
+        view = view_pieces(self._pieces, pose, self.camera, frame)
+        samples = outline(self._pieces, view)
+        pixels, depth = self.camera.project(samples.world, frame[:, None, None])
+        scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
+        parts = covers(self._parts, pose, self.camera, frame)
+        seen = scale * visible_share(pixels, depth, parts, self._own)
+        visible_area = self._per_marker((samples.area * seen).sum(2))
+        whole_area = self._per_marker((samples.area * scale).sum(2))
+        visible = visible_area / np.maximum(whole_area, TINY)
+        # A wholly hidden marker is not compared with anything, but its moments stay finite.
+        hidden = visible < 1e-3
+        factor = np.where(hidden[:, self._marker_of, None], scale, seen)
+        total = np.maximum(np.where(hidden, whole_area, visible_area), TINY)
+        factor = factor / total[:, self._marker_of, None]
+        weight = factor * samples.area  # (F, Q, S), one in sum over a marker
+        centroid = self._per_marker(np.einsum("fqs,fqsi->fqi", weight, pixels))
+        centred = pixels - centroid[:, self._marker_of, None]
+        moment = self._per_marker(np.einsum("fqs,fqsi,fqsj->fqij", weight, centred, centred, optimize=True))
+        prediction = RegionPrediction(centroid, moment, visible_area, visible)
+        if not jacobian:
+            return prediction
+        return replace(prediction, **self._derive(samples, pose, frame, factor, centred, moment))
+
+    def _per_marker(self, values: Array) -> Array:
+        """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
+        firsts = np.searchsorted(self._marker_of, np.arange(len(self.placements)))
+        return np.asarray(np.add.reduceat(values, firsts, axis=1))
+
+    def _derive(
+        self,
+        samples: Outline,
+        pose: Pose,
+        frame: NDArray[np.intp],
+        factor: Array,
+        centred: Array,
+        moment: Array,
+    ) -> dict[str, Array]:
+        """Jacobians of centroid and moments, through the spatial velocity of each piece.
+
+        `factor` (F, Q, S) turns a sample's area into its weight.
+        """
+        local = self.camera.project_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 3)
+        # A point p of a body with spatial velocity (v, ω) moves by v - [p]x ω.
+        twist = np.concatenate([local, cross(samples.world[..., None, :], local)], axis=-1)
+        weight = (factor * samples.area)[..., None]
+        first = np.swapaxes(weight, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
+        first = first.reshape(*twist.shape[:2], 2, 6)
+        mixed = np.swapaxes(weight * centred, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
+        mixed = mixed.reshape(*twist.shape[:2], 2, 2, 6)
+        second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
+        # Turning also changes how much of the silhouette each sample stands for.
+        rate = factor[..., None] * samples.area_rate  # (F, Q, S, 3)
+        first[..., 3:] += np.swapaxes(centred, -1, -2) @ rate
+        middle = moment[:, self._marker_of, None]
+        spread = np.stack(
+            [centred[..., a] * centred[..., b] - middle[..., a, b] for a, b in MOMENTS], axis=-1
+        )
+        second[..., 3:] += np.swapaxes(spread, -1, -2) @ rate
+        rows = np.concatenate([first, second], axis=2)  # (F, Q, 5, 6)
+        moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
+        derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
+        return {"centroid_jacobian": derived[:, :, :2], "moment_jacobian": derived[:, :, 2:]}

@@ -1,0 +1,245 @@
+"""A take: one recorded performance on disk, read with every field checked, and written."""
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any
+
+from .body.actor import Actor
+from .body.human import HUMAN
+from .body.kinematics import Body
+from .errors import InputError
+from .fields import Fields, listed
+from .footage.camera import Camera
+from .footage.clip import Clip
+from .footage.markers import MarkerStyle
+from .json_file import read_json, shown, write_json, write_whole
+from .keyframe_file import read_keyframes, write_keyframes
+from .prior.keyframes import Keyframe
+
+TRUNK = "trunk"
+"""Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
+MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
+MOST_FRAMES = 10**6
+POORLY_FITTED_M = 0.06
+"""Hand-posed points fit an actor of the right size within two or three centimetres."""
+NOTICEABLE_RATE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """One recorded performance, validated."""
+
+    folder: Path
+    clip: Path
+    """The footage: a video, a folder of images, or a pattern of numbered images."""
+    fps: float
+    frame_start: int
+    """Scene frame of the clip's first decoded frame."""
+    frame_count: int | None
+    """Frames of the clip; None where only the clip itself tells."""
+    camera: Camera
+    body: Body
+    markers: tuple[MarkerStyle, ...]
+    keyframes: tuple[Keyframe, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is usable but looks wrong, one sentence each."""
+        return tuple(
+            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
+            "cm on average from any posture of this actor; check them and the actor's segment lengths"
+            for keyframe in self.keyframes
+            if keyframe.residual_m > POORLY_FITTED_M
+        )
+
+
+def read_take(folder: Path, keyframes: Path | None = None, *, keyframes_required: bool = True) -> Take:
+    """Read a take folder; the clip is not opened (see `open_clip`).
+
+    Args:
+        folder: The folder that holds `take.json`.
+        keyframes: The keyframe file; by default `keyframes.json` in the folder.
+        keyframes_required: Whether a take without a keyframe file is refused.
+
+    Raises:
+        InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
+    """
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder; a take is a folder that holds take.json")
+    path = folder / "take.json"
+    fields = Fields(read_json(path), str(path))
+    frame_start = fields.whole("frame_start", -(10**6), 10**6)
+    frame_count = fields.whole("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
+    body = _body(fields)
+    camera = _camera(fields, frame_count)
+    posed = keyframes or folder / "keyframes.json"
+    missing = keyframes is None and not keyframes_required and not posed.exists()
+    return Take(
+        folder=folder,
+        clip=_clip(fields, folder),
+        fps=fields.number("fps", 1.0, 1000.0, "frames per second"),
+        frame_start=frame_start,
+        frame_count=frame_count,
+        camera=camera,
+        body=body,
+        markers=_markers(fields),
+        keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count),
+    )
+
+
+def open_clip(take: Take) -> Clip:
+    """Open a take's clip and check what `take.json` says of it.
+
+    Raises:
+        InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
+            poses or a keyframe do not fit.
+    """
+    try:
+        clip = Clip.open(take.clip, fps=take.fps)
+    except OSError as error:
+        raise InputError(f"{take.clip}: the clip cannot be read ({error.strerror})") from error
+    if clip.size != take.camera.resolution:
+        raise InputError(
+            f"{take.folder / 'take.json'}: camera.resolution is {list(take.camera.resolution)}; "
+            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
+        )
+    count = clip.frame_count
+    if take.frame_count not in (None, count):
+        count = len(clip.time_stamps())  # containers may claim a wrong number; decoding tells
+    check_frame_count(take, count)
+    return clip
+
+
+def check_frame_count(take: Take, count: int) -> None:
+    """Hold the number of frames that a clip really has against the take.
+
+    Raises:
+        InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
+    """
+    path = take.folder / "take.json"
+    if take.frame_count not in (None, count):
+        raise InputError(
+            f"{path}: frame_count is {take.frame_count}; "
+            f"{take.clip.name} holds {count} frames that can be decoded"
+        )
+    if take.camera.is_moving and len(take.camera.matrix_world) < count:
+        poses = len(take.camera.matrix_world)
+        raise InputError(
+            f"{path}: camera.matrix_world_frames has {poses} poses; {take.clip.name} has {count} frames, "
+            "and each needs one"
+        )
+    for keyframe in take.keyframes:
+        if keyframe.index >= count:
+            raise InputError(
+                f"{take.folder}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
+                f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
+            )
+
+
+def rate_note(take: Take, clip: Clip) -> str | None:
+    """A sentence where the clip's own frame rate is not the take's; None where they agree."""
+    if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
+        return None
+    return f"take.json says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
+
+
+def write_take(take: Take, folder: Path) -> None:
+    """Write a take that `read_take` reads back: `take.json`, `keyframes.json` and the clip.
+
+    Every file is written beside and moved into place; a clip that lies in the folder stays as it is.
+
+    Raises:
+        InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
+        ConversionError: A file cannot be written.
+    """
+    clip = _clip_inside(take, folder)
+    fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
+    if take.frame_count is not None:
+        fields["frame_count"] = take.frame_count
+    fields["clip"] = clip
+    fields["camera"] = take.camera.to_dict()
+    fields["markers"] = {
+        style.name: {"segment": style.segment, "color_srgb": list(style.color_srgb)} for style in take.markers
+    }
+    fields["actor"] = {"segments_m": dict(take.body.actor.segments_m)}
+    if take.keyframes:
+        write_keyframes(folder / "keyframes.json", take.keyframes, take.body, take.frame_start)
+    write_json(folder / "take.json", fields, indent=1)
+
+
+def _clip_inside(take: Take, folder: Path) -> str:
+    """The clip's path within `folder`, after copying it there where it lies elsewhere."""
+    source = take.clip.resolve()
+    if source.is_relative_to(folder.resolve()):
+        return source.relative_to(folder.resolve()).as_posix()
+    if not source.exists():
+        raise InputError(
+            f"{take.clip}: no such file or folder; only a video or a folder of images can be copied"
+        )
+    copy = shutil.copytree if source.is_dir() else shutil.copyfile
+    write_whole(folder / source.name, lambda beside: copy(source, beside))
+    return source.name
+
+
+def _clip(fields: Fields, folder: Path) -> Path:
+    valid = "a path inside the take's folder, as in clip.mp4"
+    name = fields.text("clip", valid) if fields.has("clip") else "clip.mp4"
+    outside = PurePosixPath(name).is_absolute() or PureWindowsPath(name).anchor
+    climbs = ".." in PureWindowsPath(name).parts  # it reads both kinds of slash
+    odd = len(name) > 1000 or not name.isprintable() or PureWindowsPath(name).name == ""
+    if outside or climbs or odd:
+        raise InputError(f"{fields.where}: clip is {shown(name)}; it must be {valid}")
+    return folder / name
+
+
+def _camera(fields: Fields, frame_count: int | None) -> Camera:
+    child = fields.child("camera", "an object with lens_mm, sensor_width_mm, resolution and matrix_world")
+    camera = Camera.from_dict(child.values, child.where)
+    if camera.is_moving and frame_count is not None and len(camera.matrix_world) < frame_count:
+        raise InputError(
+            f"{child.where}: matrix_world_frames has {len(camera.matrix_world)} poses; "
+            f"it must have one for each of the {frame_count} frames"
+        )
+    return camera
+
+
+def _body(fields: Fields) -> Body:
+    actor = fields.child("actor", "an object with segments_m, or with height_m alone")
+    if not actor.has("segments_m") and actor.has("height_m"):
+        return Body(Actor.from_stature(actor.number("height_m", 0.5, 3.0, "m")))
+    lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in metres").values
+    try:
+        return Body(Actor(lengths))
+    except InputError as error:
+        raise InputError(f"{fields.where}: {error}") from error
+
+
+def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
+    markers = fields.child("markers", "an object of markers by name, each with color_srgb")
+    if not markers.values:
+        raise InputError(f"{markers.where} is empty; at least one marker is needed, better five")
+    styles = tuple(_marker(markers, name) for name in markers.values)
+    seen: dict[tuple[int, int, int], str] = {}
+    for style in styles:
+        twin = seen.setdefault(style.color_srgb, style.name)
+        if twin != style.name:
+            raise InputError(
+                f"{markers.where}: {shown(twin)} and {shown(style.name)} have the same color_srgb "
+                f"{list(style.color_srgb)}; each marker needs a colour of its own"
+            )
+    return styles
+
+
+def _marker(markers: Fields, name: str) -> MarkerStyle:
+    marker = markers.child(name, "an object with color_srgb")
+    segment = marker.text("segment", "a body segment's name") if marker.has("segment") else name
+    if segment not in MARKER_SEGMENTS:
+        raise InputError(
+            f"{markers.where}: {shown(name)} is bound to the unknown segment {shown(segment)}; "
+            f"known are {listed(MARKER_SEGMENTS)}"
+        )
+    color = marker.numbers("color_srgb", 3, 0.0, 255.0, "three numbers from 0 to 255, as an eyedropper gives")
+    red, green, blue = (round(value) for value in color)
+    return MarkerStyle(name=name, segment=segment, color_srgb=(red, green, blue))

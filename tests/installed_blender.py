@@ -1,0 +1,33 @@
+"""A Blender program and a folder that stands for its user's settings and extensions."""
+
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Blender:
+    """A Blender with a user folder of its own.
+
+    Attributes:
+        command: The words that start it.
+        user: The folder that stands for the user's settings and extensions.
+    """
+
+    command: tuple[str, ...]
+    user: Path
+
+    def run(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        """Run it to its end with `arguments`, without a terminal; standard output and error are kept."""
+        environment = {**os.environ, "BLENDER_USER_RESOURCES": str(self.user)}
+        words = [*self.command, *(str(argument) for argument in arguments)]
+        return subprocess.run(
+            words, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900
+        )
+
+    def install(self, package: Path) -> subprocess.CompletedProcess[str]:
+        """Install and enable a zip of the extension."""
+        return self.run(
+            "--command", "extension", "install-file", "--repo", "user_default", "--enable", package
+        )
