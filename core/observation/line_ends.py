@@ -5,15 +5,16 @@ coordinates of both ends of the body part. Here the centroid is their midpoint, 
 line between them, and the aspect ratio compares the line's length with the segment's given width.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..body.kinematics import Body, Pose
+from ..body.rotations import cross_matrix
+from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
 from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.moments import axis_angle_difference, characteristics
@@ -23,23 +24,6 @@ Array = NDArray[np.float64]
 
 X, Y, ANGLE, LOG_RATIO = range(4)
 """Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
-
-WIDTHS_OF_STATURE: Mapping[str, float] = MappingProxyType(
-    {
-        "trunk": 0.17,
-        "pelvis": 0.18,
-        "chest": 0.17,
-        "head": 0.09,
-        "girdle": 0.09,
-        "upper_arm": 0.055,
-        "forearm": 0.045,
-        "hand": 0.05,
-        "thigh": 0.085,
-        "shin": 0.06,
-        "foot": 0.055,
-    }
-)
-"""Width of each kind of segment as seen from the front, in statures; rough, as clothes make it anyway."""
 
 Place = tuple[int, Array]
 """A joint and a place in its frame, (3,) [m]."""
@@ -59,19 +43,36 @@ class LineEnds:
     """Segment of each marker: one of the skeleton's, or `trunk` (hips' midpoint to shoulders' midpoint)."""
 
     def __post_init__(self) -> None:
-        """Look the segments up, so that an unknown one is told at once."""
-        _ = self._ends
-
-    @cached_property
-    def _ends(self) -> tuple[tuple[list[Place], list[Place]], ...]:
-        """For each segment the places whose mean is its start, and those whose mean is its end."""
-        return tuple(_segment_ends(self.body, name) for name in self.segments)
+        """Refuse an unknown segment at once."""
+        known = marker_segments(self.body)
+        for name in self.segments:
+            if name not in known:
+                raise InputError(
+                    f"a marker is bound to the unknown segment '{name}'; known are {', '.join(known)}"
+                )
 
     @cached_property
     def width_m(self) -> Array:
-        """(M,) width of each marked segment [m]."""
-        stature = self.body.actor.stature_m
-        return np.array([WIDTHS_OF_STATURE[name.split(".")[0]] * stature for name in self.segments])
+        """(M,) width of each marked segment from the front [m]: the mean of its parts' ends."""
+        pieces = [[segment_piece(self.body, part) for part in marker_parts(name)] for name in self.segments]
+        return np.array([2.0 * np.mean([piece.half_widths[:, 0] for piece in parts]) for parts in pieces])
+
+    @cached_property
+    def _places(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """Joints (A,) and local places (A, 3) of all that makes an end, and its share in each, (M, 2, A)."""
+        joints: list[int] = []
+        local: list[Array] = []
+        shares: list[tuple[int, int, float]] = []
+        for marker, name in enumerate(self.segments):
+            for end, places in enumerate(_segment_ends(self.body, name)):
+                for joint, place in places:
+                    joints.append(joint)
+                    local.append(place)
+                    shares.append((marker, end, 1.0 / len(places)))
+        share = np.zeros((len(self.segments), 2, len(joints)))
+        for place_index, (marker, end, value) in enumerate(shares):
+            share[marker, end, place_index] = value
+        return np.array(joints, dtype=np.intp), np.stack(local), share
 
     def evaluate(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
         """The characteristics that the pose lets expect (paper, eq. 7 without noise).
@@ -123,22 +124,21 @@ class LineEnds:
 
     def _world_ends(self, pose: Pose) -> Array:
         """Both ends of each segment in the world, (..., M, 2, 3) [m]."""
-        rows = [
-            np.stack([np.mean([pose.place(*place) for place in end], axis=0) for end in pair], axis=-2)
-            for pair in self._ends
-        ]
-        return np.stack(rows, axis=-3)
+        return np.asarray(np.einsum("mea,...ai->...mei", self._places[2], self._world_places(pose)))
+
+    def _world_places(self, pose: Pose) -> Array:
+        joint, local, _ = self._places
+        turned = (pose.rotation[..., joint, :, :] @ local[..., None])[..., 0]
+        return np.asarray(pose.origin[..., joint, :] + turned)
 
     def _world_ends_jacobian(self, pose: Pose) -> Array:
         """Derivative of the ends, (..., M, 2, 3, D)."""
-        rows = []
-        for pair in self._ends:
-            ends = [
-                np.mean([pose.place_jacobian(joint, pose.place(joint, at)) for joint, at in end], axis=0)
-                for end in pair
-            ]
-            rows.append(np.stack(ends, axis=-3))
-        return np.stack(rows, axis=-4)
+        joint, _, share = self._places
+        screws = pose.screws[..., None, :, :]
+        # ω × p is -[p]× ω; all places at once, since a filter asks for one posture at a time.
+        linear = screws[..., 0:3, :] - cross_matrix(self._world_places(pose)) @ screws[..., 3:6, :]
+        moving = linear * self.body.skeleton.moved_by[joint][:, None, :]
+        return np.asarray(np.einsum("mea,...aid->...meid", share, moving))
 
 
 def observed_characteristics(tracks: RegionTracks) -> Array:
@@ -177,14 +177,12 @@ def _per_end(frame: ArrayLike | None) -> NDArray[np.intp] | None:
 
 
 def _segment_ends(body: Body, name: str) -> tuple[list[Place], list[Place]]:
+    """Places whose mean is the segment's start, and those whose mean is its end."""
     skeleton = body.skeleton
-    if name == "trunk":
+    if name == TRUNK:
         return _points_named(body, ("hip.L", "hip.R")), _points_named(body, ("shoulder.L", "shoulder.R"))
-    for segment in skeleton.segments:
-        if segment.name == name:
-            return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
-    known = ", ".join(["trunk", *(segment.name for segment in skeleton.segments)])
-    raise InputError(f"a marker is bound to the unknown segment '{name}'; known are {known}")
+    segment = next(segment for segment in skeleton.segments if segment.name == name)
+    return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
 
 
 def _points_named(body: Body, names: Sequence[str]) -> list[Place]:

@@ -26,7 +26,7 @@ from keymark.core.observation.line_ends import (
     observed_characteristics,
     residual,
 )
-from keymark.core.reconstruct import run
+from keymark.core.progress import run
 
 See = Callable[..., RegionTracks]
 ALWAYS_FAR = Memberships(near_ends=1e-9, far_starts=0.0, far_full=1e-9)

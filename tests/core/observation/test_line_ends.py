@@ -6,6 +6,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.body.shapes import marker_segments
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.tracks import RegionTracks
@@ -36,7 +37,7 @@ def test_the_rest_posture_gives_values_worked_out_by_hand() -> None:
     assert trunk[X] == pytest.approx(160.0)
     assert trunk[Y] == pytest.approx(120.0 - 0.5 * actor["trunk"] * PIXELS_PER_METRE)
     assert abs(trunk[ANGLE]) == pytest.approx(np.pi / 2)
-    assert trunk[LOG_RATIO] == pytest.approx(np.log(1.0 + (actor["trunk"] / (0.17 * 1.75)) ** 2))
+    assert trunk[LOG_RATIO] == pytest.approx(np.log(1.0 + (actor["trunk"] / (0.185 * 1.75)) ** 2))
     elbow = 0.5 * actor["shoulder_width"] + actor["upper_arm.L"]
     assert forearm[X] == pytest.approx(160.0 + (elbow + 0.5 * actor["forearm.L"]) * PIXELS_PER_METRE)
     assert forearm[ANGLE] == pytest.approx(0.0, abs=1e-12)
@@ -87,8 +88,8 @@ def test_a_batch_agrees_with_its_postures_one_by_one() -> None:
     np.testing.assert_allclose(slope[1, 2], observation.jacobian(one), rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.parametrize("segment", [segment.name for segment in HUMAN.segments])
-def test_every_segment_of_the_skeleton_can_carry_a_marker(segment: str) -> None:
+@pytest.mark.parametrize("segment", marker_segments(BODY))
+def test_every_segment_with_a_volume_can_carry_a_marker(segment: str) -> None:
     """Markers may sit anywhere: each segment has its own width and a finite prediction."""
     observation = LineEnds(BODY, CAMERA, (segment,))
     assert 0.03 < observation.width_m[0] < 0.5
