@@ -1,33 +1,149 @@
 """The whole way from a take to a motion: one generator that the operator, command line and tests share."""
 
-from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from typing import TypeVar
+from types import MappingProxyType
 
-Result = TypeVar("Result")
+import numpy as np
+from numpy.typing import NDArray
+
+from .body.kinematics import Body
+from .body.posture import Posture
+from .errors import InputError
+from .estimate.whole_clip import estimate_whole_clip
+from .footage.markers import track_markers
+from .footage.tracks import ExpectedRegions, RegionTracks
+from .motion import Motion
+from .observation.regions import MarkerPlacement, RegionModel
+from .prior.interpolation import interpolate
+from .prior.speed import marker_speed
+from .progress import Job, Progress, within
+from .take import Take, check_frame_count, open_clip
+
+Array = NDArray[np.float64]
+
+METHODS = ("map", "ekf", "interpolation")
+EXPECTED_RADIUS_M = 0.45
+"""How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
+EXTRACTION_SHARE = 0.6
+"""Share of the work that reading the footage usually is."""
 
 
-@dataclass(frozen=True)
-class Progress:
-    """How far a running job is."""
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """A motion and what it came from."""
 
-    stage: str
-    """What is being done, for a person: a short phrase."""
-    fraction: float
-    """Share of the whole job that is done, 0 to 1."""
+    motion: Motion
+    interpolation: Motion
+    """The keyframes interpolated without the footage, for comparison."""
+    tracks: RegionTracks
+    speed: Array
+    """(F,) V_sum of paper eq. 8 [px per frame]."""
+    notes: tuple[str, ...]
+    """What a person should know of the result, one sentence each."""
 
 
-Job = Generator[Progress, None, Result]
-"""A job that yields its progress and returns its result; closing it cancels it."""
+def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
+    """Reconstruct a take's motion.
+
+    Args:
+        take: A validated take with at least two keyframes.
+        method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
+
+    Yields:
+        Progress; closing the generator cancels the job, which has no effects of its own.
+
+    Returns:
+        The motion of every frame of the clip.
+
+    Raises:
+        InputError: The clip cannot be used, a colour matches nothing in it, or the method is unknown.
+        ConversionError: No motion could be computed.
+    """
+    if method not in METHODS:
+        raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
+    if len(take.keyframes) < 2:
+        raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
+    yield Progress("Opening the clip", 0.0)
+    clip = open_clip(take)
+    expected = expected_regions(take, clip.frame_count)
+    tracks = yield from within(
+        "Following the markers", track_markers(clip, take.markers, expected), 0.0, EXTRACTION_SHARE
+    )
+    check_frame_count(take, tracks.frame_count)
+    prior = interpolate(take.keyframes, tracks.frame_count)
+    baseline = _motion(take, tracks, prior, None, "interpolation")
+    motion = baseline
+    if method == "map":
+        motion = yield from _whole_clip(take, tracks, prior)
+    yield Progress("Done", 1.0)
+    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), _notes(take, tracks))
 
 
-def run(job: Job[Result], report: Callable[[Progress], None] | None = None) -> Result:
-    """Drive a job to its end and return its result, passing each progress to `report`."""
-    while True:
-        try:
-            progress = next(job)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
-        if report is not None:
-            report(progress)
+def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
+    """Where the interpolated keyframes put each marker, with a generous radius."""
+    pose = take.body.pose(interpolate(take.keyframes, frame_count))
+    placements = tuple(MarkerPlacement(style.segment) for style in take.markers)
+    frame = np.arange(frame_count)
+    predicted = RegionModel(take.body, take.camera, placements).evaluate(pose, frame)
+    depth = take.camera.depth(pose.posture.translation, frame)
+    radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
+    return ExpectedRegions(predicted.centroid, np.repeat(radius[:, None], len(placements), axis=1))
+
+
+def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
+    segments = tuple(style.segment for style in take.markers)
+    keyframes = tuple(keyframe.index for keyframe in take.keyframes)
+    estimate = estimate_whole_clip(take.body, take.camera, tracks, segments, prior, keyframes)
+    result = yield from within("Estimating the motion", estimate, EXTRACTION_SHARE, 1.0)
+    diagnostics = {
+        "residual_px": result.residual_px,
+        "quality": tracks.quality,
+        "posing_scale": np.array(result.posing_scale),
+    }
+    return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+
+
+def _motion(
+    take: Take,
+    tracks: RegionTracks,
+    posture: Posture,
+    covariance: Array | None,
+    method: str,
+    diagnostics: dict[str, Array] | None = None,
+) -> Motion:
+    pose = take.body.pose(posture)
+    points = take.body.points(pose)
+    if covariance is None:
+        spread = np.full((*points.shape, 3), np.nan)
+    else:
+        spread = point_covariance(take.body, posture, covariance)
+    return Motion(
+        take.body,
+        take.fps,
+        take.frame_start,
+        tracks.time_s,
+        posture,
+        points,
+        spread,
+        tuple(keyframe.index for keyframe in take.keyframes),
+        method,
+        MappingProxyType(diagnostics or {}),
+    )
+
+
+def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
+    """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D)."""
+    jacobian = body.points_jacobian(body.pose(posture))
+    return np.asarray(np.einsum("fpid,fde,fpje->fpij", jacobian, covariance, jacobian, optimize=True))
+
+
+def _notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may have gone wrong."""
+    notes = list(take.notes)
+    for marker, name in enumerate(tracks.names):
+        seen = int(tracks.visible[:, marker].sum())
+        if seen < 0.5 * tracks.frame_count:
+            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+    if tracks.variable_frame_rate:
+        notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
+    return tuple(notes)
