@@ -7,6 +7,7 @@ On all but 0, one line on standard error says why, and the output is as it was b
 import signal
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -29,8 +30,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     words = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in words
+    started = time.perf_counter()
     try:
         arguments = build_parser().parse_args(words)
+        arguments.started = started
         with _terminable():
             arguments.run(arguments)
         return DONE

@@ -1,5 +1,6 @@
 """What a command says: text or JSON on standard output, and progress."""
 
+import argparse
 import json
 import os
 import sys
@@ -10,6 +11,9 @@ from typing import Any
 
 from ...core.progress import Progress
 
+JOB_SHARE = 0.9
+"""What the job is of all a command does; the rest is writing files."""
+
 
 class Console:
     """Progress, text and results of one command, as its options ask for; also its stopwatch.
@@ -18,12 +22,12 @@ class Console:
     stage. With `--json` standard output gets one object and nothing else, with `--quiet` nothing at all.
     """
 
-    def __init__(self, *, quiet: bool, as_json: bool) -> None:
+    def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
         self.quiet, self.as_json = quiet, as_json
         self.seconds: dict[str, float] = {}
         """Time spent in each stage so far [s]."""
-        self._stage = ""
-        self._since = time.perf_counter()
+        self._stage = "Starting"
+        self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
 
     def __enter__(self) -> "Console":
@@ -41,10 +45,10 @@ class Console:
 
     def progress(self, progress: Progress) -> None:
         """Take note of how far the job is."""
-        if progress.stage != self._stage:
+        if progress.stage != self._stage and progress.fraction < 1.0:
             self.stage(progress.stage)
         if self._bar is not None:
-            self._bar.update(max(0.0, 100.0 * progress.fraction - self._bar.n))
+            self._bar.update(max(0.0, 100.0 * JOB_SHARE * progress.fraction - self._bar.n))
 
     def stage(self, name: str) -> None:
         """Begin a stage; the time until the next one counts as its own."""
@@ -61,6 +65,7 @@ class Console:
         self._close_bar()
         if self.as_json:
             seconds = {name: round(value, 3) for name, value in self.seconds.items()}
+            seconds["total"] = round(sum(self.seconds.values()), 3)
             self._write(json.dumps({**result, "seconds": seconds}, allow_nan=False))
         elif not self.quiet:
             self._write(text)
@@ -82,6 +87,11 @@ class Console:
             print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
             return
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def arguments_console(arguments: argparse.Namespace) -> Console:
+    """The console that a command line asks for."""
+    return Console(quiet=arguments.quiet, as_json=arguments.json, started=arguments.started)
 
 
 def _bar() -> Any:

@@ -89,7 +89,7 @@ def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: b
     where `place` does not, the files are written into `output` under hidden names first.
     """
     level = place if place.parent == output.parent else output
-    hidden = {name: level / f".{place.name}-{name}" for name in (BLEND, BVH)}
+    hidden = {name: level / f"{place.name}-{name}" for name in (BLEND, BVH)}
     try:
         with blender_silence(debug):
             from ..bridge.scene_file import write_scene

@@ -3,13 +3,13 @@
 import argparse
 from typing import Any
 
-from .console import Console
+from .console import arguments_console
 from .conversion import Conversion, convert
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
     """Convert the take that the command line names, and say what was made."""
-    with Console(quiet=arguments.quiet, as_json=arguments.json) as console:
+    with arguments_console(arguments) as console:
         conversion = convert(
             arguments.take,
             arguments.output,

@@ -10,7 +10,7 @@ from ...core.reconstruct import reconstruct
 from ...core.score import Score, read_truth, score_points
 from ...core.take import Take
 from .arguments import ROOT
-from .console import Console
+from .console import arguments_console
 from .conversion import BLEND, REPORT, convert
 from .convert import summary
 
@@ -26,7 +26,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
         raise InputError(
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
         )
-    with Console(quiet=arguments.quiet, as_json=arguments.json) as console:
+    with arguments_console(arguments) as console:
         done = convert(DEMO, arguments.output, console, keyframes=KEYFRAMES, debug=arguments.debug)
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf"), None)

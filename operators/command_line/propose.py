@@ -13,12 +13,12 @@ from ...core.progress import Job, run, within
 from ...core.report.canvas import write_png
 from ...core.report.speed_plot import speed_plot
 from ...core.take import Take, open_clip, read_take
-from .console import Console
+from .console import arguments_console
 
 
 def propose_command(arguments: argparse.Namespace) -> None:
     """Say which frames of the take are worth posing."""
-    with Console(quiet=arguments.quiet, as_json=arguments.json) as console:
+    with arguments_console(arguments) as console:
         take = read_take(arguments.take, keyframes_required=False)
         speed = run(_speed(take), console.progress)
         indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
