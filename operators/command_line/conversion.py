@@ -56,9 +56,9 @@ def convert(
         InputError: The take or the output folder is unusable.
         ConversionError: No motion could be computed or written, or there is no Blender to write with.
     """
-    _require_blender()
     console.stage("Reading the take")
     take = read_take(folder, keyframes)
+    _require_blender()
     with output_folder(output, BELONGINGS) as place:
         reconstruction = run(reconstruct(take, method), console.progress)
         console.stage("Writing the motion")
