@@ -21,7 +21,7 @@ from ..observation import depths
 from ..observation.regions import MarkerPlacement, RegionModel
 from .calibration import KnownFrames, calibrate
 from .clip_state import ClipState
-from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_std
+from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_covariance
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
@@ -135,6 +135,7 @@ class _Problem:
         model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
         self.scale = pixels_per_metre(model, body.points(pose), frame)
         self.model = RegionModel(body, camera, self._calibrate(model))
+        self.posing = posing_covariance(body, body.pose(prior[self.keyframes]))
         self.posing_scale = self._posing_scale()
         self.terms: list[Term] = [
             self._quadratic(),
@@ -217,11 +218,12 @@ class _Problem:
                 residual[k][usable[k]].ravel(),
                 jacobian[k][usable[k]].reshape(-1, jacobian.shape[-1]),
                 known.std_px[k][usable[k]].ravel() ** 2,
+                self.posing[k],
             )
             for k in range(len(self.keyframes))
             if usable[k].any()
         ]
-        return estimate_posing_scale(self.body.skeleton, innovations)
+        return estimate_posing_scale(innovations)
 
     def _quadratic(self) -> QuadraticTerm:
         """Smoothness of the deviation, trust in keyframes, and the biases' slow drift."""
@@ -234,9 +236,7 @@ class _Problem:
         pace = np.median(self.step_s) / REFERENCE_STEP_S if len(self.step_s) else 1.0
         builder.add(posture, (1.0, -2.0, 1.0), motion.acceleration_share * natural * pace**1.5)
         builder.add(posture, (1.0,), motion.size_share * natural)
-        posed = np.full((self.frames, dofs), np.inf)
-        posed[self.keyframes] = self.posing_scale * posing_std(skeleton)
-        builder.add(posture, (1.0,), posed)
+        builder.add_blocks(self.keyframes, np.linalg.inv(self.posing * self.posing_scale**2))
         spread = np.tile(
             np.repeat([noise.bias_centroid_std_m, noise.bias_shape_std_m], (2, FEATURES - 2)), markers
         )
