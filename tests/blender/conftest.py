@@ -68,7 +68,7 @@ def random_posture() -> Callable[[int], Posture]:
 
 @pytest.fixture
 def shown_points() -> Callable[[bpy.types.Object], np.ndarray]:
-    """A function from an armature to the 13 principal points its bones show in the world, by Blender alone."""
+    """A function from an armature to the 13 principal points its bones show in the world."""
     ends = {"head": ("head", "tail"), "shoulder": ("upper_arm", "head"), "elbow": ("forearm", "head")}
     ends |= {"wrist": ("forearm", "tail"), "hip": ("thigh", "head"), "knee": ("shin", "head")}
     ends |= {"ankle": ("shin", "tail")}

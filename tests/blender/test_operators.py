@@ -66,7 +66,7 @@ def test_a_take_goes_out_and_comes_back(opened: bpy.types.Scene, tiny_take: Take
 def test_from_an_empty_scene_to_a_motion(
     tiny_take: Take, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """Load, build, mark, pose, reconstruct: the result lies near the truth, keyframes stay in their Action."""
+    """Load, build, mark, pose, reconstruct: the result lies near the truth, keyframes stay."""
     scene = bpy.context.scene
     settings = scene.keymark
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))

@@ -131,7 +131,7 @@ def test_hands_and_feet_keep_what_the_animator_gave_them(
 def test_a_pose_beyond_the_freedoms_becomes_the_nearest_posture_and_says_so(
     actor: bpy.types.Object, body: Body
 ) -> None:
-    """A forearm bent sideways is projected; the distance is the wrist's way back, and the rest is untouched."""
+    """A forearm bent sideways is projected; the distance is the wrist's way back; the rest stays."""
     forearm = actor.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.6, 0.2, 0.3)  # bending, pronation, and a sideways turn the elbow cannot make
     reading = read_posture(actor, body)
