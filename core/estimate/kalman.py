@@ -99,6 +99,11 @@ class FuzzyKalmanFilter:
         body, camera = self.line_ends.body, self.line_ends.camera
         return depths.evaluate(body, camera, body.pose(self.prior), np.arange(self.prior.batch[0]))
 
+    @cached_property
+    def _gates(self) -> Array:
+        """(5,) largest NIS that is believed of a marker's 0 to 4 rows."""
+        return np.asarray([0.0, *chi2.ppf(self.options.gate_probability, np.arange(1, 5))])
+
     @property
     def _deviations(self) -> Array:
         return self.line_ends.body.skeleton.deviations
@@ -165,7 +170,7 @@ class FuzzyKalmanFilter:
         Args:
             predicted: (..., M, 4) characteristics.
             observed: (..., M, 4) characteristics.
-            quality: (..., M) in 0..1; noise grows with its inverse.
+            quality: (..., M) in 0..1, about the share of the region that is seen; variances grow with its inverse.
             width_px: (..., M) width of each segment in the image [px].
         """
         options = self.options
@@ -177,7 +182,7 @@ class FuzzyKalmanFilter:
         weight = angle_weight(np.minimum(predicted[..., LOG_RATIO], observed[..., LOG_RATIO]))
         std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, LEAST_ANGLE_WEIGHT)
         std[..., LOG_RATIO] = options.log_ratio_std
-        return np.asarray(std / np.maximum(quality, LEAST_QUALITY)[..., None])
+        return np.asarray(std / np.sqrt(np.maximum(quality, LEAST_QUALITY))[..., None])
 
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
@@ -194,8 +199,7 @@ class FuzzyKalmanFilter:
             H, nu = matrix[marker, seen], scaled[marker, seen]
             if not len(nu):
                 continue
-            limit = chi2.ppf(self.options.gate_probability, len(nu))
-            gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > limit
+            gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > self._gates[len(nu)]
             if not gated[marker]:
                 rows.append(H)
                 innovation.append(nu)
