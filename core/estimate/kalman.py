@@ -63,7 +63,7 @@ class FilterResult:
     row_count: NDArray[np.intp]
     """(F,) number of rows that were used."""
     gated: NDArray[np.bool_]
-    """(F, M) whether a marker was seen but not believed."""
+    """(F, M) whether a marker was so unlikely that it was believed in part only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +170,7 @@ class FuzzyKalmanFilter:
         Args:
             predicted: (..., M, 4) characteristics.
             observed: (..., M, 4) characteristics.
-            quality: (..., M) in 0..1, about the share of the region that is seen; variances grow with its inverse.
+            quality: (..., M) in 0..1, about the share of the region that is seen; divides the variance.
             width_px: (..., M) width of each segment in the image [px].
         """
         options = self.options
@@ -187,7 +187,7 @@ class FuzzyKalmanFilter:
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
     ) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-        """Scaled rows and innovations of the markers seen and believed; which were seen only, (M,)."""
+        """Scaled rows and innovations of the markers seen; which of them are past their gate, (M,)."""
         predicted = self.line_ends.evaluate(pose, frame)
         std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))
         scaled = residual(observed, predicted) / std
@@ -199,10 +199,12 @@ class FuzzyKalmanFilter:
             H, nu = matrix[marker, seen], scaled[marker, seen]
             if not len(nu):
                 continue
-            gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > self._gates[len(nu)]
-            if not gated[marker]:
-                rows.append(H)
-                innovation.append(nu)
+            surprise = normalized_innovation_squared(state.covariance, H, nu)
+            gated[marker] = surprise > self._gates[len(nu)]
+            # Left out altogether, a marker could never call back an estimate that has lost it.
+            weight = (self._gates[len(nu)] / surprise) ** 0.5 if gated[marker] else 1.0
+            rows.append(H * weight)
+            innovation.append(nu * weight)
         return rows, innovation, gated
 
 
