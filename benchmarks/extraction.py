@@ -1,8 +1,8 @@
 """How well and how fast the markers are found: against the exactly visible pixels of rendered takes.
 
 Run it from anywhere: `python benchmarks/extraction.py [TAKE ...]`; without takes, those of `shared/takes`
-beside the repository. A take is a folder with take.json, its clip, and visibility.json (the markers' pixels and
-centroids).
+beside the repository. A take is a folder with take.json, its clip, and visibility.json (the markers' pixels
+and centroids).
 """
 
 import argparse
