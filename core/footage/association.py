@@ -190,7 +190,10 @@ def region_costs(
     cost -= _CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
     cost += np.where(clutter, _STILL_COST, 0.0)
     if expected_centre is not None and expected_radius is not None:
-        offset = np.linalg.norm(found.centroid - expected_centre[found.frame], axis=1)
-        relative = offset / np.maximum(expected_radius[found.frame], 1.0)
-        cost += np.nan_to_num(np.minimum(0.5 * (2.0 * relative) ** 2, 2.0 * _RESTART_COST))
+        # A container's claimed frame count may fall short: frames beyond it have no expectation.
+        known = np.flatnonzero(found.frame < len(expected_centre))
+        frame = found.frame[known]
+        offset = np.linalg.norm(found.centroid[known] - expected_centre[frame], axis=1)
+        relative = offset / np.maximum(expected_radius[frame], 1.0)
+        cost[known] += np.nan_to_num(np.minimum(0.5 * (2.0 * relative) ** 2, 2.0 * _RESTART_COST))
     return np.asarray(cost)
