@@ -92,6 +92,16 @@ class RegionModel:
         return np.repeat(np.arange(len(counts)), counts)
 
     @cached_property
+    def half_widths_m(self) -> Array:
+        """(M,) mean half-width of the limb each marker sits on [m]."""
+        return np.array(
+            [
+                np.mean([piece.half_widths for piece in placement.pieces(self.body)])
+                for placement in self.placements
+            ]
+        )
+
+    @cached_property
     def _parts(self) -> PieceStack:
         """The whole body, O parts."""
         return PieceStack.of(body_pieces(self.body))
