@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import gammaincinv  # scipy.stats, which has chi2 by name, takes a second to import
 
 from ..body import rotations
 from ..body.kinematics import Body, Pose
@@ -194,7 +194,7 @@ class FuzzyKalmanFilter:
             H, nu = matrix[marker, seen], scaled[marker, seen]
             if not len(nu):
                 continue
-            limit = chi2.ppf(self.options.gate_probability, len(nu))
+            limit = 2.0 * gammaincinv(0.5 * len(nu), self.options.gate_probability)  # of a χ² with len(nu)
             gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > limit
             if not gated[marker]:
                 rows.append(H)
