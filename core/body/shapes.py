@@ -147,5 +147,3 @@ def marker_segments(body: Body) -> tuple[str, ...]:
 def marker_parts(segment: str) -> tuple[str, ...]:
     """Segments that a marker bound to `segment` covers."""
     return TRUNK_PARTS if segment == TRUNK else (segment,)
-
-

@@ -31,7 +31,9 @@ def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) ->
     vector = np.random.default_rng(9).normal(size=(frames, SIZE))
     np.testing.assert_allclose(banded.multiply(vector).ravel(), dense @ vector.ravel(), atol=1e-10)
     factor = banded.factorise()
-    np.testing.assert_allclose(factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10)
+    np.testing.assert_allclose(
+        factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10
+    )
     inverse = np.linalg.inv(dense)
     for t, block in enumerate(factor.covariance_blocks()):
         part = slice(t * SIZE, (t + 1) * SIZE)
