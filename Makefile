@@ -18,6 +18,7 @@ define make_venv
 python=$$($(find_python) $(2) $(3)) && \
 { [ -x $(1)/bin/python ] || "$$python" -m venv --clear $(1); } && \
 echo "Installing into $(1) ..." && \
+$(1)/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip && \
 $(1)/bin/python -m pip install --quiet --disable-pip-version-check $(4) && \
 touch $(1)/ready
 endef

@@ -29,6 +29,7 @@ def write_motion(motion: Motion, path: Path) -> None:
     """Write a motion as `motion.json`, beside and moved into place; the same motion gives the same bytes.
 
     Lengths are in metres and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
+    A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
 
     Args:
         motion: The motion, F frames.
@@ -39,7 +40,6 @@ def write_motion(motion: Motion, path: Path) -> None:
     """
     _check_finite(motion)
     names = motion.body.skeleton.point_names
-    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), metres² to millimetres²
     fields = {
         "schema_version": SCHEMA_VERSION,
         "fps": motion.fps,
@@ -49,8 +49,7 @@ def write_motion(motion: Motion, path: Path) -> None:
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "time_s": rounded(motion.time_s),
         "points": dict(zip(names, rounded(np.swapaxes(motion.points, 0, 1)), strict=True)),
-        "sigma_m": dict(zip(names, rounded(motion.sigma_m.T), strict=True)),
-        "covariance_mm2": dict(zip(names, _significant(np.swapaxes(covariance, 0, 1)), strict=True)),
+        **(_uncertainty(motion) if _has_covariance(motion) else {}),
         "posture": posture_to_json(motion.posture),
         "actor": {"segments_m": dict(motion.body.actor.segments_m)},
         "diagnostics": {name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
@@ -75,10 +74,6 @@ def read_motion(path: Path) -> Motion:
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     skeleton = body.skeleton
-    covariance = np.zeros((count, len(skeleton.points), 3, 3))
-    upper = 1e-6 * np.moveaxis(_rows(fields, "covariance_mm2", skeleton.point_names, (count, 6)), 0, 1)
-    covariance[:, :, UPPER[0], UPPER[1]] = upper
-    covariance[:, :, UPPER[1], UPPER[0]] = upper
     frame_start = fields.whole("frame_start", -(10**7), 10**7)
     return Motion(
         body=body,
@@ -87,19 +82,39 @@ def read_motion(path: Path) -> Motion:
         time_s=_array(fields.required("time_s", "a list of seconds"), (count,), f"{path}: time_s"),
         posture=Posture.from_vector(skeleton, _rows(fields, "posture", skeleton.dof_names, (count,)).T),
         points=np.moveaxis(_rows(fields, "points", skeleton.point_names, (count, 3)), 0, 1),
-        point_covariance=covariance,
+        point_covariance=_covariance(fields, skeleton.point_names, count),
         keyframe_indices=_keyframe_indices(fields, frame_start, count),
         method=fields.text("method", "the name of a method"),
-        diagnostics=_diagnostics(fields, count),
+        diagnostics=_diagnostics(fields),
     )
 
 
-def _check_finite(motion: Motion) -> None:
-    arrays = {
-        "points": motion.points,
-        "covariance": motion.point_covariance,
-        "posture": motion.posture.to_vector(),
+def _has_covariance(motion: Motion) -> bool:
+    return not np.isnan(motion.point_covariance).all()
+
+
+def _uncertainty(motion: Motion) -> dict[str, Any]:
+    names = motion.body.skeleton.point_names
+    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), metres² to millimetres²
+    return {
+        "sigma_m": dict(zip(names, rounded(motion.sigma_m.T), strict=True)),
+        "covariance_mm2": dict(zip(names, _significant(np.swapaxes(covariance, 0, 1)), strict=True)),
     }
+
+
+def _covariance(fields: Fields, names: tuple[str, ...], count: int) -> Array:
+    covariance = np.full((count, len(names), 3, 3), np.nan)
+    if fields.has("covariance_mm2"):
+        upper = 1e-6 * np.moveaxis(_rows(fields, "covariance_mm2", names, (count, 6)), 0, 1)
+        covariance[:, :, UPPER[0], UPPER[1]] = upper
+        covariance[:, :, UPPER[1], UPPER[0]] = upper
+    return covariance
+
+
+def _check_finite(motion: Motion) -> None:
+    arrays = {"points": motion.points, "posture": motion.posture.to_vector()}
+    if _has_covariance(motion):
+        arrays["covariance"] = motion.point_covariance
     for name, values in arrays.items():
         bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
         if bad.any():
@@ -144,15 +159,13 @@ def _keyframe_indices(fields: Fields, frame_start: int, count: int) -> tuple[int
     return tuple(frame - frame_start for frame in frames)
 
 
-def _diagnostics(fields: Fields, count: int) -> Mapping[str, Array]:
+def _diagnostics(fields: Fields) -> Mapping[str, Array]:
     rows: dict[str, Array] = {}
     for name, value in fields.child("diagnostics", "an object of lists by name").values.items():
         try:
             rows[name] = np.asarray(value, dtype=np.float64)  # null becomes NaN
-        except (TypeError, ValueError):
-            rows[name] = np.empty(0)
-        if rows[name].shape[:1] != (count,):
+        except (TypeError, ValueError) as error:
             raise InputError(
-                f"{fields.where}: diagnostics.{name} is {shown(value)}; it must be a list of {count} rows"
-            )
+                f"{fields.where}: diagnostics.{name} is {shown(value)}; it must be numbers, or lists of them"
+            ) from error
     return MappingProxyType(rows)

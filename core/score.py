@@ -121,7 +121,7 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     wanted = list(range(frame_start, frame_start + frame_count))
     if frames != wanted:
         raise InputError(
-            f"{path}: frames is {shown(frames)}; it must list {wanted[0]} to {wanted[-1]}, each once, in order"
+            f"{path}: frames is {shown(frames)}; it must list {wanted[0]} to {wanted[-1]} in order"
         )
     points = fields.child("points", "an object of 13 points")
     places = [points.required(name, "a list of [x, y, z]") for name in HUMAN.point_names]
@@ -130,7 +130,7 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     except (TypeError, ValueError):
         truth = np.empty(0)
     if truth.shape != (len(places), frame_count, 3) or not np.isfinite(truth).all():
-        raise InputError(f"{points.where}: each point needs {frame_count} [x, y, z] in metres")
+        raise InputError(f"{points.where}: each point needs {frame_count} [x, y, z] in m")
     return np.swapaxes(truth, 0, 1)
 
 

@@ -1,15 +1,37 @@
-"""Keymark in Blender's user interface and on its command line: one operator a file."""
+"""Keymark in Blender's user interface and on its command line: one operator a file.
 
+Nothing is imported before `register()`: the command line of an ordinary Python environment shares this folder.
+"""
+
+from importlib import import_module
 from types import ModuleType
 
-MODULES: tuple[ModuleType, ...] = ()
+MODULES = (
+    "ui.properties",
+    "open_take",
+    "save_take",
+    "load_footage",
+    "build_actor",
+    "add_marker",
+    "remove_marker",
+    "pick_marker_color",
+    "propose_keyframes",
+    "jump_to_proposal",
+    "store_keyframe",
+    "reconstruct",
+    "show_action",
+    "ui.panels",
+    "command",
+)
+"""What is registered, in this order: properties before the operators and panels that use them."""
 
 
 def register() -> None:
     """Register every module in order; if one fails, take back those before it and raise."""
     done: list[ModuleType] = []
     try:
-        for module in MODULES:
+        for name in MODULES:
+            module = import_module(f".{name}", __package__)
             module.register()
             done.append(module)
     except Exception:
@@ -20,5 +42,5 @@ def register() -> None:
 
 def unregister() -> None:
     """Unregister every module, in the reverse order."""
-    for module in reversed(MODULES):
-        module.unregister()
+    for name in reversed(MODULES):
+        import_module(f".{name}", __package__).unregister()

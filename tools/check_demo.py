@@ -32,9 +32,7 @@ def check_motion(motion: dict, take: dict, truth: dict) -> list[str]:
         rows = np.array(truth["frames"]) - take["frame_start"]
         errors.append(np.linalg.norm(points[rows] - np.array(true_points), axis=-1))
     if errors and np.mean(errors) > LARGEST_MEAN_ERROR_M:
-        wrong.append(
-            f"the mean error is {1e3 * np.mean(errors):.1f} mm, over {1e3 * LARGEST_MEAN_ERROR_M:.0f}"
-        )
+        wrong.append(f"the mean error is {np.mean(errors):.4f} m, over {LARGEST_MEAN_ERROR_M}")
     return wrong
 
 

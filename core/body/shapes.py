@@ -5,6 +5,7 @@ circumferences (Gordon et al. 2014, *2012 Anthropometric Survey of U.S. Army Per
 They start the calibration; the footage corrects them.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,10 +50,6 @@ class Piece:
     half_widths: Array
     """(2, 2) at start and end: lateral and sagittal half-width [m]."""
 
-    def ends(self, pose: Pose) -> tuple[Array, Array]:
-        """World places (..., 3) of both ends [m]."""
-        return pose.place(self.joint, self.start), pose.place(self.joint, self.end)
-
     def cut(self, first: float, last: float) -> "Piece":
         """The part between two shares of the length; shares outside 0 to 1 extend it."""
         along = self.end - self.start
@@ -78,6 +75,44 @@ class Piece:
             self.sagittal,
             self.half_widths * girth,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class PieceStack:
+    """Several pieces side by side, so that all are placed and seen in one go."""
+
+    segments: tuple[str, ...]
+    joint: NDArray[np.intp]
+    """(Q,) the joint each piece is fixed to."""
+    start: Array
+    """(Q, 3), like the other fields of `Piece` stacked."""
+    end: Array
+    lateral: Array
+    sagittal: Array
+    half_widths: Array
+    """(Q, 2, 2)."""
+
+    @classmethod
+    def of(cls, pieces: Iterable[Piece]) -> "PieceStack":
+        """Stack pieces in order."""
+        listed = list(pieces)
+        return cls(
+            tuple(piece.segment for piece in listed),
+            np.array([piece.joint for piece in listed], dtype=np.intp),
+            np.stack([piece.start for piece in listed]),
+            np.stack([piece.end for piece in listed]),
+            np.stack([piece.lateral for piece in listed]),
+            np.stack([piece.sagittal for piece in listed]),
+            np.stack([piece.half_widths for piece in listed]),
+        )
+
+    def place(self, pose: Pose, local: Array) -> Array:
+        """World places (F, Q, 3) of one point (Q, 3) a piece."""
+        return np.asarray(pose.origin[:, self.joint] + self.turn(pose, local))
+
+    def turn(self, pose: Pose, direction: Array) -> Array:
+        """World directions (F, Q, 3) of one direction (Q, 3) a piece."""
+        return np.asarray((pose.rotation[:, self.joint] @ direction[..., None])[..., 0])
 
 
 def segment_piece(body: Body, name: str) -> Piece:

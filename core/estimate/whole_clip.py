@@ -21,11 +21,11 @@ from ..observation import depths
 from ..observation.regions import MarkerPlacement, RegionModel
 from .calibration import KnownFrames, calibrate
 from .clip_state import ClipState
-from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_std
+from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_covariance
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, feature_rows, pixels_per_metre
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, feature_rows, limb_widths
 from .terms.stillness import StillnessTerm
 from .terms.term import NormalEquations, Term
 
@@ -43,9 +43,9 @@ REFERENCE_STEP_S = 1.0 / 30.0
 class MotionModel:
     """How the deviation from the prior behaves over time, in shares of its natural size."""
 
-    acceleration_share: float = 0.15
+    acceleration_share: float = 0.25
     """Standard deviation of the second difference at 30 frames a second."""
-    size_share: float = 2.0
+    size_share: float = 4.0
     """Standard deviation of the deviation itself: weak, for what nothing else determines."""
 
 
@@ -133,12 +133,13 @@ class _Problem:
         pose = body.pose(prior)
         frame = np.arange(self.frames)
         model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
-        self.scale = pixels_per_metre(model, body.points(pose), frame)
+        self.width_px = limb_widths(model, body.points(pose), frame)
         self.model = RegionModel(body, camera, self._calibrate(model))
+        self.posing = posing_covariance(body, body.pose(prior[self.keyframes]))
         self.posing_scale = self._posing_scale()
         self.terms: list[Term] = [
             self._quadratic(),
-            RegionTerm(self.model, self.observed, options.regions, self.scale),
+            RegionTerm(self.model, self.observed, options.regions, self.width_px),
             DepthTerm(camera, depths.evaluate(body, camera, pose, frame)),
             LimitTerm(),
         ]
@@ -181,12 +182,9 @@ class _Problem:
         )
 
     def _feature_variance(self, index: NDArray[np.intp]) -> Array:
-        """(K, 5) variance of a region's features at a true posture, slow biases included [px²]."""
-        noise = self.options.regions
-        centroid = np.hypot(noise.surface_centroid_std_m, noise.bias_centroid_std_m)
-        shape = np.hypot(noise.surface_shape_std_m, noise.bias_shape_std_m)
-        spread = np.repeat([centroid, shape], (2, FEATURES - 2))
-        return np.asarray(noise.pixel_std_px**2 + (self.scale[index, None] * spread) ** 2)
+        """(K, M, 5) variance of a region's features at a true posture, slow biases included [px²]."""
+        noise, width = self.options.regions, self.width_px[index]
+        return np.asarray(noise.pixel_std_px**2 + noise.surface_std(width) ** 2 + noise.bias_std(width) ** 2)
 
     def _known(self) -> KnownFrames:
         index = self.keyframes
@@ -199,8 +197,6 @@ class _Problem:
             observed.quality[index],
         )
         std = np.sqrt(self._feature_variance(index))
-        markers = observed.quality.shape[1]
-        std = np.repeat(std[:, None], markers, axis=1)
         return KnownFrames(self.body.pose(self.prior[index]), index, picked, std)
 
     def _calibrate(self, model: RegionModel) -> tuple[MarkerPlacement, ...]:
@@ -217,11 +213,12 @@ class _Problem:
                 residual[k][usable[k]].ravel(),
                 jacobian[k][usable[k]].reshape(-1, jacobian.shape[-1]),
                 known.std_px[k][usable[k]].ravel() ** 2,
+                self.posing[k],
             )
             for k in range(len(self.keyframes))
             if usable[k].any()
         ]
-        return estimate_posing_scale(self.body.skeleton, innovations)
+        return estimate_posing_scale(innovations)
 
     def _quadratic(self) -> QuadraticTerm:
         """Smoothness of the deviation, trust in keyframes, and the biases' slow drift."""
@@ -234,13 +231,8 @@ class _Problem:
         pace = np.median(self.step_s) / REFERENCE_STEP_S if len(self.step_s) else 1.0
         builder.add(posture, (1.0, -2.0, 1.0), motion.acceleration_share * natural * pace**1.5)
         builder.add(posture, (1.0,), motion.size_share * natural)
-        posed = np.full((self.frames, dofs), np.inf)
-        posed[self.keyframes] = self.posing_scale * posing_std(skeleton)
-        builder.add(posture, (1.0,), posed)
-        spread = np.tile(
-            np.repeat([noise.bias_centroid_std_m, noise.bias_shape_std_m], (2, FEATURES - 2)), markers
-        )
-        size = self.scale[:, None] * spread
+        builder.add_blocks(self.keyframes, np.linalg.inv(self.posing * self.posing_scale**2))
+        size = noise.bias_std(self.width_px).reshape(self.frames, -1)
         kept = np.exp(-self.step_s / noise.bias_time_s)[:, None] if len(self.step_s) else np.zeros((0, 1))
         builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))
         first = np.full_like(size, np.inf)

@@ -1,8 +1,8 @@
 """Which regions are the marker: one path through a whole clip's regions, and the pieces that belong to it.
 
-All regions of a marker's colour are recorded in one pass over the clip as a few numbers each. The path is then the
-cheapest one through them: it pays for jumps, for regions unlike the marker, and for frames in which it is hidden.
-Costs are negative logarithms of likelihood ratios.
+All regions of a marker's colour are recorded in one pass over the clip as a few numbers each. The path is
+then the cheapest one through them: it pays for jumps, for regions unlike the marker, and for frames in which
+it is hidden. Costs are negative logarithms of likelihood ratios.
 """
 
 from __future__ import annotations
@@ -28,10 +28,14 @@ _LONGEST_GAP: Final = 12
 _AREA_DEVIATION: Final = 1.2
 """Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
 _STEP_IN_SIZES: Final = 0.35
-"""Standard deviation of a step between frames, in sizes of the marker: limbs move about their own size in 0.1 s."""
-_STILL_SHARE: Final = 0.6
+"""Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
+_STILL_SHARE: Final = 0.5
 _STILL_STEP_PX: Final = 1.5
-_STILL_COST: Final = 12.0
+_STILL_LOG_AREA: Final = 0.4
+_STILL_COST: Final = 20.0
+_RIVAL_SHARE: Final = 0.25
+_RIVAL_AREA: Final = 0.1
+"""A moving region of a tenth of a still one's area is no speck of noise beside it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,30 +83,44 @@ def candidates(regions: Sequence[Sequence[Region]]) -> Candidates:
     )
 
 
-def typical_area(found: Candidates) -> float:
-    """Return the usual area of the largest region of a frame in px; 0 without any region."""
-    largest = [found.area[a:b].max() for a, b in zip(found.start[:-1], found.start[1:], strict=True) if b > a]
-    return float(np.median(largest)) if largest else 0.0
+def typical_area(found: Candidates, clutter: BoolArray) -> float:
+    """Return the usual area in px of a frame's largest region that is not clutter; 0 without any."""
+    largest = np.zeros(len(found.start) - 1)
+    np.maximum.at(largest, found.frame, np.where(clutter, 0.0, found.area))
+    return float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0
 
 
-def still_regions(found: Candidates) -> BoolArray:
-    """Mark regions that stay in place for most of the clip while others of their colour move: clutter, (N,).
+def still_clutter(found: Candidates) -> BoolArray:
+    """Mark regions (N,) that stay in place for most of the clip while others of their colour move.
 
-    A marker that itself rests is not marked, for nothing else of its colour is seen then.
+    A marker that itself rests is not marked: nothing else of its colour is seen at the same time.
     """
     frames = len(found.start) - 1
+    still = _still(found, frames)
+    if not still.any():
+        return still
+    rest = float(np.median(found.area[still]))
+    with_still = np.zeros(frames, dtype=np.bool_)
+    with_still[found.frame[still]] = True
+    rival = ~still & with_still[found.frame] & (found.area >= _RIVAL_AREA * rest)
+    rivals = len(np.unique(found.frame[rival]))
+    return still if rivals >= _RIVAL_SHARE * frames else np.zeros_like(still)
+
+
+def _still(found: Candidates, frames: int) -> BoolArray:
+    """Mark regions with like ones at their place in most frames."""
     still = np.zeros(len(found.frame), dtype=np.bool_)
-    centroid = found.centroid
+    centroid, log_area = found.centroid, np.log(found.area)
+    order = np.argsort(centroid[:, 0])
+    column = centroid[order, 0]
     for index in range(len(found.frame)):
-        near = np.abs(centroid - centroid[index]).max(axis=1) <= _STILL_STEP_PX
-        near &= np.abs(np.log(found.area / found.area[index])) < 0.4
-        still[index] = len(np.unique(found.frame[near])) >= _STILL_SHARE * frames
-    area = np.where(still, 0.0, found.area)
-    moving = np.zeros(frames)
-    np.maximum.at(moving, found.frame, area)
-    rest = np.median(found.area[still]) if still.any() else 0.0
-    rivals = np.count_nonzero(moving >= 0.3 * rest)
-    return still if rivals >= 0.3 * frames else np.zeros_like(still)
+        first = np.searchsorted(column, centroid[index, 0] - _STILL_STEP_PX)
+        last = np.searchsorted(column, centroid[index, 0] + _STILL_STEP_PX)
+        beside = order[first:last]
+        near = np.abs(centroid[beside, 1] - centroid[index, 1]) <= _STILL_STEP_PX
+        near &= np.abs(log_area[beside] - log_area[index]) < _STILL_LOG_AREA
+        still[index] = len(np.unique(found.frame[beside[near]])) >= _STILL_SHARE * frames
+    return still
 
 
 def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
@@ -148,6 +166,7 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
 
 def region_costs(
     found: Candidates,
+    clutter: BoolArray,
     usual_area: float,
     expected_centre: FloatArray | None,
     expected_radius: FloatArray | None,
@@ -156,6 +175,7 @@ def region_costs(
 
     Args:
         found: the regions.
+        clutter: (N,) regions known to be none of the marker.
         usual_area: area of the marker in px.
         expected_centre: (F, 2) px or None.
         expected_radius: (F,) px or None.
@@ -164,7 +184,7 @@ def region_costs(
         return np.zeros(0)
     cost = 0.5 * (np.log(found.area / usual_area) / _AREA_DEVIATION) ** 2
     cost += -np.log(np.clip(found.certainty, 1e-3, 1.0))
-    cost += np.where(still_regions(found), _STILL_COST, 0.0)
+    cost += np.where(clutter, _STILL_COST, 0.0)
     if expected_centre is not None and expected_radius is not None:
         offset = np.linalg.norm(found.centroid - expected_centre[found.frame], axis=1)
         relative = offset / np.maximum(expected_radius[found.frame], 1.0)

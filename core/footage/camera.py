@@ -1,7 +1,8 @@
 """The pinhole camera that saw the performance, in Blender's conventions, with its lens distortion.
 
-Camera coordinates look along local -Z with +Y up; *depth* is the distance along the viewing axis, positive in front.
-Pixels are x right, y down, with the origin at the outer corner of the top left pixel. Sensor fit is horizontal.
+Camera coordinates look along local -Z with +Y up; *depth* is the distance along the viewing axis, positive in
+front. Pixels are x right, y down, with the origin at the outer corner of the top left pixel. Sensor fit is
+horizontal.
 """
 
 from __future__ import annotations
@@ -32,8 +33,8 @@ class Camera:
         matrix_world: camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; metres.
         shift_x: shift of the view to the right, in image widths.
         shift_y: shift of the view upwards, in image widths (as in Blender, not heights).
-        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalised coordinates to
-            distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y².
+        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalised coordinates
+            to distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y².
     """
 
     lens_mm: float
@@ -117,7 +118,7 @@ class Camera:
         """
         rotation, location = self._pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
-        return np.einsum("...ji,...j->...i", rotation, offset)
+        return np.asarray(np.einsum("...ji,...j->...i", rotation, offset))
 
     def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return the distance along the viewing axis (...) in metres of world points (..., 3)."""
@@ -128,7 +129,7 @@ class Camera:
         rotation, _ = self._pose(frame)
         points = np.asarray(points, dtype=np.float64)
         shape = np.broadcast_shapes(points.shape, rotation[..., 2].shape)
-        return np.broadcast_to(-rotation[..., 2], shape).copy()
+        return np.array(np.broadcast_to(-rotation[..., 2], shape))
 
     def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
         """Project world points to the image.
@@ -144,7 +145,8 @@ class Camera:
         radius_squared = np.sum(normalised**2, axis=-1)
         factor, _ = self._radial_factor(radius_squared)
         distorted = normalised * factor[..., None]
-        return self.principal_point + self.focal_px * distorted * np.array([1.0, -1.0]), depth
+        pixels = self.principal_point + self.focal_px * distorted * np.array([1.0, -1.0])
+        return pixels, depth
 
     def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return d pixel / d world point, (..., 2, 3) in pixels per metre; NaN behind the camera."""
@@ -168,8 +170,8 @@ class Camera:
             frame: index of each pixel's pose; see `world_to_camera`.
 
         Returns:
-            Origin (3,) or (..., 3) in metres and unit direction (..., 3), both in the world. Directions are NaN for
-            pixels the distortion polynomial reaches from nowhere.
+            Origin (3,) or (..., 3) in metres and unit direction (..., 3), both in the world. Directions are
+            NaN for pixels the distortion polynomial reaches from nowhere.
         """
         rotation, location = self._pose(frame)
         offset = np.asarray(pixels, dtype=np.float64) - self.principal_point
@@ -212,4 +214,4 @@ class Camera:
             # Past the fold of the polynomial a root exists that no light takes.
             found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
             scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)
-        return distorted * np.where(found, scale, np.nan)[..., None]
+        return np.asarray(distorted * np.where(found, scale, np.nan)[..., None])

@@ -35,9 +35,9 @@ def read_number(
     valid = "a number above 0" if positive else "a finite number"
     value = _required(fields, name, where, valid)
     if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}.")
+        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}")
     if positive and value <= 0:
-        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}.")
+        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}")
     return float(value)
 
 
@@ -51,7 +51,7 @@ def read_resolution(fields: Mapping[str, Any], where: str) -> tuple[int, int]:
     value = _required(fields, "resolution", where, valid)
     numbers = _array(value)
     if numbers is None or numbers.shape != (2,) or np.any(numbers < 1) or np.any(numbers % 1):
-        raise InputError(f"{where}: resolution is {value!r}; it must be {valid}.")
+        raise InputError(f"{where}: resolution is {value!r}; it must be {valid}")
     return int(numbers[0]), int(numbers[1])
 
 
@@ -69,7 +69,7 @@ def read_distortion(fields: Mapping[str, Any], where: str) -> tuple[float, float
         listed = [value.get(name, 0.0) for name in ("k1", "k2", "k3")]
     numbers = _array(listed)
     if numbers is None or numbers.ndim != 1 or numbers.size > 3:
-        raise InputError(f"{where}: distortion is {value!r}; it must be up to three numbers [k1, k2, k3].")
+        raise InputError(f"{where}: distortion is {value!r}; it must be up to three numbers [k1, k2, k3]")
     padded = np.zeros(3)
     padded[: numbers.size] = numbers
     return float(padded[0]), float(padded[1]), float(padded[2])
@@ -78,7 +78,8 @@ def read_distortion(fields: Mapping[str, Any], where: str) -> tuple[float, float
 def read_poses(fields: Mapping[str, Any], where: str) -> FloatArray:
     """Return the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
-    A uniform scale, as Blender's camera objects may carry, is taken out: it does not change what a camera sees.
+    A uniform scale, as Blender's camera objects may carry, is taken out: it does not change what a camera
+    sees.
 
     Raises:
         InputError: a matrix is absent, of the wrong shape, or not a rotation with a translation.
@@ -89,7 +90,7 @@ def read_poses(fields: Mapping[str, Any], where: str) -> FloatArray:
         name, valid, ndim = "matrix_world", "a 4 by 4 matrix of finite numbers", 2
     matrices = _array(_required(fields, name, where, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
-        raise InputError(f"{where}: {name} has the wrong form; it must be {valid}.")
+        raise InputError(f"{where}: {name} has the wrong form; it must be {valid}")
     stacked = matrices.reshape(-1, 4, 4).copy()
     for index, matrix in enumerate(stacked):
         place = f"{where}: {name}" + (f"[{index}]" if ndim == 3 else "")
@@ -99,18 +100,19 @@ def read_poses(fields: Mapping[str, Any], where: str) -> FloatArray:
 
 def _rotation(matrix: FloatArray, place: str) -> FloatArray:
     if np.abs(matrix[3] - [0.0, 0.0, 0.0, 1.0]).max() > _ROTATION_TOLERANCE:
-        raise InputError(f"{place} has the last row {matrix[3].tolist()}; it must be [0, 0, 0, 1].")
+        raise InputError(f"{place} has the last row {matrix[3].tolist()}; it must be [0, 0, 0, 1]")
     linear = matrix[:3, :3]
     determinant = float(np.linalg.det(linear))
     if determinant <= 0.0:
         raise InputError(
-            f"{place} has the determinant {determinant:.3g}; it must turn, not mirror or flatten."
+            f"{place} has the determinant {determinant:.3g}; it must turn, not mirror or flatten"
         )
     rotation = linear / np.cbrt(determinant)
     error = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
     if error > _ROTATION_TOLERANCE:
         raise InputError(
-            f"{place} is sheared or scaled unevenly (off by {error:.2g}); its axes must be orthogonal and equally long."
+            f"{place} is sheared or scaled unevenly (off by {error:.2g}); its axes must be orthogonal "
+            "and equally long"
         )
     left, _, right = np.linalg.svd(rotation)
     return np.asarray(left @ right)
@@ -118,7 +120,7 @@ def _rotation(matrix: FloatArray, place: str) -> FloatArray:
 
 def _required(fields: Mapping[str, Any], name: str, where: str, valid: str) -> Any:
     if fields.get(name) is None:
-        raise InputError(f"{where}: {name} is missing; it must be {valid}.")
+        raise InputError(f"{where}: {name} is missing; it must be {valid}")
     return fields[name]
 
 

@@ -71,7 +71,7 @@ class Clip:
         if images is not None:
             return cls(path, ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS))
         if not path.exists():
-            raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image.")
+            raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
         return cls(path, VideoFile(path))
 
     @property
@@ -92,8 +92,8 @@ class Clip:
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield (index, time in seconds, image) of every frame in order, in one pass and constant memory.
 
-        Images are (height, width, 3) uint8 in the order blue, green, red. Time counts from the first frame and is
-        the file's own stamp, so it is right for variable frame rates too.
+        Images are (height, width, 3) uint8 in the order blue, green, red. Time counts from the first frame
+        and is the file's own stamp, so it is right for variable frame rates too.
 
         Raises:
             InputError: an image of a sequence cannot be read or has another size than the first.

@@ -18,7 +18,8 @@ def is_variable_frame_rate(time_s: ArrayLike) -> bool:
 
     Returns:
         True if an interval differs from the median interval by more than a tenth and more than a container's
-        rounding to milliseconds explains. A dropped frame counts: Blender shows such clips by time, not by index.
+        rounding to milliseconds explains. A dropped frame counts: Blender shows such clips by time, not by
+        index.
     """
     intervals = np.diff(np.asarray(time_s, dtype=np.float64))
     if intervals.size < 2:

@@ -59,28 +59,29 @@ def learn_colours(
 ) -> LearnedColours:
     """Learn each marker's distribution of colour and the background's colours.
 
-    Regions near each sample's colour are found, the distribution is fitted to what they hold, and all that lies clear
-    of them is counted as background; the next round finds the regions again by weighing the two, and so on.
+    Regions near each sample's colour are found, the distribution is fitted to what they hold, and all that
+    lies clear of them is counted as background; the next round finds the regions again by weighing the two,
+    and so on.
 
     Args:
-        images: sampled frames, (rows, columns, 3) uint8, on the working grid.
+        images: sampled frames, (rows, columns, 3) uint8, on the searching grid.
         samples_srgb: one (red, green, blue) in 0..255 per marker.
         allowed: per image, (M, rows, columns) where each marker may be looked for, or None for everywhere.
     """
-    sampled = _Sampled(images, allowed if allowed is not None else [None] * len(images))
+    sampled = _Sampled(images)
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     labels = sampled.near(initial)
     for _ in range(_ROUNDS):
         regions = sampled.regions(labels, initial)
+        # Clutter of a marker's very colour is kept out of the background too, or it would cost us the marker.
         background = sampled.background_counts(regions)
-        found = np.array(
-            [sum(np.count_nonzero(image == m) for image in regions) for m in range(len(initial))]
-        )
+        masks = _marker_masks(regions, len(initial), allowed)
+        found = np.array([sum(np.count_nonzero(mask) for mask in row) for row in masks])
         for marker, start in enumerate(initial):
-            chroma, luma = sampled.colours([_interior(image == marker) for image in regions])
-            # What the sample itself would not take for its own is a blend at a border or clutter beside the marker;
-            # learning from it would widen the distribution round by round.
+            chroma, luma = sampled.colours([_interior(mask) for mask in masks[marker]])
+            # What the sample itself would not take for its own is a blend at a border or clutter beside the
+            # marker; learning from it would widen the distribution round by round.
             own = start.distance(chroma, luma)[0] < _WEAK
             if np.count_nonzero(own) >= _FEWEST_PIXELS:
                 distributions[marker] = fit_distribution(chroma[own], luma[own], start)
@@ -89,7 +90,7 @@ def learn_colours(
 
 
 def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution:
-    """Return what one eyedropper sample (red, green, blue) tells of a surface's colour before looking at the clip."""
+    """Return what one sample (red, green, blue) tells of a surface's colour before looking at the clip."""
     chroma, luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     saturation = max(float(np.linalg.norm(chroma)), 1e-6)
     radial = chroma / saturation
@@ -119,7 +120,8 @@ def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribu
     # Of a normal distribution's variance in the plane the trimmed tenth takes a third.
     # Pixel noise is not added here but where distances are taken.
     covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
-    # The frames between the sampled ones show other light, folds and blur; the background limits what this admits.
+    # The frames between the sampled ones show other light, folds and blur; the background limits what this
+    # admits.
     covariance += _UNSEEN_SHARE * start.covariance
     fitted = replace(
         start,
@@ -140,7 +142,7 @@ def _within_reach(fitted: ColourDistribution, start: ColourDistribution) -> bool
 class _Sampled:
     """The sampled frames as indices into the table of the colours that occur in them."""
 
-    def __init__(self, images: Sequence[Image], allowed: Sequence[NDArray[np.bool_] | None]) -> None:
+    def __init__(self, images: Sequence[Image]) -> None:
         cells = [cell_index(smooth(image)) for image in images]
         present = np.zeros(CELL_COUNT, dtype=np.bool_)
         for cell in cells:
@@ -150,7 +152,6 @@ class _Sampled:
         rank = np.zeros(CELL_COUNT, dtype=np.int32)
         rank[self._table] = np.arange(len(self._table), dtype=np.int32)
         self._images = [rank[cell] for cell in cells]
-        self._allowed = allowed
 
     def near(self, distributions: Sequence[ColourDistribution]) -> NDArray[np.int64]:
         """Label each colour of the table by the distribution in whose core it lies; -1 for none."""
@@ -169,16 +170,14 @@ class _Sampled:
     def regions(
         self, labels: NDArray[np.int64], initial: Sequence[ColourDistribution]
     ) -> list[NDArray[np.int16]]:
-        """Label the connected regions of each frame that hold enough colours near a marker's sample; -1 elsewhere."""
+        """Label each frame's connected regions with enough colours near a marker's sample; -1 elsewhere."""
         core = self.near(initial)
         result = []
-        for image, allowed in zip(self._images, self._allowed, strict=True):
+        for image in self._images:
             label_image, core_image = labels[image], core[image]
             regions = np.full(image.shape, -1, dtype=np.int16)
             for marker in range(len(initial)):
                 mask = label_image == marker
-                if allowed is not None:
-                    mask &= allowed[marker]
                 regions[_with_core(mask, mask & (core_image == marker))] = marker
             result.append(regions)
         return result
@@ -196,7 +195,21 @@ class _Sampled:
             counts[self._table] += np.bincount(image[near == 0], minlength=len(self._table))
         cube = counts.reshape((CELLS_PER_CHANNEL,) * 3).astype(np.float32)
         spread = gaussian_filter(cube, sigma=1.0, mode="nearest", truncate=2.0)
-        return spread.ravel().astype(np.float64)
+        return np.asarray(spread.ravel(), dtype=np.float64)
+
+
+def _marker_masks(
+    regions: Sequence[NDArray[np.int16]], markers: int, allowed: Sequence[NDArray[np.bool_] | None] | None
+) -> list[list[NDArray[np.bool_]]]:
+    """Return each marker's pixels in each frame, where it may be looked for."""
+    places = allowed if allowed is not None else [None] * len(regions)
+    return [
+        [
+            image == marker if place is None else (image == marker) & place[marker]
+            for image, place in zip(regions, places, strict=True)
+        ]
+        for marker in range(markers)
+    ]
 
 
 def _with_core(mask: NDArray[np.bool_], strong: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -16,16 +16,17 @@ FloatArray = NDArray[np.float64]
 NOISE_LEVELS: Final = 5.0
 """Standard deviation of a decoded, lightly smoothed colour difference in levels: sensor and compression."""
 OUTLIER_DISTANCE: Final = 16.0
-"""Squared distance past which a colour is no marker's even if the background never shows it: 99.9 % of a χ² with 3."""
+"""Squared distance past which no colour is a marker's, even one the background never shows: 99.9 % of χ²."""
 BACKGROUND: Final = 255
 """Label of pixels that are no marker's."""
 
 
 @dataclass(frozen=True, eq=False)
 class ColourDistribution:
-    """Colour of one surface under changing light: log luma is normal, and chromaticity given it is normal too.
+    """Colour of one surface under changing light: log luma is normal, and so is chromaticity given it.
 
-    Chromaticity may drift with luma (tone mapping takes colour from bright pixels), so its mean is a line in it.
+    Chromaticity may drift with luma (tone mapping takes colour from bright pixels), so its mean is a line in
+    it.
 
     Attributes:
         log_luma: mean logarithm of offset luma.
@@ -71,7 +72,8 @@ class ColourModel:
 
     Attributes:
         distributions: one a marker.
-        label: (CELL_COUNT,) uint8, index of the likeliest marker of each colour cell, BACKGROUND where it is none's.
+        label: (CELL_COUNT,) uint8, index of the likeliest marker of each colour cell, BACKGROUND where it is
+            none's.
         probability: (CELL_COUNT,) uint8, how surely in 1/255.
     """
 

@@ -1,8 +1,8 @@
 """Colours without their shading: opponent chromaticity, and the cells that colours are counted in.
 
-A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the light to a
-good approximation; chroma over luma therefore names the surface and luma alone the light that falls on it. A small
-offset keeps dark pixels, whose ratios are noise, near grey.
+A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the
+light to a good approximation; chroma over luma therefore names the surface and luma alone the light that
+falls on it. A small offset keeps dark pixels, whose ratios are noise, near grey.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
 CELL_BITS: Final = 6
-"""Bits kept of each channel: 64³ cells hold every colour to within two levels, less than compression noise."""
+"""Bits kept of each channel: 64³ cells hold a colour to within two levels, less than compression noise."""
 CELLS_PER_CHANNEL: Final = 1 << CELL_BITS
 CELL_COUNT: Final = CELLS_PER_CHANNEL**3
 CELL_WIDTH: Final = 256 // CELLS_PER_CHANNEL
@@ -37,7 +37,8 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
         bgr: (..., 3) in 0..255, blue, green, red, gamma-encoded.
 
     Returns:
-        Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in levels.
+        Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in
+        levels.
     """
     colour = np.asarray(bgr, dtype=np.float64)
     luma = colour @ _LUMA_BGR
@@ -51,7 +52,8 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
 def cell_volume(offset_luma: ArrayLike) -> FloatArray:
     """Return the volume of a cell in (chromaticity, log luma), for densities counted by cells."""
     luma = np.asarray(offset_luma, dtype=np.float64)
-    # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division scales it.
+    # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
+    # scales it.
     return np.asarray(CELL_WIDTH**3 * _BLUE_SCALE * _RED_SCALE * _LUMA_BGR[1] / luma**3)
 
 
@@ -67,8 +69,8 @@ def cell_index(image: NDArray[np.uint8]) -> IntArray:
 
 
 def cell_colours(cells: IntArray | None = None) -> FloatArray:
-    """Return the middles of cells, (..., 3) blue, green, red in levels; of all CELL_COUNT where none are named."""
+    """Return the middles of cells, (..., 3) blue, green, red in levels; of all where none are named."""
     index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
     last = CELLS_PER_CHANNEL - 1
     levels = np.stack([index >> 2 * CELL_BITS, index >> CELL_BITS & last, index & last], axis=-1)
-    return levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0
+    return np.asarray(levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0)

@@ -36,7 +36,7 @@ class ImageSequence:
             InputError: the first image cannot be read, or the rate is not above 0.
         """
         if not (np.isfinite(fps) and fps > 0.0):
-            raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0.")
+            raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
         self.paths = tuple(paths)
         self.fps = float(fps)
         self.frame_count = len(self.paths)
@@ -61,7 +61,7 @@ class ImageSequence:
         if (image.shape[1], image.shape[0]) != self.size:
             raise InputError(
                 f"{self.paths[index]}: the image is {image.shape[1]} x {image.shape[0]} pixels; "
-                f"it must be {self.size[0]} x {self.size[1]} like the sequence's first."
+                f"it must be {self.size[0]} x {self.size[1]} like the sequence's first"
             )
         return image
 
@@ -69,7 +69,8 @@ class ImageSequence:
 def read_image(path: Path) -> Image:
     """Read an image as (height, width, 3) uint8 blue, green, red.
 
-    Sixteen-bit and floating images are brought to eight bits, grey ones to three channels, and alpha is dropped.
+    Sixteen-bit and floating images are brought to eight bits, grey ones to three channels, and alpha is
+    dropped.
 
     Raises:
         InputError: the file is missing or is no image that OpenCV can read.
@@ -77,10 +78,10 @@ def read_image(path: Path) -> Image:
     try:
         data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); it must be an image.") from error
+        raise InputError(f"{path}: cannot be read ({error.strerror}); it must be an image") from error
     image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
     if image is None:
-        raise InputError(f"{path}: cannot be decoded; it must be an image that OpenCV can read.")
+        raise InputError(f"{path}: cannot be decoded; it must be an image that OpenCV can read")
     if image.dtype == np.uint16:
         image = np.round(image / 257.0).astype(np.uint8)
     elif image.dtype != np.uint8:
@@ -102,7 +103,7 @@ def find_images(path: Path) -> list[Path] | None:
     if path.is_dir():
         found = [file for file in path.iterdir() if file.is_file() and file.suffix.lower() in _EXTENSIONS]
         if not found:
-            raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files.")
+            raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return sorted(found, key=_natural_key)
     if path.suffix.lower() not in _EXTENSIONS:
         return None
@@ -113,7 +114,7 @@ def find_images(path: Path) -> list[Path] | None:
     head, _, tail = _PATTERN.split(path.name, maxsplit=1)
     found = _numbered(path.parent, head, tail)
     if not found:
-        raise InputError(f"{path}: no file fits the pattern; name one as in img_####.png or img_%04d.png.")
+        raise InputError(f"{path}: no file fits the pattern; name one as in img_####.png or img_%04d.png")
     return found
 
 

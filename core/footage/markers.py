@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .association import Candidates, candidates, main_path, region_costs, typical_area
+from .association import Candidates, candidates, main_path, region_costs, still_clutter, typical_area
 from .clip import Clip
 from .colour_learning import learn_colours
 from .colour_model import ColourModel
@@ -19,7 +19,7 @@ from .moments import centroid_and_second_moment
 from .pieces import join_pieces, region_quality
 from .regions import Region, find_regions
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import reduce, reduction
+from .working_image import searching_image
 
 FloatArray = NDArray[np.float64]
 
@@ -59,11 +59,10 @@ def learn_model(
     Raises:
         InputError: a marker's colour matches nothing in the clip; the sentence names colours that are there.
     """
-    factor = reduction(clip.size)
     for count in (_SAMPLED_FRAMES, _MOST_SAMPLED_FRAMES):
-        frames = [(index, reduce(image, factor)) for index, image in clip.sample(count)]
+        frames = [(index, searching_image(image)) for index, image in clip.sample(count)]
         allowed = (
-            None if expected is None else [_allowed(i, im.shape[:2], factor, expected) for i, im in frames]
+            None if expected is None else [_allowed(i, im.shape[:2], clip.size, expected) for i, im in frames]
         )
         learned = learn_colours(
             [image for _, image in frames], [style.color_srgb for style in styles], allowed
@@ -76,8 +75,8 @@ def learn_model(
         str(list(colour)) for colour in nearest_colours(learned.background_counts, style.color_srgb)
     )
     raise InputError(
-        f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches nothing in the clip; "
-        f"pick it on the marker in a frame (the nearest colours found are {nearest})."
+        f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches "
+        f"nothing in the clip; pick it on the marker in a frame (the nearest colours found are {nearest})"
     )
 
 
@@ -86,8 +85,8 @@ def track_markers(
 ) -> Generator[float, None, RegionTracks]:
     """Follow the markers through a clip.
 
-    One pass over the clip in constant memory records the regions of each marker's colour; the marker is then told
-    from clutter of like hue over the whole clip at once.
+    One pass over the clip in constant memory records the regions of each marker's colour; the marker is then
+    told from clutter of like hue over the whole clip at once.
 
     Args:
         clip: the footage.
@@ -123,14 +122,15 @@ def _tracks(
     time_s: FloatArray,
     size: tuple[int, int],
 ) -> RegionTracks:
-    usual = [typical_area(one) for one in found]
+    clutter = [still_clutter(one) for one in found]
+    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
     reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
     joined = []
     for marker, one in enumerate(found):
         centre = None if expected is None else expected.centre[:, marker]
         radius = None if expected is None else expected.radius[:, marker]
-        cost = region_costs(one, usual[marker], centre, radius)
-        path = main_path(one, cost, _length(one, usual[marker]))
+        cost = region_costs(one, clutter[marker], usual[marker], centre, radius)
+        path = main_path(one, cost, _length(one, clutter[marker], usual[marker]))
         joined.append(join_pieces(one, path, cost, reach, _DEAREST_PIECE))
     moments = np.stack([row[0] for row in joined], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
@@ -147,22 +147,24 @@ def _tracks(
     )
 
 
-def _length(found: Candidates, usual_area: float) -> float:
+def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
     """Return the marker's length in px: the long axis of regions of the usual size."""
-    if not len(found.frame):
+    full = ~clutter & (found.area >= 0.7 * usual_area)
+    if not full.any():
         return 1.0
-    _, second = centroid_and_second_moment(found.moments[found.area >= 0.7 * usual_area])
+    _, second = centroid_and_second_moment(found.moments[full])
     return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
 
 
 def _allowed(
-    frame: int, shape: tuple[int, ...], factor: int, expected: ExpectedRegions
+    frame: int, shape: tuple[int, ...], size: tuple[int, int], expected: ExpectedRegions
 ) -> NDArray[np.bool_] | None:
-    """Return where each marker may be looked for on the working grid, (M, rows, columns)."""
+    """Return where each marker may be looked for on the searching grid, (M, rows, columns)."""
     if frame >= len(expected.centre):
         return None
     rows, columns = np.mgrid[: shape[0], : shape[1]]
-    pixels = np.stack([(columns + 0.5) * factor, (rows + 0.5) * factor], axis=-1)
+    step = size[0] // shape[1]
+    pixels = np.stack([(columns + 0.5) * step, (rows + 0.5) * step], axis=-1)
     offset = np.linalg.norm(pixels - expected.centre[frame][:, None, None], axis=-1)
     # The radius bounds the centroid; the region itself reaches beyond it.
     return np.asarray(~(offset > 1.5 * expected.radius[frame][:, None, None]))

@@ -1,8 +1,8 @@
 """How much of each pixel a region covers: its border to a fraction of a pixel.
 
-A border pixel mixes the region's colour and its surroundings'; encoded colours mix linearly to a good approximation.
-The share follows from the colours just inside and just outside, which makes areas unbiased where a threshold would
-grow a region over dark neighbours and shrink it before bright ones.
+A border pixel mixes the region's colour and its surroundings'; encoded colours mix linearly to a good
+approximation. The share follows from the colours just inside and just outside, which makes areas unbiased
+where a threshold would grow a region over dark neighbours and shrink it before bright ones.
 """
 
 from __future__ import annotations
@@ -27,34 +27,37 @@ def coverage(image: NDArray[np.uint8], mask: Mask, border: int) -> NDArray[np.fl
         border: half-width in pixels of the band about the mask's edge that is weighed anew.
     """
     inside = (mask > 0).astype(np.uint8)
-    # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of it.
+    # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of
+    # it.
     grown = cv2.dilate(inside, _KERNEL, iterations=border)
     depth = cv2.distanceTransform(
         cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3
     )
     depth = depth[1:-1, 1:-1]
-    colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
-    colour[..., 0] /= _LUMA_DEVIATION
+    luma, red, blue = cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32))
+    planes = [luma / _LUMA_DEVIATION, red, blue]
     size = 4 * border + 3
-    foreground, has_foreground = _local_mean(colour, depth**2, size)
-    background, has_background = _local_mean(colour, (1 - grown).astype(np.float32), size)
-    axis = foreground - background
-    length = _dot(axis, axis)
-    share = _dot(colour - background, axis) / np.maximum(length, 1.0)
+    foreground, has_foreground = _local_mean(planes, depth * depth, size)
+    background, has_background = _local_mean(planes, (1 - grown).astype(np.float32), size)
+    along = np.zeros_like(luma)
+    length = np.ones_like(luma)  # one squared level, below which two colours are the same
+    for plane, front, back in zip(planes, foreground, background, strict=True):
+        axis = front - back
+        along += (plane - back) * axis
+        length += axis * axis
+    share = along / length
     share = np.where(has_foreground & has_background, np.clip(share, 0.0, 1.0), inside)
     share[grown == 0] = 0.0
     share[depth > border] = 1.0
     return np.asarray(share, dtype=np.float32)
 
 
-def _dot(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.asarray(cv2.transform(first * second, np.ones((1, 3), dtype=np.float32)), dtype=np.float32)
-
-
 def _local_mean(
-    colour: NDArray[np.float32], weight: NDArray[np.float32], size: int
-) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    planes: list[NDArray[np.float32]], weight: NDArray[np.float32], size: int
+) -> tuple[list[NDArray[np.float32]], NDArray[np.bool_]]:
+    """Return each plane's weighted mean about each pixel, and where there was any weight."""
     total = cv2.blur(weight, (size, size), borderType=cv2.BORDER_REPLICATE)
-    mean = cv2.blur(colour * weight[..., None], (size, size), borderType=cv2.BORDER_REPLICATE)
     known = total > 1e-6
-    return mean / np.where(known, total, 1.0)[..., None].astype(np.float32), known
+    inverse = np.where(known, 1.0 / np.maximum(total, 1e-6), 0.0).astype(np.float32)
+    means = [cv2.blur(p * weight, (size, size), borderType=cv2.BORDER_REPLICATE) * inverse for p in planes]
+    return [np.asarray(mean, dtype=np.float32) for mean in means], known

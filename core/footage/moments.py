@@ -1,14 +1,16 @@
 """Moments of an image region and the four characteristics read from them.
 
-The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A over m00
-(eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3 to 6). Pixels are
-unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1] and its centre is (0.5, 0.5).
+The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A
+over m00 (eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3
+to 6). Pixels are unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1]
+and its centre is (0.5, 0.5).
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -24,7 +26,8 @@ class Characteristics(NamedTuple):
     Attributes:
         x: S_x, the centroid's column in pixels.
         y: S_y, the centroid's row in pixels, downwards.
-        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π.
+        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful
+            modulo π.
         ratio: S_λ = λ1/λ2 >= 1, of the squared axes.
     """
 
@@ -37,32 +40,26 @@ class Characteristics(NamedTuple):
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
     """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
 
-    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the rectangle.
+    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
+    rectangle.
 
     Args:
         weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
         origin: image coordinates (x, y) of the window's top left corner, in pixels.
     """
-    weight = np.asarray(weights, dtype=np.float64)
-    x = origin[0] + np.arange(weight.shape[1]) + 0.5
-    y = origin[1] + np.arange(weight.shape[0]) + 0.5
-    columns = weight.sum(axis=0)
-    rows = weight.sum(axis=1)
-    area = columns.sum()
-    return np.array(
-        [
-            area,
-            columns @ x,
-            rows @ y,
-            columns @ x**2 + PIXEL_VARIANCE * area,
-            y @ weight @ x,
-            rows @ y**2 + PIXEL_VARIANCE * area,
-        ]
-    )
+    # OpenCV takes pixels for points and the first pixel's centre for the origin.
+    points = cv2.moments(np.asarray(weights, dtype=np.float64))
+    area, x, y = points["m00"], origin[0] + 0.5, origin[1] + 0.5
+    m10 = points["m10"] + x * area
+    m01 = points["m01"] + y * area
+    m20 = points["m20"] + 2.0 * x * points["m10"] + (x * x + PIXEL_VARIANCE) * area
+    m11 = points["m11"] + x * points["m01"] + y * points["m10"] + x * y * area
+    m02 = points["m02"] + 2.0 * y * points["m01"] + (y * y + PIXEL_VARIANCE) * area
+    return np.array([area, m10, m01, m20, m11, m02])
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2, 3 and 4).
+    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
 
     Args:
         moments: raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
@@ -89,8 +86,9 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArr
 def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
     """Return S_x, S_y, S_θ, S_λ of regions.
 
-    S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the sentence
-    after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the axes.
+    S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the
+    sentence after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the
+    axes.
 
     Args:
         centroid: (..., 2) in px.

@@ -32,7 +32,8 @@ def join_pieces(
         most_cost: highest cost of a piece.
 
     Returns:
-        Raw moments (F, 6), zero where hidden; clipped (F,); colour certainty (F,); the main piece's share (F,).
+        Raw moments (F, 6), zero where hidden; clipped (F,); colour certainty (F,); the main piece's share
+        (F,).
     """
     frames = len(path)
     moments, clipped = np.zeros((frames, 6)), np.zeros(frames, dtype=np.bool_)
@@ -54,8 +55,8 @@ def region_quality(
 ) -> FloatArray:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
-    The product of the area against the full area seen in frames around, of clipping by the image's border, of the
-    colour's certainty, and of the scatter of its pieces.
+    The product of the area against the full area seen in frames around, of clipping by the image's border, of
+    the colour's certainty, and of the scatter of its pieces.
 
     Args:
         area: (F,) px, 0 where hidden.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .colour_model import ColourModel
 from .matting import coverage
 from .moments import raw_moments
-from .working_image import reduce, reduction, smooth
+from .working_image import measuring_factor, reduce, searching_factor, smooth
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -23,6 +23,8 @@ MOST_REGIONS: Final = 8
 _SURE: Final = 230
 """A region must hold pixels this sure (in 1/255) to be more than a blend of other colours."""
 _FEWEST_PIXELS: Final = 6
+_BORDER: Final = 2
+"""Half-width in grid pixels of the band in which edges are blurred: by optics, and chroma at half resolution."""
 _KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 
 
@@ -43,37 +45,40 @@ class Region:
     clipped: bool
 
 
-def border_width(size: tuple[int, int]) -> int:
-    """Return the half-width in pixels of the band in which a region's edge is blurred, for an image (width, height)."""
-    return 2 if max(size) <= 640 else 3
-
-
 def find_regions(image: Image, model: ColourModel) -> list[list[Region]]:
     """Return the regions of each marker's colour in an image (rows, columns, 3), the largest first.
 
-    Regions are found on a reduced grid and measured on the full one, each marker in the windows that hold its own.
+    Regions are found on a coarse grid and measured on a finer one, in the windows that hold them.
     """
-    factor = reduction((image.shape[1], image.shape[0]))
-    label, probability = model.classify(smooth(reduce(image, factor)))
+    scale = measuring_factor((image.shape[1], image.shape[0]))
+    measuring = reduce(image, scale)
+    factor = searching_factor((measuring.shape[1], measuring.shape[0]))
+    label, probability = model.classify(smooth(reduce(measuring, factor)))
     found: list[list[Region]] = []
     for marker in range(len(model.distributions)):
-        boxes = _boxes(label, probability, marker, factor)
-        regions = [
-            region
-            for box in _merged(boxes, 4 * factor)
-            for region in _measure(image, model, marker, box, factor)
-        ]
+        boxes = _merged(_boxes(label, probability, marker, factor), 4 * factor)
+        regions = [region for box in boxes for region in _measure(measuring, model, marker, box, factor)]
         regions.sort(key=lambda region: -region.moments[0])
-        found.append(regions[:MOST_REGIONS])
+        found.append([_enlarged(region, scale) for region in regions[:MOST_REGIONS]])
     return found
 
 
 def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
     """Return the coverage of each pixel by each marker's colour, (M, rows, columns) in 0..1, for previews."""
-    label, probability = model.classify(smooth(image))
-    border = border_width((image.shape[1], image.shape[0]))
+    height, width = image.shape[:2]
+    measuring = reduce(image, measuring_factor((width, height)))
+    label, probability = model.classify(smooth(measuring))
     masks = [_clean(label == marker, probability) for marker in range(len(model.distributions))]
-    return np.stack([coverage(image, mask, border) for mask in masks])
+    shares = [coverage(measuring, mask, _BORDER) for mask in masks]
+    if measuring.shape == image.shape:
+        return np.stack(shares)
+    return np.stack([np.asarray(cv2.resize(share, (width, height)), dtype=np.float32) for share in shares])
+
+
+def _enlarged(region: Region, scale: int) -> Region:
+    """Return a region of the measuring grid in the image's own pixels."""
+    powers = float(scale) ** np.array([2, 3, 3, 4, 4, 4])
+    return Region(region.moments * powers, region.box * scale, region.certainty, region.clipped)
 
 
 def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -83,20 +88,20 @@ def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[n
     sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
     good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
-    return good[components].astype(np.uint8)
+    return np.asarray(good[components], dtype=np.uint8)
 
 
 def _boxes(
     label: NDArray[np.uint8], probability: NDArray[np.uint8], marker: int, factor: int
 ) -> list[tuple[int, int, int, int]]:
-    """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the full image."""
-    mask = cv2.compare(label, float(marker), cv2.CMP_EQ)
-    x, y, columns, rows = cv2.boundingRect(mask)
+    """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the measuring grid."""
+    mask = label == marker
+    x, y, columns, rows = cv2.boundingRect(mask.astype(np.uint8))
     if not columns:
         return []
     inside = np.s_[y : y + rows, x : x + columns]
     _, _, stats, _ = cv2.connectedComponentsWithStats(
-        _clean(mask[inside] > 0, probability[inside]), connectivity=8
+        _clean(mask[inside], probability[inside]), connectivity=8
     )
     left, top, width, height = (stats[1:, column] for column in range(4))
     corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
@@ -122,10 +127,9 @@ def _merged(boxes: Sequence[tuple[int, int, int, int]], gap: int) -> list[tuple[
 def _measure(
     image: Image, model: ColourModel, marker: int, box: tuple[int, int, int, int], factor: int
 ) -> list[Region]:
-    """Classify a window of the full image anew and measure its regions."""
+    """Classify a window of the measuring grid anew and measure its regions, in pixels of that grid."""
     height, width = image.shape[:2]
-    border = border_width((width, height))
-    margin = 2 * border + factor
+    margin = 2 * _BORDER + factor
     left, top = max(box[0] - margin, 0), max(box[1] - margin, 0)
     right, bottom = min(box[2] + margin, width), min(box[3] + margin, height)
     window = image[top:bottom, left:right]
@@ -134,8 +138,8 @@ def _measure(
     count, components, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
     if count == 1:
         return []
-    share = coverage(window, mask, border)
-    owner = components if count == 2 else _nearest_component(components)
+    share = coverage(window, mask, _BORDER)
+    owner = components if count == 2 else _nearest_component(np.asarray(components, dtype=np.int32))
     regions = []
     for component in range(1, count):
         weights = share if count == 2 else np.where(owner == component, share, 0.0)

@@ -1,4 +1,4 @@
-"""What the extraction hands on: every marker's image region in every frame, and where regions were expected."""
+"""What the extraction hands on: every marker's region in every frame, and where regions are expected."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class RegionTracks:
         centroid: (F, M, 2) px, origin at the outer corner of the top left pixel.
         second_moment: (F, M, 2, 2) px², the second central moment matrix A of eq. 2.
         area: (F, M) px.
-        quality: (F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0 where
-            the marker is hidden.
+        quality: (F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0
+            where the marker is hidden.
         clipped: (F, M), whether the region touches the image's border.
         time_s: (F,) time stamps of the frames in seconds, from the first frame.
         size: width and height of the image in px.

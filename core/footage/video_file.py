@@ -21,6 +21,9 @@ _HIGHEST_PLAUSIBLE_FPS = 2000.0
 _FRAMES_PER_SEEK = 125
 """Seeking decodes from the last key picture on: half of an encoder's usual 250 frames between them."""
 
+# The decoder reads its verbosity once a process, when it is first used.
+os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
 logger = logging.getLogger(__name__)
 
 
@@ -42,11 +45,11 @@ class VideoFile:
         """
         self.path = path
         if path.is_file() and path.stat().st_size == 0:
-            raise InputError(f"{path}: the file is empty; it must be a video.")
+            raise InputError(f"{path}: the file is empty; it must be a video")
         with self._capture() as capture:
             found, image = capture.read()
             if not found or image is None:
-                raise InputError(f"{path}: not one frame can be decoded; the file is damaged or cut off.")
+                raise InputError(f"{path}: not one frame can be decoded; the file is damaged or cut off")
             self.size: tuple[int, int] = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             self.fps: float = fps if 0.0 < fps < _HIGHEST_PLAUSIBLE_FPS else _FALLBACK_FPS
@@ -59,7 +62,7 @@ class VideoFile:
             index, previous = 0, -np.inf
             while True:
                 found, image = capture.read()
-                if not found or image is None:
+                if not found:
                     break
                 previous = self._stamp(capture, index, previous)
                 yield index, previous, _as_image(image)
@@ -91,9 +94,9 @@ class VideoFile:
                 if not capture.grab():
                     return
                 if index in wanted:
-                    found_image, image = capture.retrieve()
-                    if found_image and image is not None:
-                        yield index, _as_image(image)
+                    decoded, picture = capture.retrieve()
+                    if decoded:
+                        yield index, _as_image(picture)
 
     def _seek(self, index: int) -> Image | None:
         with self._capture() as capture:
@@ -118,7 +121,7 @@ class VideoFile:
         capture = _open_quietly(self.path)
         try:
             if not capture.isOpened():
-                raise InputError(f"{self.path}: cannot be decoded; it must be a video that OpenCV can read.")
+                raise InputError(f"{self.path}: cannot be decoded; it must be a video that OpenCV can read")
             # Blender always shows the rotated picture; OpenCV's default differs between versions.
             capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
             yield capture
@@ -127,8 +130,7 @@ class VideoFile:
 
 
 def _open_quietly(path: Path) -> cv2.VideoCapture:
-    """Open a file without the decoder's own complaints on standard error, where one sentence of ours shall stand."""
-    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    """Open a file without OpenCV's own complaints on standard error, where our one sentence shall stand."""
     level = cv2.getLogLevel()
     cv2.setLogLevel(0)
     try:

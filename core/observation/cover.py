@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body.shapes import Piece
+from ..body.kinematics import Pose
+from ..body.shapes import PieceStack
 from ..footage.camera import Camera
-from .outline import View
+from .outline import view_pieces
 
 Array = NDArray[np.float64]
 
@@ -19,53 +20,95 @@ DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
 HIDDEN_DEPTH_M = 0.01
 """A part must lie this much nearer to hide another: neighbours share their joint's depth."""
+NEGLIGIBLE = 8.0
+"""Softness widths after which a part's effect is nothing."""
 
 
 @dataclass(frozen=True, eq=False)
-class Cover:
-    """The image outline of a part that may hide others, per frame."""
+class Covers:
+    """Image outlines of the O parts that may hide others, per frame; the last axis runs over an axis' ends."""
 
-    segment: str
     start: Array
-    """(F, 2) image of the axis' ends [px]."""
+    """(F, O, 2) image of the axis' first end [px]."""
     end: Array
     depth: Array
-    """(F, 2) camera depth of both ends [m]."""
+    """(F, O, 2) camera depth of both ends [m]."""
     half_width: Array
-    """(F, 2) half-width of the outline at both ends [px]."""
+    """(F, O, 2) half-width of the outline at both ends [px]."""
     overshoot: Array
-    """(F, 2) how far the outline reaches past both ends along the axis [px]."""
+    """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
+
+    def pick(self, part: int, rows: NDArray[np.intp]) -> "Covers":
+        """One part in some frames, with arrays (R, 2)."""
+        return Covers(
+            self.start[rows, part],
+            self.end[rows, part],
+            self.depth[rows, part],
+            self.half_width[rows, part],
+            self.overshoot[rows, part],
+        )
 
 
-def cover(piece: Piece, view: View, camera: Camera, frame: NDArray[np.intp]) -> Cover:
-    """The image outline of a piece."""
-    start, start_depth = camera.project(view.start, frame)
-    end, end_depth = camera.project(view.end, frame)
+def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> Covers:
+    """The image outlines of all parts of the body."""
+    view = view_pieces(parts, pose, camera, frame)
+    start, start_depth = camera.project(view.start, frame[:, None])
+    end, end_depth = camera.project(view.end, frame[:, None])
     depth = np.stack([start_depth, end_depth], -1)
     scale = camera.focal_px / np.maximum(depth, 1e-3)
-    half = np.stack([view.support(view.across, widths) for widths in piece.half_widths], -1)
-    past = np.stack([view.support(view.along, widths) for widths in piece.half_widths], -1)
-    return Cover(piece.segment, start, end, depth, half * scale, past * scale)
+    half, past = (
+        np.linalg.norm(view.reach(direction)[:, :, None] * parts.half_widths, axis=-1) * scale
+        for direction in (view.across, view.along)
+    )
+    return Covers(start, end, depth, half, past)
 
 
-def hidden_share(samples: Array, depth: Array, part: Cover) -> Array:
-    """How far a part hides samples, 0 to 1.
+def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bool_]) -> Array:
+    """How much of each sample no part hides, 0 to 1.
 
     Args:
-        samples: (F, S, 2) image places [px].
-        depth: (F, S) camera depths [m].
-        part: The part in front, in the same frames.
+        pixels: (F, Q, S, 2) image places of the samples of Q pieces [px].
+        depth: (F, Q, S) camera depths [m].
+        parts: The O parts of the body.
+        own: (Q, O) whether a part belongs to the piece's own marker and cannot hide it.
 
     Returns:
-        (F, S).
+        (F, Q, S).
     """
+    seen = np.ones(depth.shape)
+    candidates = _may_hide(pixels, depth, parts) & ~own
+    for part in range(own.shape[1]):
+        rows, piece = np.nonzero(candidates[..., part])
+        if len(rows):
+            chosen = parts.pick(part, rows)
+            seen[rows, piece] *= 1.0 - _hidden_share(pixels[rows, piece], depth[rows, piece], chosen)
+    return seen
+
+
+def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
+    """(F, Q, O) whether a part's bounding circle meets a piece's samples and reaches nearer."""
+    centre = pixels.mean(axis=2)
+    offset = pixels - centre[:, :, None]
+    radius = np.sqrt(np.einsum("fqsi,fqsi->fqs", offset, offset).max(axis=2))
+    middle = 0.5 * (parts.start + parts.end)
+    extent = 0.5 * np.linalg.norm(parts.end - parts.start, axis=-1)
+    extent = extent + np.maximum(parts.half_width, parts.overshoot).max(axis=-1)
+    between = middle[:, None] - centre[:, :, None]  # (F, Q, O, 2)
+    reach = radius[:, :, None] + extent[:, None] + NEGLIGIBLE * EDGE_SOFTNESS_PX
+    close = np.einsum("fqoi,fqoi->fqo", between, between) < reach**2
+    margin = HIDDEN_DEPTH_M - NEGLIGIBLE * DEPTH_SOFTNESS_M
+    return np.asarray(close & (parts.depth.min(-1)[:, None] + margin < depth.max(2)[:, :, None]))
+
+
+def _hidden_share(pixels: Array, depth: Array, part: Covers) -> Array:
+    """How far one part hides samples (R, S) in R chosen frames."""
     axis = part.end - part.start
-    length = np.linalg.norm(axis, axis=-1)
-    along = axis / np.maximum(length, 1e-6)[:, None]
-    offset = samples - part.start[:, None]
+    length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
+    along = axis / length[:, None]
+    offset = pixels - part.start[:, None]
     run = offset[..., 0] * along[:, None, 0] + offset[..., 1] * along[:, None, 1]
-    away = np.abs(offset[..., 1] * along[:, None, 0] - offset[..., 0] * along[:, None, 1])
-    share = np.clip(run / np.maximum(length, 1e-6)[:, None], 0.0, 1.0)
+    away = offset[..., 1] * along[:, None, 0] - offset[..., 0] * along[:, None, 1]
+    share = np.clip(run / length[:, None], 0.0, 1.0)
     past = np.maximum(np.maximum(-run, run - length[:, None]), 0.0)
 
     def at(ends: Array) -> Array:
@@ -73,19 +116,8 @@ def hidden_share(samples: Array, depth: Array, part: Cover) -> Array:
 
     half = np.maximum(at(part.half_width), 0.5)
     reach = np.maximum(at(part.overshoot), 0.5)
-    inside = (1.0 - np.hypot(away / half, past / reach)) * half
+    inside = (1.0 - np.sqrt((away / half) ** 2 + (past / reach) ** 2)) * half
     nearer = depth - at(part.depth) - HIDDEN_DEPTH_M
     edge = np.clip(inside / EDGE_SOFTNESS_PX, -30.0, 30.0)
     order = np.clip(nearer / DEPTH_SOFTNESS_M, -30.0, 30.0)
     return np.asarray(1.0 / ((1.0 + np.exp(-edge)) * (1.0 + np.exp(-order))))
-
-
-def may_hide(samples: Array, depth: Array, part: Cover) -> NDArray[np.bool_]:
-    """(F,) whether the part's bounding circle meets the samples' and reaches nearer: a cheap first test."""
-    centre = samples.mean(axis=1)
-    radius = np.linalg.norm(samples - centre[:, None], axis=-1).max(axis=1)
-    middle = 0.5 * (part.start + part.end)
-    extent = 0.5 * np.linalg.norm(part.end - part.start, axis=-1)
-    extent = extent + np.maximum(part.half_width, part.overshoot).max(axis=-1)
-    close = np.linalg.norm(middle - centre, axis=-1) < radius + extent + 3.0 * EDGE_SOFTNESS_PX
-    return np.asarray(close & (part.depth.min(axis=-1) < depth.max(axis=-1)))

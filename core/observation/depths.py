@@ -33,7 +33,7 @@ def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
 
 
 def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
-    """Derivative of the depths by a tangent step of the posture, (..., P, D) [m per m or rad]; arguments as `evaluate`."""
+    """Derivative of the depths by the posture's tangent step, (..., P, D); arguments as `evaluate`."""
     axis = camera.depth_jacobian(body.points(pose), _per_point(frame))  # (..., P, 3)
     return np.asarray(np.einsum("...pi,...pid->...pd", axis, body.points_jacobian(pose)))
 

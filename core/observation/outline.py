@@ -3,6 +3,8 @@
 Samples fill the silhouette between the two contour lines, and the elliptical ends. Each is a point of
 the solid: a contour line touches the surface where the cross-section reaches farthest across the view,
 so moving the samples rigidly with the segment moves the silhouette rightly to first order.
+
+Arrays lead with F frames and Q pieces.
 """
 
 from dataclasses import dataclass
@@ -11,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.kinematics import Pose
-from ..body.shapes import Piece
+from ..body.shapes import PieceStack
 from ..footage.camera import Camera
 
 Array = NDArray[np.float64]
@@ -23,38 +25,8 @@ TINY = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
-    """Sample points of one piece's silhouette in F frames."""
-
-    joint: int
-    world: Array
-    """(F, S, 3) [m]."""
-    area: Array
-    """(F, S) share of the silhouette [m², across the view]."""
-    area_rate: Array
-    """(F, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening."""
-
-
-def viewing_directions(camera: Camera, points: Array, frame: NDArray[np.intp]) -> Array:
-    """Unit vectors (F, 3) from the camera to world points (F, 3)."""
-    matrix = camera.matrix_world[frame] if camera.is_moving else camera.matrix_world
-    offset = points - matrix[..., :3, 3]
-    return np.asarray(offset / np.linalg.norm(offset, axis=-1, keepdims=True))
-
-
-def _normalise(vector: Array, fallback: Array) -> tuple[Array, Array]:
-    length = np.linalg.norm(vector, axis=-1, keepdims=True)
-    unit = np.where(length > 1e-6, vector / np.maximum(length, TINY), fallback)
-    return unit, length[..., 0]
-
-
-def _dot(a: Array, b: Array) -> Array:
-    return np.asarray(np.sum(a * b, axis=-1))
-
-
-@dataclass(frozen=True, eq=False)
 class View:
-    """A piece's axes as the camera sees them, all in the world, (F, 3) or (F,)."""
+    """Pieces' axes as the camera sees them, in the world: (F, Q, 3), or (F, Q) for lengths."""
 
     start: Array
     end: Array
@@ -65,106 +37,131 @@ class View:
     along: Array
     """Unit direction of the axis, across the view."""
     apparent_length: Array
-    """(F,) length of the axis across the view [m]."""
+    """Length of the axis across the view [m]."""
     lateral: Array
     sagittal: Array
 
-    def support(self, direction: Array, widths: Array) -> Array:
-        """(F,) how far a cross-section of half-widths (2,) [m] reaches in a direction (F, 3)."""
-        return np.hypot(
-            widths[0] * _dot(direction, self.lateral), widths[1] * _dot(direction, self.sagittal)
-        )
+    def reach(self, direction: Array) -> Array:
+        """(F, Q, 2) cosines of a direction with the cross-section's axes."""
+        return np.stack([_dot(direction, self.lateral), _dot(direction, self.sagittal)], axis=-1)
 
 
-def view_piece(piece: Piece, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> View:
-    """How the camera sees a piece in each frame."""
-    start, end = piece.ends(pose)
-    view = viewing_directions(camera, 0.5 * (start + end), frame)
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Sample points of the pieces' silhouettes."""
+
+    world: Array
+    """(F, Q, S, 3) [m]."""
+    area: Array
+    """(F, Q, S) share of the silhouette [m², across the view]."""
+    area_rate: Array
+    """(F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening."""
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("...i,...i->...", a, b))
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product over the last axis; `numpy.cross` spends most of its time on generality."""
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    u, v, w = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
+def _unit(vector: Array) -> tuple[Array, Array]:
+    length = np.sqrt(_dot(vector, vector))
+    return vector / np.maximum(length, TINY)[..., None], length
+
+
+def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> View:
+    """How the camera sees each piece in each frame."""
+    start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)
+    matrix = camera.matrix_world[frame][:, None] if camera.is_moving else camera.matrix_world
+    toward, _ = _unit(0.5 * (start + end) - matrix[..., :3, 3])
+    lateral, sagittal = pieces.turn(pose, pieces.lateral), pieces.turn(pose, pieces.sagittal)
     axis = end - start
-    turn = pose.rotation[..., piece.joint, :, :]
-    lateral, sagittal = turn @ piece.lateral, turn @ piece.sagittal
-    seen = axis - _dot(axis, view)[..., None] * view
+    along, length = _unit(axis - _dot(axis, toward)[..., None] * toward)
     # Seen end on, any direction across the view will do.
-    spare = lateral - _dot(lateral, view)[..., None] * view
-    spare = spare / np.maximum(np.linalg.norm(spare, axis=-1, keepdims=True), TINY)
-    along, length = _normalise(seen, spare)
-    return View(start, end, view, np.cross(view, along), along, length, lateral, sagittal)
+    spare, _ = _unit(lateral - _dot(lateral, toward)[..., None] * toward)
+    along = np.where(length[..., None] > 1e-6, along, spare)
+    return View(start, end, toward, cross(toward, along), along, length, lateral, sagittal)
 
 
-def outline(piece: Piece, view: View) -> Outline:
-    """Samples of a piece's silhouette."""
-    parts = [_wall(piece, view)]
+def outline(pieces: PieceStack, view: View) -> Outline:
+    """Samples of the pieces' silhouettes."""
+    parts = [_wall(pieces.half_widths, view)]
     for centre, widths, sign in (
-        (view.start, piece.half_widths[0], -1.0),
-        (view.end, piece.half_widths[1], 1.0),
+        (view.start, pieces.half_widths[:, 0], -1.0),
+        (view.end, pieces.half_widths[:, 1], 1.0),
     ):
         parts.append(_cap(centre, widths, sign, view))
-    world, area, rate = zip(*parts, strict=True)
-    return Outline(piece.joint, *(np.concatenate(rows, axis=1) for rows in (world, area, rate)))
+    world, area, rate = (np.concatenate(rows, axis=2) for rows in zip(*parts, strict=True))
+    return Outline(world, area, rate)
 
 
-def _wall(piece: Piece, view: View) -> tuple[Array, Array, Array]:
-    """Samples between the contour lines (F, ALONG * ACROSS, 3), their areas and area rates."""
-    u = (np.arange(ALONG) + 0.5) / ALONG
+def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
+    """Samples between the contour lines (F, Q, ALONG * ACROSS, 3), their areas and area rates."""
+    u = ((np.arange(ALONG) + 0.5) / ALONG)[:, None]
     v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
-    widths = piece.half_widths[0] + u[:, None] * (piece.half_widths[1] - piece.half_widths[0])  # (U, 2)
-    reach = np.stack([_dot(view.across, view.lateral), _dot(view.across, view.sagittal)], -1)  # (F, 2)
-    half = np.maximum(np.linalg.norm(widths * reach[:, None], axis=-1), TINY)  # (F, U)
-    touch = widths**2 * reach[:, None] / half[..., None]  # (F, U, 2)
-    contour = touch[..., :1] * view.lateral[:, None] + touch[..., 1:] * view.sagittal[:, None]
+    widths = half_widths[:, None, 0] + u * (half_widths[:, None, 1] - half_widths[:, None, 0])  # (Q, U, 2)
+    reach = view.reach(view.across)[:, :, None]  # (F, Q, 1, 2)
+    stretched = widths * reach
+    half = np.maximum(np.hypot(stretched[..., 0], stretched[..., 1]), TINY)  # (F, Q, U)
+    touch = widths * stretched / half[..., None]  # (F, Q, U, 2)
+    contour = touch[..., :1] * view.lateral[:, :, None] + touch[..., 1:] * view.sagittal[:, :, None]
     axis = view.end - view.start
-    centre = view.start[:, None] + u[:, None] * axis[:, None]
-    world = centre[:, :, None] + v[:, None] * contour[:, :, None]  # (F, U, V, 3)
+    centre = view.start[:, :, None] + u * axis[:, :, None]
+    world = centre[..., None, :] + v[:, None] * contour[..., None, :]  # (F, Q, U, V, 3)
     cell = 2.0 / (ALONG * ACROSS)
-    length = view.apparent_length[:, None]
+    length = view.apparent_length[..., None]
     # d half = touch · d reach; d length = ω · (axis × along).
-    half_rate = touch @ _reach_rate(view, axis)  # (F, U, 3)
-    length_rate = np.cross(axis, view.along)[:, None]
+    half_rate = touch @ _reach_rate(view, axis)  # (F, Q, U, 3)
+    length_rate = cross(axis, view.along)[:, :, None]
     rate = cell * (length_rate * half[..., None] + length[..., None] * half_rate)
     return (
-        world.reshape(len(world), -1, 3),
-        np.repeat(cell * length * half, ACROSS, axis=1),
-        np.repeat(rate, ACROSS, axis=1),
+        world.reshape(*world.shape[:2], -1, 3),
+        np.repeat(cell * length * half, ACROSS, axis=2),
+        np.repeat(rate, ACROSS, axis=2),
     )
 
 
 def _reach_rate(view: View, axis: Array) -> Array:
-    """(F, 2, 3) d (across · lateral, across · sagittal) / d angular velocity.
+    """(F, Q, 2, 3) d (across · lateral, across · sagittal) / d angular velocity.
 
     Turning a foreshortened axis also turns its image, and with it the direction across.
     """
-    image_turn = np.cross(axis, view.across) / np.maximum(view.apparent_length, 1e-4)[:, None]
+    image_turn = cross(axis, view.across) / np.maximum(view.apparent_length, 1e-4)[..., None]
     rows = [
-        np.cross(side, view.across) - image_turn * _dot(view.along, side)[:, None]
+        cross(side, view.across) - image_turn * _dot(view.along, side)[..., None]
         for side in (view.lateral, view.sagittal)
     ]
-    return np.stack(rows, axis=1)
+    return np.stack(rows, axis=2)
 
 
 def _cap(centre: Array, widths: Array, sign: float, view: View) -> tuple[Array, Array, Array]:
     """Samples of the half of an elliptical end that shows beyond the contour lines, areas and rates."""
-    outward = np.stack(
-        [widths[0] * _dot(view.along, view.lateral), widths[1] * _dot(view.along, view.sagittal)], -1
-    )
-    pole, _ = _normalise(sign * outward, np.broadcast_to([1.0, 0.0], outward.shape))
-    side = np.stack([-pole[:, 1], pole[:, 0]], -1)
+    pole, length = _unit(sign * widths * view.reach(view.along))
+    pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
+    side = np.stack([-pole[..., 1], pole[..., 0]], axis=-1)
     radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
     angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
     disc = (radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)).reshape(-1, 2)
-    flat = disc[:, :1] * side[:, None] + disc[:, 1:] * pole[:, None]  # (F, C, 2)
+    flat = disc[:, :1] * side[:, :, None] + disc[:, 1:] * pole[:, :, None]  # (F, Q, C, 2)
+    flat = flat * widths[:, None]
     world = (
-        centre[:, None]
-        + flat[..., :1] * widths[0] * view.lateral[:, None]
-        + flat[..., 1:] * widths[1] * view.sagittal[:, None]
+        centre[:, :, None]
+        + flat[..., :1] * view.lateral[:, :, None]
+        + flat[..., 1:] * view.sagittal[:, :, None]
     )
     # The end's plane shows by the cosine between its normal and the view.
-    normal = np.cross(view.lateral, view.sagittal)
-    cosine = _dot(normal, view.toward)[:, None]
-    full = 0.5 * np.pi * widths[0] * widths[1] / len(disc)
-    rate = full * np.sign(cosine) * np.cross(normal, view.toward)
+    normal = cross(view.lateral, view.sagittal)
+    cosine = _dot(normal, view.toward)[..., None]
+    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / len(disc)  # (Q, 1)
+    rate = full * np.sign(cosine) * cross(normal, view.toward)
     shape = world.shape[:-1]
     return (
         world,
-        np.array(np.broadcast_to(full * np.abs(cosine), shape)),
-        np.array(np.broadcast_to(rate[:, None], (*shape, 3))),
+        np.broadcast_to(full * np.abs(cosine), shape),
+        np.broadcast_to(rate[:, :, None], (*shape, 3)),
     )

@@ -5,16 +5,17 @@ body parts hide samples; centroid and second moments are those of what stays vis
 predicted instead of measured). Derivatives hold the samples' weights fixed.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..body.kinematics import Body, Pose
-from ..body.shapes import Piece, body_pieces, marker_parts, segment_piece
+from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
-from .cover import Cover, cover, hidden_share, may_hide
-from .outline import Outline, outline, view_piece
+from .cover import covers, visible_share
+from .outline import TINY, Outline, cross, outline, view_pieces
 
 Array = NDArray[np.float64]
 
@@ -79,6 +80,38 @@ class RegionModel:
     camera: Camera
     placements: tuple[MarkerPlacement, ...]
 
+    @cached_property
+    def _pieces(self) -> PieceStack:
+        """The volumes that wear a colour, Q of them, marker after marker."""
+        return PieceStack.of(piece for placement in self.placements for piece in placement.pieces(self.body))
+
+    @cached_property
+    def _marker_of(self) -> NDArray[np.intp]:
+        """(Q,) the marker of each piece."""
+        counts = [len(marker_parts(placement.segment)) for placement in self.placements]
+        return np.repeat(np.arange(len(counts)), counts)
+
+    @cached_property
+    def half_widths_m(self) -> Array:
+        """(M,) mean half-width of the limb each marker sits on [m]."""
+        return np.array(
+            [
+                np.mean([piece.half_widths for piece in placement.pieces(self.body)])
+                for placement in self.placements
+            ]
+        )
+
+    @cached_property
+    def _parts(self) -> PieceStack:
+        """The whole body, O parts."""
+        return PieceStack.of(body_pieces(self.body))
+
+    @cached_property
+    def _own(self) -> NDArray[np.bool_]:
+        """(Q, O) whether a part of the body belongs to the marker of a piece."""
+        own = [marker_parts(self.placements[m].segment) for m in self._marker_of]
+        return np.array([[part in names for part in self._parts.segments] for names in own])
+
     def evaluate(self, pose: Pose, frame: NDArray[np.intp], jacobian: bool = False) -> RegionPrediction:
         """Predict every marker's region.
 
@@ -90,110 +123,65 @@ class RegionModel:
         Returns:
             The prediction; markers that are wholly hidden keep the moments of their whole silhouette.
         """
-        covers = self._covers(pose, frame)
-        columns = [
-            self._marker(placement, pose, frame, covers, jacobian) for placement in self.placements
-        ]
-        centroid, moment, area, visible, d_centroid, d_moment = zip(*columns, strict=True)
-        return RegionPrediction(
-            np.stack(centroid, 1),
-            np.stack(moment, 1),
-            np.stack(area, 1),
-            np.stack(visible, 1),
-            np.stack(d_centroid, 1) if jacobian else None,
-            np.stack(d_moment, 1) if jacobian else None,
-        )
-
-    def _covers(self, pose: Pose, frame: NDArray[np.intp]) -> list[Cover]:
-        parts = body_pieces(self.body)
-        return [cover(part, view_piece(part, pose, self.camera, frame), self.camera, frame) for part in parts]
-
-    def _marker(
-        self,
-        placement: MarkerPlacement,
-        pose: Pose,
-        frame: NDArray[np.intp],
-        covers: list[Cover],
-        jacobian: bool,
-    ) -> tuple[Array, ...]:
-        outlines = [
-            outline(piece, view_piece(piece, pose, self.camera, frame)) for piece in placement.pieces(self.body)
-        ]
-        world = np.concatenate([part.world for part in outlines], axis=1)  # (F, S, 3)
-        pixels, depth = self.camera.project(world, frame[:, None])
-        scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2
-        area = np.concatenate([part.area for part in outlines], axis=1) * scale  # (F, S) [px²]
-        own = marker_parts(placement.segment)
-        seen = _visibility(pixels, depth, [c for c in covers if c.segment not in own])
-        visible_area = (area * seen).sum(1)
-        visible = visible_area / np.maximum(area.sum(1), 1e-9)
+        view = view_pieces(self._pieces, pose, self.camera, frame)
+        samples = outline(self._pieces, view)
+        pixels, depth = self.camera.project(samples.world, frame[:, None, None])
+        scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
+        parts = covers(self._parts, pose, self.camera, frame)
+        seen = scale * visible_share(pixels, depth, parts, self._own)
+        visible_area = self._per_marker((samples.area * seen).sum(2))
+        whole_area = self._per_marker((samples.area * scale).sum(2))
+        visible = visible_area / np.maximum(whole_area, TINY)
         # A wholly hidden marker is not compared with anything, but its moments stay finite.
-        factor = scale * np.where(visible[:, None] < 1e-3, 1.0, seen)
-        factor = factor / np.maximum((area / scale * factor).sum(1, keepdims=True), 1e-12)
-        weight = area / scale * factor
-        centroid = np.einsum("fs,fsi->fi", weight, pixels)
-        centred = pixels - centroid[:, None]
-        moment = np.einsum("fs,fsi,fsj->fij", weight, centred, centred)
-        empty = np.zeros(0)
-        rows = (empty, empty)
-        if jacobian:
-            rows = self._derive(outlines, pose, frame, factor, pixels - centroid[:, None], moment)
-        return centroid, moment, visible_area, visible, *rows
+        hidden = visible < 1e-3
+        factor = np.where(hidden[:, self._marker_of, None], scale, seen)
+        total = np.maximum(np.where(hidden, whole_area, visible_area), TINY)
+        factor = factor / total[:, self._marker_of, None]
+        weight = factor * samples.area  # (F, Q, S), one in sum over a marker
+        centroid = self._per_marker(np.einsum("fqs,fqsi->fqi", weight, pixels))
+        centred = pixels - centroid[:, self._marker_of, None]
+        moment = self._per_marker(np.einsum("fqs,fqsi,fqsj->fqij", weight, centred, centred, optimize=True))
+        prediction = RegionPrediction(centroid, moment, visible_area, visible)
+        if not jacobian:
+            return prediction
+        return replace(prediction, **self._derive(samples, pose, frame, factor, centred, moment))
+
+    def _per_marker(self, values: Array) -> Array:
+        """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
+        firsts = np.searchsorted(self._marker_of, np.arange(len(self.placements)))
+        return np.asarray(np.add.reduceat(values, firsts, axis=1))
 
     def _derive(
         self,
-        outlines: list[Outline],
+        samples: Outline,
         pose: Pose,
         frame: NDArray[np.intp],
         factor: Array,
         centred: Array,
         moment: Array,
-    ) -> tuple[Array, Array]:
-        """Rows of centroid (F, 2, D) and moments (F, 3, D), through the spatial velocity of each piece.
+    ) -> dict[str, Array]:
+        """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
-        `factor` (F, S) turns a sample's area into its weight.
+        `factor` (F, Q, S) turns a sample's area into its weight.
         """
-        d_centroid = np.zeros((len(frame), 2, pose.posture.skeleton.dof_count))
-        d_moment = np.zeros((len(frame), 3, pose.posture.skeleton.dof_count))
-        last = 0
-        for part in outlines:
-            span = slice(last, last + part.world.shape[1])
-            last = span.stop
-            local = self.camera.project_jacobian(part.world, frame[:, None])  # (F, S, 2, 3)
-            x = centred[:, span]
-            w = factor[:, span] * part.area
-            # A point p of a body with spatial velocity (v, ω) moves by v - [p]x ω.
-            twist = np.concatenate([local, np.cross(part.world[:, :, None, :], local)], axis=-1)
-            first = np.einsum("fs,fsik->fik", w, twist)  # (F, 2, 6)
-            mixed = np.einsum("fs,fsi,fsjk->fijk", w, x, twist, optimize=True)
-            second = np.stack([mixed[:, a, b] + mixed[:, b, a] for a, b in MOMENTS], axis=1)
-            # Turning also changes how much of the silhouette each sample stands for.
-            rate = factor[:, span, None] * part.area_rate  # (F, S, 3)
-            first[..., 3:] += np.einsum("fsk,fsi->fik", rate, x)
-            spread = np.stack([x[..., a] * x[..., b] - moment[:, None, a, b] for a, b in MOMENTS], axis=-1)
-            second[..., 3:] += np.einsum("fsk,fsi->fik", rate, spread)
-            moved = pose.screws * pose.posture.skeleton.moved_by[part.joint]
-            d_centroid += first @ moved
-            d_moment += second @ moved
-        return d_centroid, d_moment
-
-
-def _visibility(pixels: Array, depth: Array, parts: list[Cover]) -> Array:
-    """Share (F, S) of each sample that no part hides."""
-    seen = np.ones(depth.shape)
-    for part in parts:
-        rows = np.nonzero(may_hide(pixels, depth, part))[0]
-        if len(rows):
-            seen[rows] *= 1.0 - hidden_share(pixels[rows], depth[rows], _pick(part, rows))
-    return seen
-
-
-def _pick(part: Cover, rows: NDArray[np.intp]) -> Cover:
-    return Cover(
-        part.segment,
-        part.start[rows],
-        part.end[rows],
-        part.depth[rows],
-        part.half_width[rows],
-        part.overshoot[rows],
-    )
+        local = self.camera.project_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 3)
+        # A point p of a body with spatial velocity (v, ω) moves by v - [p]x ω.
+        twist = np.concatenate([local, cross(samples.world[..., None, :], local)], axis=-1)
+        weight = (factor * samples.area)[..., None]
+        first = np.swapaxes(weight, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
+        first = first.reshape(*twist.shape[:2], 2, 6)
+        mixed = np.swapaxes(weight * centred, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
+        mixed = mixed.reshape(*twist.shape[:2], 2, 2, 6)
+        second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
+        # Turning also changes how much of the silhouette each sample stands for.
+        rate = factor[..., None] * samples.area_rate  # (F, Q, S, 3)
+        first[..., 3:] += np.swapaxes(centred, -1, -2) @ rate
+        middle = moment[:, self._marker_of, None]
+        spread = np.stack(
+            [centred[..., a] * centred[..., b] - middle[..., a, b] for a, b in MOMENTS], axis=-1
+        )
+        second[..., 3:] += np.swapaxes(spread, -1, -2) @ rate
+        rows = np.concatenate([first, second], axis=2)  # (F, Q, 5, 6)
+        moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
+        derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
+        return {"centroid_jacobian": derived[:, :, :2], "moment_jacobian": derived[:, :, 2:]}

@@ -50,6 +50,11 @@ class QuadraticBuilder:
                 band = self.matrix.bands[second - first]
                 band[first : first + rows, index, index] += information * left * parts[second]
 
+    def add_blocks(self, frames: NDArray[np.intp], information: Array) -> None:
+        """Add full information matrices (K, n, n) about the leading n unknowns of K different frames."""
+        count = information.shape[-1]
+        self.matrix.bands[0][frames, :count, :count] += information
+
     def term(self) -> QuadraticTerm:
         """The term gathered so far."""
         return QuadraticTerm(self.matrix)

@@ -27,19 +27,32 @@ class RegionNoise:
     """How far an observed region may lie from a perfect model of the body.
 
     Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
-    sleeves shift), which scales with the image of a metre.
+    sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
     """
 
     pixel_std_px: float = 0.35
-    surface_centroid_std_m: float = 0.007
-    surface_shape_std_m: float = 0.005
-    bias_centroid_std_m: float = 0.010
-    bias_shape_std_m: float = 0.007
+    surface_centroid_share: float = 0.10
+    """Of the segment's mean half-width, like the three that follow."""
+    surface_shape_share: float = 0.07
+    bias_centroid_share: float = 0.20
+    bias_shape_share: float = 0.14
     bias_time_s: float = 0.67
     degrees: float = 4.0
     """Student's t degrees of freedom of a marker's rows."""
     least_visible: float = 0.15
     """A region predicted to be hidden further than this is not compared."""
+
+    def surface_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
+        return width[..., None] * _per_feature(self.surface_centroid_share, self.surface_shape_share)
+
+    def bias_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature's slow bias for limbs of half-width (...)."""
+        return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
+
+
+def _per_feature(centroid: float, shape: float) -> Array:
+    return np.repeat([centroid, shape], (2, FEATURES - 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,10 +113,11 @@ def feature_rows(
     return residual, np.concatenate(rows, axis=-2)
 
 
-def pixels_per_metre(model: RegionModel, state_points: Array, frame: NDArray[np.intp]) -> Array:
-    """(F,) image length of a metre at the body's mean depth."""
-    depth = model.camera.depth(state_points, frame[:, None]).mean(axis=1)
-    return np.asarray(model.camera.focal_px / np.maximum(depth, 0.1))
+def limb_widths(model: RegionModel, points: Array, frame: NDArray[np.intp]) -> Array:
+    """(F, M) image half-width of each marker's limb at the body's mean depth [px]."""
+    depth = model.camera.depth(points, frame[:, None]).mean(axis=1)
+    scale = model.camera.focal_px / np.maximum(depth, 0.1)
+    return np.asarray(scale[:, None] * model.half_widths_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,8 +127,8 @@ class RegionTerm:
     model: RegionModel
     observed: ObservedRegions
     noise: RegionNoise
-    scale: Array
-    """(F,) pixels per metre."""
+    width_px: Array
+    """(F, M) mean half-width of each marker's limb in the image [px]."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
@@ -141,10 +155,7 @@ class RegionTerm:
         """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
         usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
-        surface = np.repeat(
-            [self.noise.surface_centroid_std_m, self.noise.surface_shape_std_m], (2, FEATURES - 2)
-        )
-        variance = self.noise.pixel_std_px**2 + (self.scale[:, None, None] * surface) ** 2
+        variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
         information = np.where(usable, trust, 0.0)[..., None] / (variance * temperature)
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in (slice(0, 2), slice(2, FEATURES)):

@@ -1,0 +1,159 @@
+"""The paper's fuzzy reasoning: how the posture moves on, from how far the nearest keyframe is.
+
+Two rules (paper, section 5), applied to every degree of freedom by itself:
+
+* if the frame is *near* a keyframe, the step is like θ_p,t+1 - θ̂_t: back to the a priori posture;
+* if it is *far* from one, the step is like θ_p,t+1 - θ_p,t: along with the a priori posture.
+
+Each rule's output set is a triangle about its step. It is clipped at the rule's degree (Mamdani & Assilian
+1975, *An experiment in linguistic synthesis with a fuzzy logic controller*), the sets are joined by maximum,
+and mean and variance of the joined membership are the step's mean w̄ and process noise Q.
+
+The paper's Figure 7, which draws the sets, is lost; the shapes here are ours.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Memberships:
+    """The input sets, over the distance to the nearest keyframe in half gaps: 0 on it, 1 midway between two.
+
+    *near* falls in a straight line from 1 at the keyframe to 0 at `near_ends`; *far* rises from 0 at
+    `far_starts` to 1 at `far_full`.
+
+    Raises:
+        ValueError: The sets leave a distance that is in neither of them.
+    """
+
+    near_ends: float = 1.0
+    far_starts: float = 0.0
+    far_full: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check that every distance belongs somewhere."""
+        if not 0.0 <= self.far_starts < min(self.near_ends, self.far_full):
+            raise ValueError(
+                f"far_starts {self.far_starts} must be at least 0 and below near_ends {self.near_ends} "
+                f"and far_full {self.far_full}"
+            )
+
+    def near(self, distance: ArrayLike) -> Array:
+        """Degree (...) to which a distance (...) [half gaps] is near."""
+        return np.asarray(np.clip(1.0 - np.asarray(distance, dtype=np.float64) / self.near_ends, 0.0, 1.0))
+
+    def far(self, distance: ArrayLike) -> Array:
+        """Degree (...) to which a distance (...) [half gaps] is far."""
+        beyond = np.asarray(distance, dtype=np.float64) - self.far_starts
+        return np.asarray(np.clip(beyond / (self.far_full - self.far_starts), 0.0, 1.0))
+
+
+def keyframe_distance(frame_count: int, keyframes: ArrayLike) -> Array:
+    """Distance of each frame from its nearest keyframe, relative to the gap it lies in.
+
+    Args:
+        frame_count: frames F of the clip.
+        keyframes: (K,) increasing indices, K ≥ 1.
+
+    Returns:
+        (F,) in half gaps: 0 on a keyframe, 1 midway between two. Before the first and after the last keyframe
+        the nearest gap is the measure, and 1 the most; with a single keyframe the clip's length is.
+    """
+    K = np.asarray(keyframes, dtype=np.float64)
+    frame = np.arange(frame_count, dtype=np.float64)
+    nearest = np.abs(frame[:, None] - K).min(axis=1)
+    if len(K) < 2:
+        return np.asarray(np.minimum(2.0 * nearest / max(frame_count, 1), 1.0))
+    stretch = np.clip(np.searchsorted(K, frame, side="right") - 1, 0, len(K) - 2)
+    return np.asarray(np.minimum(2.0 * nearest / np.diff(K)[stretch], 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class OutputSet:
+    """A rule's output: triangles about `centre` (D,) of half-width `width` (D,), clipped at `degree`."""
+
+    centre: Array
+    width: Array
+    degree: float
+
+    def membership(self, value: Array) -> Array:
+        """Clipped membership (N, D) of values (N, D)."""
+        return np.asarray(np.clip(1.0 - np.abs(value - self.centre) / self.width, 0.0, self.degree))
+
+    @property
+    def corners(self) -> Array:
+        """(4, D) values at which the membership bends."""
+        top = (1.0 - self.degree) * self.width
+        return np.stack(
+            [self.centre - self.width, self.centre - top, self.centre + top, self.centre + self.width]
+        )
+
+
+def aggregate(near: OutputSet, far: OutputSet) -> tuple[Array, Array]:
+    """Mean and variance, (D,) each, of the maximum (OR) of two clipped output sets.
+
+    The joined membership is a broken line; its moments are exact: on each straight piece Simpson's rule
+    integrates membership times value squared, a cubic, without error.
+
+    Raises:
+        ValueError: Both degrees are zero.
+    """
+    if near.degree <= 0.0 and far.degree <= 0.0:
+        raise ValueError("neither rule applies: the degrees of near and far are both 0")
+    # Values relative to the middle, so that the variance does not cancel when the centres are large.
+    middle = 0.5 * (near.centre + far.centre)
+    value = np.sort(np.concatenate([near.corners, far.corners]), axis=0)  # (8, D)
+    value = np.sort(np.concatenate([value, _crossings(value, near, far)]), axis=0)  # (15, D)
+    centres = 0.5 * (value[:-1] + value[1:])
+    membership, at_centre = _joined(value, near, far), _joined(centres, near, far)
+    simpson = np.diff(value, axis=0) / 6.0
+    moments = []
+    for power in (0, 1, 2):
+        ends, between = membership * (value - middle) ** power, at_centre * (centres - middle) ** power
+        moments.append(np.sum(simpson * (ends[:-1] + 4.0 * between + ends[1:]), axis=0))
+    mean = moments[1] / moments[0]
+    return middle + mean, np.maximum(moments[2] / moments[0] - mean**2, 0.0)
+
+
+def _joined(value: Array, near: OutputSet, far: OutputSet) -> Array:
+    return np.maximum(near.membership(value), far.membership(value))
+
+
+def _crossings(value: Array, near: OutputSet, far: OutputSet) -> Array:
+    """Where the memberships cross between neighbouring values (N, D), or else their midpoint: (N - 1, D)."""
+    difference = near.membership(value) - far.membership(value)
+    before, after = difference[:-1], difference[1:]
+    crossing = before * after < 0.0
+    share = np.where(crossing, before / np.where(crossing, before - after, 1.0), 0.5)
+    return np.asarray(value[:-1] + share * np.diff(value, axis=0))
+
+
+def nearness(near_degree: ArrayLike, far_degree: ArrayLike, near_width: float, far_width: float) -> Array:
+    """μ of the compact form δ_t+1 = (1 - μ) δ_t: the rules defuzzified to one number.
+
+    With δ = θ̂ - θ_p the deviation from the a priori posture, the far rule's step is θ_p,t+1 - θ_p,t and
+    keeps δ; the near rule's is shorter by δ and ends at δ = 0. Measured from the far step the two output sets
+    stand at -δ and at 0. Sets that do not overlap have a joined mean of -δ A_near / (A_near + A_far), where
+    A = width · degree · (2 - degree) is the area of a clipped triangle. Hence δ_t+1 = δ_t + mean, which is
+    (1 - μ) δ_t with μ = A_near / (A_near + A_far). Sets that overlap share area, which the maximum counts
+    once; the joined mean then differs from -μ δ by less than a width, which is within the process noise.
+    Where only one rule applies both forms agree exactly: μ is 1 or 0.
+
+    Args:
+        near_degree: (...) degree of the near rule.
+        far_degree: (...) degree of the far rule.
+        near_width: half-width of the near rule's output set, in any unit.
+        far_width: half-width of the far rule's output set, in the same unit.
+
+    Returns:
+        (...) μ between 0 and 1.
+    """
+    near, far = np.asarray(near_degree, dtype=np.float64), np.asarray(far_degree, dtype=np.float64)
+    near_area = near_width * near * (2.0 - near)
+    far_area = far_width * far * (2.0 - far)
+    return np.asarray(near_area / (near_area + far_area))

@@ -1,0 +1,258 @@
+"""The paper's filter, method `ekf`: an extended Kalman filter whose process noise comes from fuzzy rules.
+
+One frame after the other: the fuzzy rules move the posture on (eqs. 10, 13, 17), then the markers'
+characteristics and the a priori depths correct it (eqs. 11, 12, 14 to 18). Postures live on a manifold, so
+steps are taken with `plus`, innovations of angles are wrapped, and a covariance is that of a tangent step.
+"""
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from ..body import rotations
+from ..body.kinematics import Body, Pose
+from ..body.posture import Posture
+from ..footage.camera import Camera
+from ..footage.tracks import RegionTracks
+from ..observation import depths
+from ..observation.line_ends import (
+    ANGLE,
+    LOG_RATIO,
+    LineEnds,
+    X,
+    Y,
+    angle_weight,
+    observed_characteristics,
+    residual,
+)
+from . import fuzzy
+from .filter_options import FilterOptions
+from .measurement_update import normalized_innovation_squared, update
+
+Array = NDArray[np.float64]
+
+LEAST_QUALITY = 0.05
+"""Below this a region's noise grows no further; its gate still holds."""
+LEAST_ANGLE_WEIGHT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A Gaussian over postures."""
+
+    mean: Posture
+    """A single posture."""
+    covariance: Array
+    """(D, D) of a tangent step at the mean [m², m rad, rad²]."""
+
+
+@dataclass(frozen=True, eq=False)
+class FilterResult:
+    """The filter's estimate of F frames, and what it says of itself."""
+
+    posture: Posture
+    """A batch of F postures."""
+    covariance: Array
+    """(F, D, D) of a tangent step at each posture."""
+    normalized_innovation_squared: Array
+    """(F,) of all rows that were used; χ² with `row_count` degrees of freedom if the model is right."""
+    row_count: NDArray[np.intp]
+    """(F,) number of rows that were used."""
+    gated: NDArray[np.bool_]
+    """(F, M) whether a marker was seen but not believed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """A state after its observations."""
+
+    state: State
+    normalized_innovation_squared: float
+    row_count: int
+    gated: NDArray[np.bool_]
+    """(M,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class FuzzyKalmanFilter:
+    """The filter's two halves, for one clip of F frames; `filter_clip` runs them."""
+
+    line_ends: LineEnds
+    prior: Posture
+    """A batch of F a priori postures θ_p."""
+    keyframes: Sequence[int]
+    """Increasing indices of the keyframes, at least one."""
+    options: FilterOptions = FilterOptions()
+
+    @cached_property
+    def distance(self) -> Array:
+        """(F,) distance of each frame from its nearest keyframe, in half gaps."""
+        return fuzzy.keyframe_distance(self.prior.batch[0], self.keyframes)
+
+    @cached_property
+    def prior_depths(self) -> Array:
+        """(F, P) depths of the a priori postures' principal points [m]."""
+        body, camera = self.line_ends.body, self.line_ends.camera
+        return depths.evaluate(body, camera, body.pose(self.prior), np.arange(self.prior.batch[0]))
+
+    @property
+    def _deviations(self) -> Array:
+        return self.line_ends.body.skeleton.deviations
+
+    def initial(self) -> State:
+        """The first frame before its observations: the a priori posture."""
+        return State(self.prior[0], np.diag((self.options.initial_std * self._deviations) ** 2))
+
+    def step(self, mean: Posture, frame: int) -> tuple[Array, Array]:
+        """Mean w̄ and variance, (D,) each, of the step from the frame before to `frame` (paper, section 5).
+
+        Both rules are asked for the frame that the step leads to, so that a keyframe itself is wholly near.
+        """
+        options, prior = self.options, self.prior[frame]
+        distance = self.distance[frame]
+        near = fuzzy.OutputSet(
+            prior.minus(mean),
+            options.near_width * self._deviations,
+            float(options.memberships.near(distance)),
+        )
+        far = fuzzy.OutputSet(
+            prior.minus(self.prior[frame - 1]),
+            options.far_width * self._deviations,
+            float(options.memberships.far(distance)),
+        )
+        return fuzzy.aggregate(near, far)
+
+    def predict(self, state: State, step: Array, variance: Array) -> State:
+        """Move on by a step (D,) of variance (D,) (paper, eq. 13, and M = P + Q, the second eq. 17).
+
+        The step is taken as known, as the paper prints it, although the near rule derives it from the
+        estimate: the covariance does not shrink near a keyframe. Only its axes turn with the body.
+        """
+        dofs = self.line_ends.body.skeleton.ball_dofs
+        turn = np.eye(len(step))
+        turn[dofs[:, :, None], dofs[:, None, :]] = rotations.exponential(-step[dofs])
+        return State(state.mean.plus(step), turn @ state.covariance @ turn.T + np.diag(variance))
+
+    def correct(self, state: State, frame: int, observed: Array, quality: Array) -> Correction:
+        """Correct a predicted state by what was seen (paper, eqs. 12 and 14 to 18).
+
+        Args:
+            state: the prediction for `frame`.
+            frame: index of the frame.
+            observed: (M, 4) characteristics as `observed_characteristics` gives them; NaN brings no row.
+            quality: (M,) in 0..1 how far each region can be trusted.
+        """
+        body, camera = self.line_ends.body, self.line_ends.camera
+        pose = body.pose(state.mean)
+        rows, innovation, gated = self._marker_rows(state, pose, frame, observed, quality)
+        scale = 1.0 / self.options.depth_std_m
+        rows.append(depths.jacobian(body, camera, pose, frame) * scale)
+        innovation.append((self.prior_depths[frame] - depths.evaluate(body, camera, pose, frame)) * scale)
+        result = update(state.covariance, np.concatenate(rows), np.concatenate(innovation))
+        # The covariance belongs to tangent steps at the old mean; at the new one they are measured anew.
+        moved = state.mean.plus_jacobian(result.step)
+        after = State(state.mean.plus(result.step), moved @ result.covariance @ moved.T)
+        count = sum(len(part) for part in innovation)
+        return Correction(after, result.normalized_innovation_squared, count, gated)
+
+    def noise_std(self, predicted: Array, observed: Array, quality: Array, width_px: Array) -> Array:
+        """Standard deviations (..., M, 4) of the characteristics: the square roots of R's diagonal.
+
+        Args:
+            predicted: (..., M, 4) characteristics.
+            observed: (..., M, 4) characteristics.
+            quality: (..., M) in 0..1; noise grows with its inverse.
+            width_px: (..., M) width of each segment in the image [px].
+        """
+        options = self.options
+        std = np.empty(np.broadcast_shapes(predicted.shape, observed.shape))
+        std[..., [X, Y]] = np.hypot(options.centroid_std_px, options.centroid_std_widths * width_px)[
+            ..., None
+        ]
+        # A direction must be there in both: seen or expected round, it says nothing.
+        weight = angle_weight(np.minimum(predicted[..., LOG_RATIO], observed[..., LOG_RATIO]))
+        std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, LEAST_ANGLE_WEIGHT)
+        std[..., LOG_RATIO] = options.log_ratio_std
+        return np.asarray(std / np.maximum(quality, LEAST_QUALITY)[..., None])
+
+    def _marker_rows(
+        self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
+    ) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
+        """Scaled rows and innovations of the markers seen and believed; which were seen only, (M,)."""
+        predicted = self.line_ends.evaluate(pose, frame)
+        std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))
+        scaled = residual(observed, predicted) / std
+        matrix = self.line_ends.jacobian(pose, frame) / std[..., None]
+        rows: list[Array] = []
+        innovation: list[Array] = []
+        gated = np.zeros(len(observed), dtype=bool)
+        for marker, seen in enumerate(np.isfinite(scaled)):
+            H, nu = matrix[marker, seen], scaled[marker, seen]
+            if not len(nu):
+                continue
+            limit = chi2.ppf(self.options.gate_probability, len(nu))
+            gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > limit
+            if not gated[marker]:
+                rows.append(H)
+                innovation.append(nu)
+        return rows, innovation, gated
+
+
+def filter_clip(
+    body: Body,
+    camera: Camera,
+    tracks: RegionTracks,
+    marker_segments: Sequence[str],
+    prior: Posture,
+    keyframes: Sequence[int],
+    options: FilterOptions | None = None,
+) -> Generator[float, None, FilterResult]:
+    """Estimate every frame of a clip by the paper's method.
+
+    Args:
+        body: the actor's body.
+        camera: the camera.
+        tracks: the markers' regions in F frames.
+        marker_segments: segment of each of the M markers, in the tracks' order.
+        prior: a batch of F a priori postures.
+        keyframes: increasing indices of the keyframes, at least one.
+        options: noise and fuzzy sets.
+
+    Yields:
+        The fraction of frames done.
+
+    Returns:
+        Posture and covariance of every frame.
+
+    Raises:
+        InputError: a marker's segment is unknown.
+        ValueError: frames or markers of the arguments disagree, or there is no keyframe.
+    """
+    frames, markers = tracks.centroid.shape[:2]
+    if prior.batch != (frames,) or len(marker_segments) != markers or not len(keyframes):
+        raise ValueError(
+            f"the tracks have {frames} frames and {markers} markers, the prior {prior.batch} frames; "
+            f"{len(marker_segments)} segments and {len(keyframes)} keyframes are given"
+        )
+    line_ends = LineEnds(body, camera, tuple(marker_segments))
+    estimator = FuzzyKalmanFilter(line_ends, prior, keyframes, options or FilterOptions())
+    observed = observed_characteristics(tracks)
+    state = estimator.initial()
+    done: list[Correction] = []
+    for frame in range(frames):
+        if frame > 0:
+            state = estimator.predict(state, *estimator.step(state.mean, frame))
+        done.append(estimator.correct(state, frame, observed[frame], tracks.quality[frame]))
+        state = done[-1].state
+        yield (frame + 1) / frames
+    return FilterResult(
+        posture=Posture.stack([one.state.mean for one in done]),
+        covariance=np.stack([one.state.covariance for one in done]),
+        normalized_innovation_squared=np.array([one.normalized_innovation_squared for one in done]),
+        row_count=np.array([one.row_count for one in done], dtype=np.intp),
+        gated=np.stack([one.gated for one in done]),
+    )

@@ -1,0 +1,190 @@
+"""g(θ) as the paper has it: the characteristics of a marker from both projected ends of its segment.
+
+The paper (section 3.2) says only that the characteristics of a marker area are expressed with the image
+coordinates of both ends of the body part. Here the centroid is their midpoint, the direction that of the
+line between them, and the aspect ratio compares the line's length with the segment's given width.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..body.kinematics import Body, Pose
+from ..body.rotations import cross_matrix
+from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
+from ..errors import InputError
+from ..footage.camera import Camera
+from ..footage.moments import axis_angle_difference, characteristics
+from ..footage.tracks import RegionTracks
+
+Array = NDArray[np.float64]
+
+X, Y, ANGLE, LOG_RATIO = range(4)
+"""Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
+
+Place = tuple[int, Array]
+"""A joint and a place in its frame, (3,) [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineEnds:
+    """The paper's observation of M marked segments.
+
+    Raises:
+        InputError: A segment is unknown.
+    """
+
+    body: Body
+    camera: Camera
+    segments: tuple[str, ...]
+    """Segment of each marker: one of the skeleton's, or `trunk` (hips' midpoint to shoulders' midpoint)."""
+
+    def __post_init__(self) -> None:
+        """Refuse an unknown segment at once."""
+        known = marker_segments(self.body)
+        for name in self.segments:
+            if name not in known:
+                raise InputError(
+                    f"a marker is bound to the unknown segment '{name}'; known are {', '.join(known)}"
+                )
+
+    @cached_property
+    def width_m(self) -> Array:
+        """(M,) width of each marked segment from the front [m]: the mean of its parts' ends."""
+        pieces = [[segment_piece(self.body, part) for part in marker_parts(name)] for name in self.segments]
+        return np.array([2.0 * np.mean([piece.half_widths[:, 0] for piece in parts]) for parts in pieces])
+
+    @cached_property
+    def _places(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """Joints (A,) and local places (A, 3) of all that makes an end, and its share in each, (M, 2, A)."""
+        joints: list[int] = []
+        local: list[Array] = []
+        shares: list[tuple[int, int, float]] = []
+        for marker, name in enumerate(self.segments):
+            for end, places in enumerate(_segment_ends(self.body, name)):
+                for joint, place in places:
+                    joints.append(joint)
+                    local.append(place)
+                    shares.append((marker, end, 1.0 / len(places)))
+        share = np.zeros((len(self.segments), 2, len(joints)))
+        for place_index, (marker, end, value) in enumerate(shares):
+            share[marker, end, place_index] = value
+        return np.array(joints, dtype=np.intp), np.stack(local), share
+
+    def evaluate(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
+        """The characteristics that the pose lets expect (paper, eq. 7 without noise).
+
+        A line of length l and width w [px] is taken for a region with S_λ = 1 + (l / w)²: the square of a
+        rectangle's sides (eq. 6 is the square of Figure 4's a/b) when seen from the side, and 1, a round
+        region, when seen end on.
+
+        Args:
+            pose: the body's pose, of any batch shape.
+            frame: index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
+
+        Returns:
+            (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
+        """
+        pixels, depth = self.camera.project(self._world_ends(pose), _per_end(frame))  # (..., M, 2, 2)
+        line = pixels[..., 1, :] - pixels[..., 0, :]
+        squared = _squared_shape(line, self._width_px(depth))
+        centre = pixels.mean(axis=-2)
+        angle = np.arctan2(line[..., 1], line[..., 0])
+        return np.stack([centre[..., 0], centre[..., 1], angle, np.log1p(squared)], axis=-1)
+
+    def jacobian(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
+        """Derivative of `evaluate` by the posture's tangent step, (..., M, 4, D); arguments as there.
+
+        The row of the angle grows without bound as a line shrinks to a point; `angle_weight` falls faster.
+        """
+        world, ends_jacobian, end = self._world_ends(pose), self._world_ends_jacobian(pose), _per_end(frame)
+        pixels, depth = self.camera.project(world, end)
+        image = self.camera.project_jacobian(world, end) @ ends_jacobian  # (..., M, 2, 2, D)
+        farther = (self.camera.depth_jacobian(world, end)[..., None, :] @ ends_jacobian)[..., 0, :]
+        line, d_line = pixels[..., 1, :] - pixels[..., 0, :], image[..., 1, :, :] - image[..., 0, :, :]
+        length_squared = np.maximum(np.sum(line**2, axis=-1), 1e-12)[..., None]
+        turned = np.stack([-line[..., 1], line[..., 0]], axis=-1)
+        d_angle = np.einsum("...i,...id->...d", turned, d_line) / length_squared
+        squared = _squared_shape(line, self._width_px(depth))[..., None]
+        d_depth = farther.mean(axis=-2) / depth.mean(axis=-1)[..., None]
+        d_length = np.einsum("...i,...id->...d", line, d_line) / length_squared
+        d_log_ratio = 2.0 * squared / (1.0 + squared) * (d_length + d_depth)
+        centre = image.mean(axis=-3)
+        return np.stack([centre[..., 0, :], centre[..., 1, :], d_angle, d_log_ratio], axis=-2)
+
+    def width_px(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
+        """Width of each marked segment in the image, (..., M) [px]; arguments as `evaluate`."""
+        return self._width_px(self.camera.depth(self._world_ends(pose), _per_end(frame)))
+
+    def _width_px(self, depth: Array) -> Array:
+        return np.asarray(self.width_m * self.camera.focal_px / depth.mean(axis=-1))
+
+    def _world_ends(self, pose: Pose) -> Array:
+        """Both ends of each segment in the world, (..., M, 2, 3) [m]."""
+        return np.asarray(np.einsum("mea,...ai->...mei", self._places[2], self._world_places(pose)))
+
+    def _world_places(self, pose: Pose) -> Array:
+        joint, local, _ = self._places
+        turned = (pose.rotation[..., joint, :, :] @ local[..., None])[..., 0]
+        return np.asarray(pose.origin[..., joint, :] + turned)
+
+    def _world_ends_jacobian(self, pose: Pose) -> Array:
+        """Derivative of the ends, (..., M, 2, 3, D)."""
+        joint, _, share = self._places
+        screws = pose.screws[..., None, :, :]
+        # ω × p is -[p]× ω; all places at once, since a filter asks for one posture at a time.
+        linear = screws[..., 0:3, :] - cross_matrix(self._world_places(pose)) @ screws[..., 3:6, :]
+        moving = linear * self.body.skeleton.moved_by[joint][:, None, :]
+        return np.asarray(np.einsum("mea,...aid->...meid", share, moving))
+
+
+def observed_characteristics(tracks: RegionTracks) -> Array:
+    """The characteristics of tracked regions (paper, eqs. 3 to 6), (F, M, 4) in the order of `evaluate`.
+
+    NaN where a marker is hidden, or where its region is too thin to have a ratio.
+    """
+    seen = characteristics(tracks.centroid, tracks.second_moment)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        log_ratio = np.log(seen.ratio)
+    return np.stack([seen.x, seen.y, seen.angle_rad, log_ratio], axis=-1)
+
+
+def residual(observed: Array, predicted: Array) -> Array:
+    """Innovation observed - predicted of characteristics (..., 4), the angle wrapped to [-π/2, π/2)."""
+    difference = observed - predicted
+    difference[..., ANGLE] = axis_angle_difference(observed[..., ANGLE], predicted[..., ANGLE])
+    return np.asarray(difference)
+
+
+def angle_weight(log_ratio: ArrayLike) -> Array:
+    """How far a region of aspect S_λ has a direction: (S_λ - 1)/(S_λ + 1), from 0 (round) to 1 (a line).
+
+    The direction is half the angle of (A_xx - A_yy, 2 A_xy), whose length is λ1 - λ2; an error of A in
+    proportion to its size λ1 + λ2 therefore turns it by the inverse of this weight.
+    """
+    return np.asarray(np.tanh(0.5 * np.maximum(np.asarray(log_ratio, dtype=np.float64), 0.0)))
+
+
+def _squared_shape(line: Array, width_px: Array) -> Array:
+    return np.asarray(np.sum(line**2, axis=-1) / width_px**2)
+
+
+def _per_end(frame: ArrayLike | None) -> NDArray[np.intp] | None:
+    return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None, None]
+
+
+def _segment_ends(body: Body, name: str) -> tuple[list[Place], list[Place]]:
+    """Places whose mean is the segment's start, and those whose mean is its end."""
+    skeleton = body.skeleton
+    if name == TRUNK:
+        return _points_named(body, ("hip.L", "hip.R")), _points_named(body, ("shoulder.L", "shoulder.R"))
+    segment = next(segment for segment in skeleton.segments if segment.name == name)
+    return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
+
+
+def _points_named(body: Body, names: Sequence[str]) -> list[Place]:
+    indices = [body.skeleton.point_names.index(name) for name in names]
+    return [(body.skeleton.points[i].joint, body.point_places[i]) for i in indices]

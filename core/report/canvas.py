@@ -1,0 +1,156 @@
+"""A picture to draw on, in picture units with fractions, anti-aliased."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Image = NDArray[np.uint8]
+Color = tuple[int, int, int]
+"""Blue, green, red, 0 to 255."""
+
+WHITE: Color = (255, 255, 255)
+INK: Color = (51, 45, 42)
+PALE: Color = (226, 222, 219)
+GREY: Color = (140, 134, 130)
+LEFT: Color = (178, 114, 0)
+RIGHT: Color = (0, 94, 213)
+"""Blue and vermilion, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
+ACCENT: Color = (115, 158, 0)
+
+SCALE = 2
+"""Everything is drawn this much larger and reduced at the end, for smoother lines and letters."""
+SHIFT = 4
+"""OpenCV takes coordinates in sixteenths of a pixel."""
+FONT = cv2.FONT_HERSHEY_DUPLEX
+LETTER_PX = 21.0
+"""Height of the font's capital letters at scale 1."""
+
+
+class Canvas:
+    """A picture of `width` by `height`; y runs down, the origin is the outer corner of the top left pixel."""
+
+    def __init__(self, width: int, height: int, color: Color = WHITE) -> None:
+        self.width, self.height = width, height
+        self._pixels: Image = np.empty((height * SCALE, width * SCALE, 3), dtype=np.uint8)
+        cv2.rectangle(self._pixels, (0, 0), (width * SCALE, height * SCALE), color, cv2.FILLED)
+
+    def image(self) -> Image:
+        """The finished picture, (height, width, 3), blue, green, red."""
+        reduced = cv2.resize(self._pixels, (self.width, self.height), interpolation=cv2.INTER_AREA)
+        return np.asarray(reduced, dtype=np.uint8)
+
+    def paste(self, image: Image, left: int, top: int, width: int, height: int) -> None:
+        """Fit a picture into a rectangle that lies on the canvas."""
+        size = (width * SCALE, height * SCALE)
+        larger = size[0] > image.shape[1]
+        way = cv2.INTER_CUBIC if larger else cv2.INTER_AREA
+        rows = slice(top * SCALE, top * SCALE + size[1])
+        self._pixels[rows, left * SCALE : left * SCALE + size[0]] = cv2.resize(image, size, interpolation=way)
+
+    def line(self, points: ArrayLike, color: Color, thickness: float = 1.0, *, closed: bool = False) -> None:
+        """Draw a line through points (N, 2); it is broken where a point is not finite."""
+        places = np.asarray(points, dtype=np.float64)
+        finite = np.isfinite(places).all(axis=-1)
+        for run in np.split(np.arange(len(places)), np.flatnonzero(np.diff(finite)) + 1):
+            if finite[run[0]] and len(run) > 1:
+                whole = closed and len(run) == len(places)
+                cv2.polylines(
+                    self._pixels, [_fixed(places[run])], whole, color, _width(thickness), cv2.LINE_AA, SHIFT
+                )
+
+    def dashed(self, start: ArrayLike, end: ArrayLike, color: Color, dash: float = 5.0) -> None:
+        """Draw a thin dashed line."""
+        a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+        count = max(int(np.linalg.norm(b - a) / (2.0 * dash)), 1)
+        for share in np.arange(count) / count:
+            self.line([a + share * (b - a), a + (share + 0.5 / count) * (b - a)], color)
+
+    def disc(self, centre: ArrayLike, radius: float, color: Color) -> None:
+        """Fill a circle."""
+        self._circle(centre, radius, color, cv2.FILLED)
+
+    def ring(self, centre: ArrayLike, radius: float, color: Color, thickness: float = 1.0) -> None:
+        """Draw a circle."""
+        self._circle(centre, radius, color, _width(thickness))
+
+    def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
+        """Fill a rectangle."""
+        corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]], dtype=np.float64)
+        cv2.fillConvexPoly(self._pixels, _fixed(corners), color, cv2.LINE_AA, SHIFT)
+
+    def polygon(self, corners: ArrayLike, color: Color) -> None:
+        """Fill a convex polygon of corners (N, 2)."""
+        cv2.fillConvexPoly(
+            self._pixels, _fixed(np.asarray(corners, dtype=np.float64)), color, cv2.LINE_AA, SHIFT
+        )
+
+    def text(
+        self, words: str, x: float, y: float, size: float = 9.0, color: Color = INK, align: str = "left"
+    ) -> None:
+        """Write ASCII words with their base line at `y`; `size` is the height of capital letters.
+
+        `align` says what of the words stands at `x`: their `left`, `middle` or `right`.
+        """
+        x -= self.text_width(words, size) * {"left": 0.0, "middle": 0.5, "right": 1.0}[align]
+        at = (round(x * SCALE), round(y * SCALE))
+        weight = max(1, round(size * SCALE / 14.0))
+        cv2.putText(self._pixels, words, at, FONT, size * SCALE / LETTER_PX, color, weight, cv2.LINE_AA)
+
+    @staticmethod
+    def text_width(words: str, size: float = 9.0) -> float:
+        """Width of words as `text` writes them."""
+        (width, _), _ = cv2.getTextSize(words, FONT, size * SCALE / LETTER_PX, 1)
+        return float(width) / SCALE
+
+    def vertical_text(self, words: str, x: float, y: float, size: float = 9.0, color: Color = INK) -> None:
+        """Write words upwards, their middle at `y` and their base line at `x`."""
+        width, height = round(self.text_width(words, size)) + 4, round(2.0 * size)
+        strip = Canvas(width, height)
+        strip.text(words, 2.0, 1.5 * size, size, color)
+        turned = np.ascontiguousarray(np.rot90(strip._pixels))
+        top, left = round(y - width / 2.0) * SCALE, round(x - 1.5 * size) * SCALE
+        self._pixels[top : top + turned.shape[0], left : left + turned.shape[1]] = turned
+
+    def _circle(self, centre: ArrayLike, radius: float, color: Color, thickness: int) -> None:
+        place = np.asarray(centre, dtype=np.float64)
+        if np.isfinite(place).all():
+            x, y = _fixed(place[None])[0, 0]
+            size = round(radius * SCALE * 2**SHIFT)
+            cv2.circle(self._pixels, (int(x), int(y)), size, color, thickness, cv2.LINE_AA, SHIFT)
+
+
+def write_png(path: str, image: Image) -> None:
+    """Write a picture as PNG, on every system to every path.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 4])
+    if not done:
+        raise OSError(f"{path}: the picture cannot be encoded")
+    with open(path, "wb") as file:
+        file.write(data.tobytes())
+
+
+def ticks(low: float, high: float, most: int) -> Sequence[float]:
+    """Round numbers from `low` to `high`, at most `most` of them: steps of 1, 2 or 5 times a power of ten."""
+    span = max(high - low, 1e-9)
+    power = 10.0 ** np.floor(np.log10(span / most))
+    step = next(
+        power * factor for factor in (1.0, 2.0, 5.0, 10.0, 20.0) if span / (power * factor) <= most - 1
+    )
+    first = np.ceil(low / step - 1e-9) + 0.0  # no negative zero
+    return [float(step * n) for n in np.arange(first, np.floor(high / step + 1e-9) + 1)]
+
+
+def _fixed(points: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Points (N, 2) for polygons: (N, 1, 2) in sixteenths, pixel centres at whole numbers."""
+    reach = 2.0**14  # far outside every picture; more would overflow
+    places = np.clip(points * SCALE - 0.5, -reach, reach)
+    return np.round(places * 2**SHIFT).astype(np.int32)[:, None]
+
+
+def _width(thickness: float) -> int:
+    return max(1, round(thickness * SCALE))

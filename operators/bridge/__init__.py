@@ -1,0 +1,1 @@
+"""The border between Blender's data and core's: no operators, no panels, no user interface."""

@@ -1,0 +1,44 @@
+"""Slotted Actions by the part of Blender's interface that 4.5 and 5.x share."""
+
+import bpy
+
+
+def channelbag_for(action: bpy.types.Action, datablock: bpy.types.ID) -> bpy.types.ActionChannelbag:
+    """The F-curves of `datablock` in `action`; slot, layer, strip and bag are added where missing."""
+    slot = slot_for(action, datablock)
+    if slot is None:
+        slot = action.slots.new(id_type=datablock.id_type, name=datablock.name)
+    layer = action.layers[0] if action.layers else action.layers.new("Layer")
+    strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
+    return strip.channelbag(slot, ensure=True)
+
+
+def existing_channelbag(
+    action: bpy.types.Action, datablock: bpy.types.ID
+) -> bpy.types.ActionChannelbag | None:
+    """The F-curves of `datablock` in `action`, or None where it has none."""
+    slot = slot_for(action, datablock)
+    if slot is None or not action.layers or not action.layers[0].strips:
+        return None
+    return action.layers[0].strips[0].channelbag(slot)
+
+
+def slot_for(action: bpy.types.Action, datablock: bpy.types.ID) -> bpy.types.ActionSlot | None:
+    """The slot that animates `datablock`: the one in use, else the one of its name, else the only one."""
+    suitable = [slot for slot in action.slots if slot.target_id_type in (datablock.id_type, "UNSPECIFIED")]
+    data = datablock.animation_data
+    if data is not None and data.action == action and data.action_slot is not None:
+        return data.action_slot
+    named = [slot for slot in suitable if slot.name_display == datablock.name]
+    if named:
+        return named[0]
+    return suitable[0] if len(suitable) == 1 else None
+
+
+def assign_action(datablock: bpy.types.ID, action: bpy.types.Action) -> None:
+    """Let `action` animate `datablock`, with its slot: without one nothing would move."""
+    slot = slot_for(action, datablock)
+    data = datablock.animation_data_create()
+    data.action = action
+    if slot is not None:
+        data.action_slot = slot

@@ -1,0 +1,89 @@
+"""An actor's sizes from an armature's bones, whatever the armature's rest pose."""
+
+from collections.abc import Mapping
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.actor import Actor
+from ...core.body.kinematics import Body
+from ...core.body.skeleton import Placement, Skeleton
+from ...core.errors import InputError
+from .bones import BoneModel, bone_models
+from .object_space import object_space
+
+Array = NDArray[np.float64]
+
+LARGEST_MISFIT = 0.01
+"""Share of stature by which bones may lie off the skeleton before the armature counts as another one."""
+ANY_STATURE_M = 1.7
+"""Bones' axes do not depend on sizes; any actor yields them."""
+
+
+def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
+    """The skeleton's bones, parents first, of an armature that has them all.
+
+    Raises:
+        InputError: The object is no armature, or lacks bones.
+    """
+    if armature_object is None or armature_object.type != "ARMATURE":
+        name = "nothing" if armature_object is None else f"'{armature_object.name}'"
+        raise InputError(f"{name} is not an armature; select the actor's armature")
+    models = bone_models(Body(Actor.from_stature(ANY_STATURE_M), skeleton))
+    bones = armature_object.data.bones
+    missing = [model.name for model in models if model.name not in bones]
+    if missing:
+        raise InputError(
+            f"armature '{armature_object.name}' lacks the bones {', '.join(missing)}; "
+            "build an actor with Keymark and keep its bones' names"
+        )
+    return models
+
+
+def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
+    """The sizes of an armature's bones in the world, the object's scale included.
+
+    Every bone's own vector and its head's place in its parent's axes are linear in the actor's lengths;
+    the lengths are their least-squares solution.
+
+    Raises:
+        InputError: A bone is missing, the object is scaled unevenly, a length is out of range, or the bones
+            do not lie as the skeleton's segments do.
+    """
+    models = {model.name: model for model in skeleton_bones(armature_object, skeleton)}
+    scale = object_space(armature_object).scale
+    segments = {segment.name: segment for segment in skeleton.segments}
+    names = tuple(Actor.from_stature(ANY_STATURE_M).segments_m)
+    rows: list[Array] = []
+    places: list[Array] = []
+    for name, model in models.items():
+        bone, segment = armature_object.data.bones[name], segments[name]
+        rows.append(_factors(names, (1.0, segment.end), (-1.0, segment.start)))
+        places.append(model.axes[:, 1] * bone.length * scale)
+        if model.parent is not None:
+            joints = [(1.0, skeleton.joints[i].placement) for i in model.chain]
+            above = segments[model.parent]
+            rows.append(_factors(names, *joints, (1.0, segment.start), (-1.0, above.start)))
+            local = bone.parent.matrix_local.inverted() @ bone.head_local
+            places.append(models[model.parent].axes @ np.array(local) * scale)
+    matrix, place = np.concatenate(rows), np.concatenate(places)
+    lengths = np.linalg.lstsq(matrix, place, rcond=None)[0]
+    body = Body(Actor(dict(zip(names, map(float, lengths), strict=True))), skeleton)
+    misfit = float(np.abs(matrix @ lengths - place).max())
+    if misfit > LARGEST_MISFIT * body.actor.stature_m:
+        raise InputError(
+            f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's skeleton; "
+            "build an actor with Keymark and change its lengths only"
+        )
+    return body
+
+
+def _factors(names: tuple[str, ...], *signed: tuple[float, Placement]) -> Array:
+    """A sum of placements as a matrix (3, lengths) that takes the actor's lengths to a place."""
+    factors: dict[str, Array] = {name: np.zeros(3) for name in names}
+    for sign, placement in signed:
+        length: Mapping[str, tuple[float, float, float]] = placement
+        for name, share in length.items():
+            factors[name] = factors[name] + sign * np.asarray(share)
+    return np.stack([factors[name] for name in names], axis=1)

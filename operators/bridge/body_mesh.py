@@ -1,0 +1,156 @@
+"""A simple body on the armature's bones: one tapered, rounded limb a segment, markers in their colours."""
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ...core.body.kinematics import Body
+from ...core.body.shapes import Piece, body_pieces, marker_parts
+from ...core.footage.markers import MarkerStyle
+from .actor_lengths import skeleton_bones
+
+Array = NDArray[np.float64]
+
+SIDES_OF_RING = 20
+RINGS_OF_CAP = 4
+SKIN_SRGB = (178, 164, 150)
+SKIN_NAME = "Body"
+LINEAR_SRGB = 0.04045
+"""Below this share of full scale sRGB is linear (IEC 61966-2-1)."""
+
+
+def build_body_mesh(
+    armature_object: bpy.types.Object, body: Body, markers: Sequence[MarkerStyle]
+) -> bpy.types.Object:
+    """Add a mesh that the armature moves, each vertex with one bone.
+
+    The shaft of a marker's segment has the marker's colour, without shading from lights or view transform
+    beyond what the renderer adds; caps and all other segments are a plain skin.
+
+    Args:
+        armature_object: The actor, built for `body`.
+        body: Skeleton and sizes.
+        markers: What the performer wears; `trunk` covers pelvis and chest.
+
+    Returns:
+        The mesh object, parented to the armature with an Armature modifier.
+
+    Raises:
+        InputError: The armature lacks bones.
+    """
+    materials = [_material(SKIN_NAME, SKIN_SRGB)]
+    colour_of: dict[str, int] = {}
+    coloured_caps: dict[str, set[int]] = {}
+    for marker in markers:
+        parts = marker_parts(marker.segment)
+        for part in parts:
+            colour_of[part] = len(materials)
+            # Where two parts of one marker meet, the joint between them is coloured as well.
+            coloured_caps[part] = ({1} if part != parts[-1] else set()) | ({0} if part != parts[0] else set())
+        materials.append(_material(marker.name, marker.color_srgb))
+    axes = {model.name: model for model in skeleton_bones(armature_object, body.skeleton)}
+    vertices: list[Array] = []
+    faces: list[NDArray[np.intp]] = []
+    colours: list[int] = []
+    groups: dict[str, range] = {}
+    count = 0
+    for piece in body_pieces(body):
+        model = axes[piece.segment]
+        rest = np.array(armature_object.data.bones[piece.segment].matrix_local, dtype=np.float64)
+        rings = _limb(piece)
+        # The joint's frame at the bone's rest, whatever the armature's rest pose is.
+        start = body.local(next(s.start for s in body.skeleton.segments if s.name == piece.segment))
+        placed = rest[:3, 3] + (rings.reshape(-1, 3) - start) @ model.axes @ rest[:3, :3].T
+        quads = _quads(len(rings))
+        vertices.append(placed)
+        faces.append(quads.reshape(-1, 4) + count)
+        bands = _coloured_bands(coloured_caps.get(piece.segment, set()))
+        material = colour_of.get(piece.segment, 0)
+        colours += [
+            material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
+        ]
+        groups[piece.segment] = range(count, count + len(placed))
+        count += len(placed)
+    mesh = _mesh(armature_object.name, np.concatenate(vertices), np.concatenate(faces), colours)
+    for material_data in materials:
+        mesh.materials.append(material_data)
+    return _skinned(armature_object, mesh, groups)
+
+
+def _coloured_bands(caps: set[int]) -> range:
+    """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
+    first = 0 if 0 in caps else RINGS_OF_CAP
+    return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
+
+
+def _limb(piece: Piece) -> Array:
+    """Rings (R, sides, 3) along a piece in its joint's frame."""
+    along = piece.end - piece.start
+    axis = along / np.linalg.norm(along)
+    angle = np.linspace(0.0, 2.0 * np.pi, SIDES_OF_RING, endpoint=False)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)  # (sides, 2)
+    rings = []
+    # Half ellipsoids close both ends, as deep as the narrower half-width.
+    rise = np.linspace(0.0, 0.5 * np.pi, RINGS_OF_CAP + 1)
+    for end, direction, widths in ((0, -1.0, piece.half_widths[0]), (1, 1.0, piece.half_widths[1])):
+        centre = piece.start if end == 0 else piece.end
+        for share in rise[::-1] if end == 0 else rise:
+            # The pole keeps a tiny ring, so that every band is made of quads.
+            around = circle * widths * max(float(np.cos(share)), 1e-3)
+            middle = centre + direction * np.sin(share) * widths.min() * axis
+            rings.append(middle + around[:, :1] * piece.lateral + around[:, 1:] * piece.sagittal)
+    return np.stack(rings)
+
+
+def _quads(rings: int) -> NDArray[np.intp]:
+    """(rings - 1, sides, 4) vertex indices of the bands between neighbouring rings."""
+    ring = np.arange(rings - 1)[:, None] * SIDES_OF_RING
+    side = np.arange(SIDES_OF_RING)[None, :]
+    following = (side + 1) % SIDES_OF_RING
+    corners = [ring + side, ring + following, ring + SIDES_OF_RING + following, ring + SIDES_OF_RING + side]
+    return np.stack(corners, axis=-1)
+
+
+def _mesh(name: str, vertices: Array, faces: NDArray[np.intp], colours: list[int]) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new(f"{name} Body")
+    mesh.from_pydata(vertices.tolist(), [], faces.tolist())
+    mesh.polygons.foreach_set("material_index", np.array(colours, np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(faces), bool))
+    mesh.update()
+    return mesh
+
+
+def _skinned(
+    armature_object: bpy.types.Object, mesh: bpy.types.Mesh, groups: dict[str, range]
+) -> bpy.types.Object:
+    body_object = bpy.data.objects.new(mesh.name, mesh)
+    for collection in armature_object.users_collection:
+        collection.objects.link(body_object)
+    body_object.parent = armature_object
+    body_object.matrix_parent_inverse = Matrix.Identity(4)
+    for name, indices in groups.items():
+        body_object.vertex_groups.new(name=name).add(list(indices), 1.0, "REPLACE")
+    modifier = body_object.modifiers.new("Armature", "ARMATURE")
+    modifier.object = armature_object
+    return body_object
+
+
+def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material:
+    material = bpy.data.materials.new(name)
+    linear = (*_linear(color_srgb), 1.0)
+    material.diffuse_color = linear
+    if not material.use_nodes:
+        material.use_nodes = True
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    shader.inputs["Base Color"].default_value = linear
+    shader.inputs["Roughness"].default_value = 0.9
+    return material
+
+
+def _linear(color_srgb: tuple[int, int, int]) -> tuple[float, ...]:
+    share = np.array(color_srgb) / 255.0
+    curve = ((share + 0.055) / 1.055) ** 2.4
+    return tuple(float(value) for value in np.where(share <= LINEAR_SRGB, share / 12.92, curve))

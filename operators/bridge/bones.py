@@ -1,0 +1,116 @@
+"""How the skeleton's joints become bones: one bone a segment, with axes an animator can turn by hand.
+
+A bone's Y runs along its segment. Its X is the axis of the segment's first hinge, so that a positive
+turn about local X raises the girdle, bends the elbow and bends the knee, and a positive turn about local
+Y pronates the forearm or turns the shin. A segment without a hinge takes the X of the segment that
+continues it in a straight line (upper arm from forearm, thigh from shin), a rigid leaf that of its
+parent (hand, foot), and all others the body's left. Left and right are then mirror images as Blender
+defines them, so that pasting a pose flipped works.
+
+The bone's axes define the joint's frame: `frame = bone rotation @ axes.T`, whatever the armature's rest
+pose is. Editing the rest pose to an A pose, or applying the object's rotation, changes nothing.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.kinematics import Body
+from ...core.body.skeleton import JointKind, Segment, Skeleton
+
+Array = NDArray[np.float64]
+
+STRAIGHT = 1.0 - 1e-6
+"""Cosine above which a segment continues another."""
+
+
+@dataclass(frozen=True, eq=False)
+class BoneModel:
+    """A segment seen as a bone."""
+
+    name: str
+    parent: str | None
+    joint: int
+    """The joint whose frame the bone moves with."""
+    chain: tuple[int, ...]
+    """Elementary joints between the parent's frame and this one's, outermost last; empty for rigid leaves."""
+    axes: Array
+    """(3, 3) the bone's axes at rest as columns, in the joint's frame."""
+    start: Array
+    """(3,) the bone's head in its joint's frame [m]."""
+    end: Array
+    """(3,) the bone's tail in its joint's frame [m]."""
+
+    @property
+    def is_root(self) -> bool:
+        """Whether the bone carries the body's place in the world."""
+        return self.parent is None
+
+    def hinge_count(self, skeleton: Skeleton) -> int:
+        """Number of hinges the bone stands for: 0 for balls, 1 or 2 otherwise."""
+        return sum(skeleton.joints[i].kind is JointKind.HINGE for i in self.chain)
+
+
+def bone_models(body: Body) -> tuple[BoneModel, ...]:
+    """The body's bones, parents first.
+
+    Args:
+        body: Skeleton and sizes; lengths in metres.
+    """
+    skeleton = body.skeleton
+    axes: dict[str, Array] = {}
+    models = []
+    for segment in skeleton.segments:
+        along = _direction(body, segment)
+        x = _bending_axis(body, segment, axes)
+        axes[segment.name] = np.column_stack([x, along, np.cross(x, along)])
+        models.append(
+            BoneModel(
+                segment.name,
+                segment.parent,
+                segment.joint,
+                _chain(skeleton, segment),
+                axes[segment.name],
+                body.local(segment.start),
+                body.local(segment.end),
+            )
+        )
+    return tuple(models)
+
+
+def _direction(body: Body, segment: Segment) -> Array:
+    along = body.local(segment.end) - body.local(segment.start)
+    return np.asarray(along / np.linalg.norm(along))
+
+
+def _chain(skeleton: Skeleton, segment: Segment) -> tuple[int, ...]:
+    above = next((s.joint for s in skeleton.segments if s.name == segment.parent), -1)
+    chain: list[int] = []
+    joint = segment.joint
+    while joint != above:
+        chain.insert(0, joint)
+        joint = skeleton.joints[joint].parent
+    return tuple(chain)
+
+
+def _first_hinge(skeleton: Skeleton, segment: Segment) -> Array | None:
+    for joint in _chain(skeleton, segment):
+        if skeleton.joints[joint].kind is JointKind.HINGE:
+            return np.asarray(skeleton.joints[joint].axis)
+    return None
+
+
+def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Array:
+    axis = _first_hinge(body.skeleton, segment)
+    if axis is not None:
+        return axis
+    along = _direction(body, segment)
+    for other in body.skeleton.segments:
+        if other.parent == segment.name and _direction(body, other) @ along > STRAIGHT:
+            follower = _first_hinge(body.skeleton, other)
+            if follower is not None:
+                return follower
+    if segment.parent and not _chain(body.skeleton, segment):
+        return np.asarray(known[segment.parent][:, 0])
+    return np.array([1.0, 0.0, 0.0])

@@ -1,0 +1,97 @@
+"""A motion as F-curves of an Action that animates the actor's armature."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.skeleton import Skeleton
+from ...core.motion import Motion
+from .actions import assign_action, channelbag_for, existing_channelbag
+from .actor_lengths import skeleton_bones
+from .bone_channels import bone_channels
+from .keys import add_generated_keys, copy_keys, ensure_fcurve, remove_generated_keys
+from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
+
+Array = NDArray[np.float64]
+
+
+def bone_path(bone: str, channel: str) -> str:
+    """Data path of a pose bone's property."""
+    return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{channel}'
+
+
+def moved_paths(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[str, ...]:
+    """Data paths of everything that a posture says: rotations in all modes, and the root's location."""
+    return tuple(
+        bone_path(model.name, channel)
+        for model in skeleton_bones(armature_object, skeleton)
+        if model.chain
+        for channel in (*ALL_PATHS, *(("location",) if model.is_root else ()))
+    )
+
+
+def write_motion(
+    armature_object: bpy.types.Object,
+    motion: Motion,
+    action: bpy.types.Action | None = None,
+    keyframe_action: bpy.types.Action | None = None,
+    frames: Array | None = None,
+) -> bpy.types.Action:
+    """Write a motion as an Action and let it animate the armature.
+
+    One group a bone, one key a frame and channel in the bone's own rotation mode, of type GENERATED.
+    Written again into the same Action, it replaces only such keys; the animator's stay and win their frames.
+
+    Args:
+        armature_object: The actor, in any place and even scale; it shows the motion's world places.
+        motion: What to write.
+        action: The Action to write into; a new one by default.
+        keyframe_action: Where the animator keyed bones without degrees of freedom (hands, feet); their curves
+            are copied, so that they move as posed.
+        frames: (F,) scene frames; the motion's own by default.
+
+    Raises:
+        InputError: A bone is missing, or the object is scaled unevenly.
+    """
+    channels = bone_channels(armature_object, motion.posture)
+    frames = motion.scene_frames if frames is None else frames
+    if action is None:
+        action = bpy.data.actions.new(f"{armature_object.name} Motion")
+    channelbag = channelbag_for(action, armature_object)
+    remove_generated_keys(channelbag, moved_paths(armature_object, motion.body.skeleton))
+    for channel in channels:
+        mode = armature_object.pose.bones[channel.bone].rotation_mode
+        values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
+        if channel.location is not None:
+            values["location"] = channel.location
+        for name, columns in values.items():
+            path = bone_path(channel.bone, name)
+            for index, column in enumerate(columns.T):
+                add_generated_keys(channelbag, path, index, channel.bone, frames, column)
+    if keyframe_action is not None:
+        _copy_leaves(armature_object, motion.body.skeleton, keyframe_action, channelbag)
+    assign_action(armature_object, action)
+    return action
+
+
+def _copy_leaves(
+    armature_object: bpy.types.Object,
+    skeleton: Skeleton,
+    source: bpy.types.Action,
+    channelbag: bpy.types.ActionChannelbag,
+) -> None:
+    """Copy the curves of bones without degrees of freedom; what an earlier run copied is replaced."""
+    given = existing_channelbag(source, armature_object)
+    if given is None:
+        return
+    leaves = {
+        bone_path(model.name, channel): model.name
+        for model in skeleton_bones(armature_object, skeleton)
+        if not model.chain
+        for channel in (*ALL_PATHS, "location")
+    }
+    for curve in given.fcurves:
+        bone = leaves.get(curve.data_path)
+        if bone is None:
+            continue
+        copy_keys(curve, ensure_fcurve(channelbag, curve.data_path, curve.array_index, bone))

@@ -1,0 +1,106 @@
+"""Postures from joint frames: exact where a frame lies within the skeleton's freedoms, nearest where not."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body import rotations
+from ...core.body.posture import Posture
+from ...core.body.skeleton import JointKind, Skeleton
+from .bones import BoneModel
+
+Array = NDArray[np.float64]
+
+SWEEPS = 50
+CONVERGED_RAD = 1e-12
+
+
+def posture_from_frames(
+    skeleton: Skeleton, models: tuple[BoneModel, ...], frames: Mapping[str, Array], hips: Array
+) -> Posture:
+    """The posture nearest to given orientations of the bones' joints.
+
+    Every joint is fitted against the frame its parent was fitted to, so that what a hinge cannot follow
+    does not turn the limb beyond it.
+
+    Args:
+        skeleton: The skeleton the bones belong to.
+        models: Its bones, parents first.
+        frames: World orientation (3, 3) of each bone's joint, by name of bone.
+        hips: (3,) world place of the root [m].
+    """
+    turns = {joint: np.eye(3) for joint in skeleton.ball_joints}
+    angles = {joint: 0.0 for joint in skeleton.hinge_joints}
+    reached: dict[str | None, Array] = {None: np.eye(3)}
+    for model in models:
+        above = reached[model.parent]
+        relative = above.T @ frames[model.name]
+        hinges = [i for i in model.chain if skeleton.joints[i].kind is JointKind.HINGE]
+        if hinges:
+            fitted = nearest_hinges([np.asarray(skeleton.joints[i].axis) for i in hinges], relative)
+            angles.update(zip(hinges, fitted, strict=True))
+            relative = np.eye(3)
+            for joint, angle in zip(hinges, fitted, strict=True):
+                relative = relative @ rotations.hinge(
+                    np.asarray(skeleton.joints[joint].axis), np.array(angle)
+                )
+        elif model.chain:
+            turns[model.chain[0]] = relative
+        else:
+            relative = np.eye(3)
+        reached[model.name] = above @ relative
+    return Posture(
+        skeleton,
+        hips,
+        np.stack([turns[joint] for joint in skeleton.ball_joints]),
+        np.array([angles[joint] for joint in skeleton.hinge_joints]),
+    )
+
+
+def nearest_hinges(axes: list[Array], rotation: Array) -> list[float]:
+    """Angles of a chain of hinges whose product is nearest to a rotation (least angle between both).
+
+    Each angle has a closed form when the others are held; alternating settles within a few sweeps and
+    at once where the rotation is within reach.
+
+    Args:
+        axes: Unit axis (3,) of each hinge, in the order of the product.
+        rotation: (3, 3).
+    """
+    angles = [0.0] * len(axes)
+    if len(axes) == 2:  # start where the chain is exact, so that no other local optimum is found
+        angles[0] = _first_angle(axes[0], axes[1], rotation)
+    for _ in range(SWEEPS):
+        before = list(angles)
+        for i, axis in enumerate(axes):
+            left, right = np.eye(3), np.eye(3)
+            for j, other in enumerate(axes):
+                turn = rotations.hinge(other, np.array(angles[j]))
+                if j < i:
+                    left = left @ turn
+                elif j > i:
+                    right = right @ turn
+            angles[i] = _nearest_angle(axis, left.T @ rotation @ right.T)
+        if np.abs(np.subtract(before, angles)).max() < CONVERGED_RAD:
+            break
+    return angles
+
+
+def _nearest_angle(axis: Array, rotation: Array) -> float:
+    """The angle that maximises trace(rotation @ hinge(angle).T)."""
+    skew = np.array(
+        [
+            rotation[2, 1] - rotation[1, 2],
+            rotation[0, 2] - rotation[2, 0],
+            rotation[1, 0] - rotation[0, 1],
+        ]
+    )
+    return float(np.arctan2(axis @ skew, np.trace(rotation) - axis @ rotation @ axis))
+
+
+def _first_angle(first: Array, second: Array, rotation: Array) -> float:
+    """The angle of the first of two hinges that brings the second's axis nearest to where it is turned to."""
+    target = rotation @ second
+    across = second - (second @ first) * first
+    return float(np.arctan2(np.cross(first, across) @ target, across @ target))

@@ -1,0 +1,152 @@
+"""The animator's keyframes: frames keyed on the armature's own Action, and postures keyed there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
+from ...core.body.skeleton import Skeleton
+from ...core.prior.keyframes import Keyframe
+from .actions import channelbag_for, existing_channelbag
+from .actor_lengths import skeleton_bones
+from .bone_channels import bone_channels
+from .fcurves import bone_path, moved_paths
+from .keys import animator_frames, set_posed_keys
+from .pose import read_posture
+from .rotation_modes import rotation_path, rotation_values
+from .scene_frames import at_scene_frame, showing_action
+
+Array = NDArray[np.float64]
+
+NEAREST = 0.5
+"""A key farther than this [frames] from every frame of the clip belongs to none."""
+NOTICEABLE_M = 0.005
+"""Distance [m] between a pose and its nearest posture that the animator is told of."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedKeyframes:
+    """Keyframes read from an armature."""
+
+    keyframes: tuple[Keyframe, ...]
+    """In order of frame."""
+    notes: tuple[str, ...]
+    """What the animator should know, one sentence each."""
+
+
+def keyed_frames(
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
+) -> tuple[float, ...]:
+    """Scene frames at which the animator has keyed any bone that has degrees of freedom, in order.
+
+    Keys that Keymark generated do not count.
+    """
+    channelbag = existing_channelbag(action, armature_object)
+    if channelbag is None:
+        return ()
+    wanted = set(moved_paths(armature_object, skeleton))
+    frames: set[float] = set()
+    for fcurve in channelbag.fcurves:
+        if fcurve.data_path in wanted:
+            frames.update(round(float(frame), 3) for frame in animator_frames(fcurve))
+    return tuple(sorted(frames))
+
+
+def read_keyframes(
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    body: Body,
+    clip_frames: Array,
+) -> PosedKeyframes:
+    """The postures that the armature shows at the frames keyed in `action`.
+
+    Each is the whole pose as Blender evaluates it there, so a bone without a key of its own on that frame
+    counts as the animator sees it. Scene, Action and pose are as before afterwards.
+
+    Args:
+        scene: The scene that holds the armature.
+        armature_object: The actor.
+        action: The animator's Action.
+        body: Skeleton, with the sizes that `read_body` finds.
+        clip_frames: (F,) scene frame of every frame of the clip; keys elsewhere are left out with a note.
+
+    Raises:
+        InputError: A bone is missing, or the object is scaled unevenly.
+    """
+    notes: list[str] = []
+    found: dict[int, tuple[float, Keyframe]] = {}
+    outside: list[str] = []
+    with showing_action(armature_object, action), at_scene_frame(scene) as go_to:
+        for frame in keyed_frames(armature_object, action, body.skeleton):
+            index = int(np.argmin(np.abs(clip_frames - frame)))
+            apart = abs(float(clip_frames[index]) - frame)
+            if apart > NEAREST + 1e-6:
+                outside.append(f"{frame:g}")
+                continue
+            go_to(frame)
+            reading = read_posture(armature_object, body)
+            if reading.furthest_m > NOTICEABLE_M:
+                notes.append(
+                    f"Keyframe {frame:g}: the pose goes {1000 * reading.furthest_m:.0f} mm beyond what the "
+                    "skeleton can do; the nearest posture is used"
+                )
+            if index not in found or apart < found[index][0]:
+                residual = float(np.mean(reading.distance_m))
+                found[index] = (apart, Keyframe(index, reading.posture, residual))
+    if outside:
+        notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
+    return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
+
+
+def store_pose(
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frame: float
+) -> None:
+    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame.
+
+    Raises:
+        InputError: A bone is missing.
+    """
+    channelbag = channelbag_for(action, armature_object)
+    for model in skeleton_bones(armature_object, skeleton):
+        bone = armature_object.pose.bones[model.name]
+        channels = [rotation_path(bone.rotation_mode), *(["location"] if model.is_root else [])]
+        for channel in channels:
+            path = bone_path(model.name, channel)
+            for index, value in enumerate(getattr(bone, channel)):
+                set_posed_keys(channelbag, path, index, model.name, np.array([frame]), np.array([value]))
+
+
+def write_keyframes(
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    keyframes: Sequence[Keyframe],
+    clip_frames: Array,
+) -> None:
+    """Key postures in `action`, as if the animator had posed them.
+
+    Args:
+        armature_object: The actor.
+        action: Where to key.
+        keyframes: At least one, in order of frame.
+        clip_frames: (F,) scene frame of every frame of the clip.
+
+    Raises:
+        InputError: A bone is missing, or the object is scaled unevenly.
+    """
+    frames = clip_frames[[keyframe.index for keyframe in keyframes]]
+    channelbag = channelbag_for(action, armature_object)
+    postures = Posture.stack([keyframe.posture for keyframe in keyframes])
+    for channel in bone_channels(armature_object, postures):
+        mode = armature_object.pose.bones[channel.bone].rotation_mode
+        values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
+        if channel.location is not None:
+            values["location"] = channel.location
+        for name, columns in values.items():
+            path = bone_path(channel.bone, name)
+            for index, column in enumerate(columns.T):
+                set_posed_keys(channelbag, path, index, channel.bone, frames, column)

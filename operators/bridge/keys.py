@@ -1,0 +1,157 @@
+"""Keys on F-curves, in bulk. Those that Keymark made are told from the animator's by Blender's key type.
+
+Only keys of the type GENERATED are ever replaced or removed.
+"""
+
+from collections.abc import Iterable
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Keys = dict[str, NDArray[np.generic]]
+"""Properties of N keys by name: (N,), or (N, 2) for places."""
+
+SAME_FRAME = 1e-3
+"""Keys nearer than this [frames] lie on the same frame."""
+FLOATS = ("back", "amplitude", "period")
+PAIRS = ("co", "handle_left", "handle_right")
+ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
+
+
+def _enum_value(name: str, item: str) -> int:
+    return int(bpy.types.Keyframe.bl_rna.properties[name].enum_items[item].value)
+
+
+def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
+    """Every property of every key: (N,) or, for pairs, (N, 2)."""
+    points = fcurve.keyframe_points
+    keys: Keys = {}
+    for name in (*PAIRS, *FLOATS, *ENUMS):
+        count = len(points) * (2 if name in PAIRS else 1)
+        values = np.empty(count, np.int32 if name in ENUMS else np.float32)
+        points.foreach_get(name, values)
+        keys[name] = values.reshape(-1, 2) if name in PAIRS else values
+    return keys
+
+
+def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
+    points = fcurve.keyframe_points
+    points.clear()
+    points.add(len(keys["co"]))
+    # Handle types come before handles: setting a type moves the handles.
+    for name in (*ENUMS, *FLOATS, *PAIRS):
+        points.foreach_set(name, keys[name].ravel())
+    fcurve.update()
+
+
+def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
+    count = len(frames)
+    places = np.column_stack([frames, values]).astype(np.float32)
+    keys: Keys = {name: places.copy() for name in PAIRS}
+    for name in FLOATS:
+        default = bpy.types.Keyframe.bl_rna.properties[name].default
+        keys[name] = np.full(count, default, np.float32)
+    chosen = {
+        "interpolation": interpolation,
+        "easing": "AUTO",
+        "handle_left_type": "AUTO_CLAMPED",
+        "handle_right_type": "AUTO_CLAMPED",
+        "type": key_type,
+    }
+    for name, item in chosen.items():
+        keys[name] = np.full(count, _enum_value(name, item), np.int32)
+    return keys
+
+
+def animator_frames(fcurve: bpy.types.FCurve) -> Array:
+    """Frames (N,) of the keys that are not GENERATED."""
+    keys = _read_keys(fcurve)
+    own = keys["type"] != _enum_value("type", "GENERATED")
+    return np.asarray(keys["co"][own, 0], dtype=np.float64)
+
+
+def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
+    """Remove the GENERATED keys of the curves with these data paths, and curves left without keys."""
+    wanted = set(paths)
+    for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
+        keys = _read_keys(fcurve)
+        own = keys["type"] != _enum_value("type", "GENERATED")
+        if not own.any():
+            channelbag.fcurves.remove(fcurve)
+        elif not own.all():
+            _write_keys(fcurve, {name: values[own] for name, values in keys.items()})
+
+
+def add_generated_keys(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+) -> None:
+    """Add GENERATED keys, linear between frames; where the animator has a key, that key stays alone.
+
+    Args:
+        channelbag: Where the curve lives or is added.
+        path: Data path of the animated property.
+        index: Component of the property.
+        group: Name of the curve's group.
+        frames: (F,) scene frames, fractional ones allowed.
+        values: (F,) values of the property.
+    """
+    fcurve = ensure_fcurve(channelbag, path, index, group)
+    keys = _new_keys(frames, values, "GENERATED", "LINEAR")
+    if len(fcurve.keyframe_points):
+        kept = _read_keys(fcurve)
+        free = _distances(frames, kept["co"][:, 0]) > SAME_FRAME
+        keys = _merged(kept, {name: column[free] for name, column in keys.items()})
+    _write_keys(fcurve, keys)
+
+
+def set_posed_keys(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+) -> None:
+    """Set keys of the animator's own type with Blender's usual smooth interpolation.
+
+    Keys on the same frames are replaced, all others stay.
+
+    Args:
+        channelbag: Where the curve lies or is added.
+        path: Data path of the posed property.
+        index: Component of the property.
+        group: Name of the curve's group.
+        frames: (K,) scene frames.
+        values: (K,) values of the property.
+    """
+    fcurve = ensure_fcurve(channelbag, path, index, group)
+    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    if len(fcurve.keyframe_points):
+        kept = _read_keys(fcurve)
+        free = _distances(kept["co"][:, 0], frames) > SAME_FRAME
+        keys = _merged({name: column[free] for name, column in kept.items()}, keys)
+    _write_keys(fcurve, keys)
+
+
+def _distances(frames: NDArray[np.generic], others: NDArray[np.generic]) -> Array:
+    """(N,) distance from each frame to the nearest of others."""
+    apart = np.subtract.outer(frames.astype(np.float64), others.astype(np.float64))
+    return np.asarray(np.abs(apart).min(axis=1))
+
+
+def _merged(keys: Keys, others: Keys) -> Keys:
+    both = {name: np.concatenate([keys[name], others[name]]) for name in keys}
+    order = np.argsort(both["co"][:, 0], kind="stable")
+    return {name: column[order] for name, column in both.items()}
+
+
+def ensure_fcurve(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str
+) -> bpy.types.FCurve:
+    """The curve of one component of a property, in its group; added where missing."""
+    fcurve = channelbag.fcurves.find(path, index=index) or channelbag.fcurves.new(path, index=index)
+    if fcurve.group is None:
+        fcurve.group = channelbag.groups.get(group) or channelbag.groups.new(group)
+    return fcurve
+
+
+def copy_keys(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+    """Replace a curve's keys by another's, handles and interpolation included."""
+    _write_keys(target, _read_keys(source))

@@ -1,0 +1,62 @@
+"""Where an armature object stands in the world: a turn, a place and one scale."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import InputError
+
+Array = NDArray[np.float64]
+
+UNEVEN = 1e-4
+"""Relative difference of the scales along the axes that still counts as rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectSpace:
+    """A similarity from an object's own space to the world."""
+
+    rotation: Array
+    """(3, 3)."""
+    location: Array
+    """(3,) [m]."""
+    scale: float
+
+    def to_world(self, places: Array) -> Array:
+        """World places (..., 3) of places in the object's space [m]."""
+        return np.asarray(self.location + self.scale * (places @ self.rotation.T))
+
+    def from_world(self, places: Array) -> Array:
+        """The inverse of `to_world`."""
+        return np.asarray((places - self.location) @ self.rotation / self.scale)
+
+
+def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
+    """The object's place in the world as it is evaluated, parents and constraints included.
+
+    Raises:
+        InputError: The scale differs between axes or mirrors: limbs would change their lengths as they turn.
+    """
+    matrix = np.array(evaluated(armature_object).matrix_world, dtype=np.float64)
+    linear = matrix[:3, :3]
+    squared = linear.T @ linear
+    scale = float(np.sqrt(np.trace(squared) / 3.0))
+    uneven = np.abs(squared - scale**2 * np.eye(3)).max() > UNEVEN * scale**2
+    if scale <= 0.0 or uneven or np.linalg.det(linear) < 0.0:
+        scales = ", ".join(f"{value:.4g}" for value in np.sqrt(np.diag(squared)))
+        raise InputError(
+            f"armature '{armature_object.name}' is scaled by {scales} along its axes or mirrored; "
+            "give it one positive scale, or apply the scale (Ctrl+A)"
+        )
+    return ObjectSpace(linear / scale, matrix[:3, 3], scale)
+
+
+def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
+    """The object as its scene evaluates it now; the object itself where no scene holds it."""
+    for scene in blender_object.users_scene:
+        layer = scene.view_layers[0]
+        layer.update()
+        return blender_object.evaluated_get(layer.depsgraph)
+    return blender_object

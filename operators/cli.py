@@ -1,0 +1,82 @@
+"""The command line: `keymark ...`, `python -m keymark ...` and `blender --command keymark ...`.
+
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable, 130 interrupted.
+On all but 0, one line on standard error says why, and the output is as it was before.
+"""
+
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+
+from ..core.errors import InputError, KeymarkError
+from .command_line.arguments import UsageError, build_parser, program_name
+
+DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        argv: The words after the program's name; by default the process' own.
+
+    Returns:
+        The exit status.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    debug = "--debug" in words
+    started = time.perf_counter()
+    try:
+        arguments = build_parser().parse_args(words)
+        arguments.started = started
+        with _terminable():
+            arguments.run(arguments)
+        return DONE
+    except SystemExit as stop:  # --help and --version
+        return stop.code if isinstance(stop.code, int) else DONE
+    except KeyboardInterrupt:
+        return _say("interrupted; nothing was written", INTERRUPTED, debug)
+    except (UsageError, InputError) as error:
+        return _say(str(error), UNUSABLE, debug)
+    except KeymarkError as error:
+        return _say(str(error), FAILED, debug)
+    except ImportError as error:
+        lacking = error.name or str(error)
+        return _say(
+            f"the Python module {lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug
+        )
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        return _say(f"failed unexpectedly ({what}); --debug shows where", FAILED, debug)
+
+
+def _say(sentence: str, status: int, debug: bool) -> int:
+    """Write one line on standard error, whatever the sentence holds."""
+    if debug:
+        traceback.print_exc()
+    line = f"{program_name()}: {' '.join(sentence.split())}"
+    encoding = sys.stderr.encoding or "utf-8"
+    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+    return status
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """Let a polite request to end, as render farms send it, clean up as Ctrl-C does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(_signal: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,169 @@
+"""Words of the command line: commands, options, and their help."""
+
+import argparse
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+METHODS = ("map", "ekf", "interpolation")
+
+DESCRIPTION = "Turns one video of a performer wearing coloured markers into an animated armature."
+EXAMPLES = """\
+examples:
+  {program} demo
+  {program} convert takes/walk --output out/walk
+  {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
+  {program} propose takes/walk --count 12
+
+A take is a folder with take.json, the clip and keyframes.json.
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
+
+
+class UsageError(Exception):
+    """The command line is unusable; the text is one sentence."""
+
+
+class LineParser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line and leaves the exit to its caller."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of writing several lines and leaving the process."""
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def program_name() -> str:
+    """How the user calls this program: by its own name, or as a command of Blender."""
+    blender = sys.modules.get("bpy")
+    return "blender --command keymark" if blender is not None and blender.app.binary_path else "keymark"
+
+
+def version() -> str:
+    """The version, which stands in the extension's manifest alone."""
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    return str(manifest["version"])
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser; its result has `run`, the chosen command."""
+    program = program_name()
+    parser = LineParser(
+        prog=program,
+        description=DESCRIPTION,
+        epilog=EXAMPLES.format(program=program),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"keymark {version()}")
+    parser.set_defaults(run=_no_command)
+    commands = parser.add_subparsers(metavar="COMMAND", title="commands")
+    _add_convert(commands)
+    _add_propose(commands)
+    _add_demo(commands)
+    return parser
+
+
+Commands = argparse._SubParsersAction  # the only name the library gives it
+
+
+def _add_convert(commands: "Commands[LineParser]") -> None:
+    convert = _command(
+        commands,
+        "convert",
+        "convert a take to motion.json, motion.blend, motion.bvh and pictures",
+        "Reconstructs a take's motion. OUT then holds motion.json, motion.blend, motion.bvh and, in report/, "
+        "pictures of the result; it changes only once all of them are complete.",
+        _convert,
+    )
+    convert.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
+    convert.add_argument(
+        "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
+    )
+    convert.add_argument(
+        "--keyframes", metavar="FILE", type=Path, help="keyframe file; by default TAKE/keyframes.json"
+    )
+    convert.add_argument(
+        "--method",
+        choices=METHODS,
+        default="map",
+        help="map: the whole clip at once (default); ekf: the filter of the paper; "
+        "interpolation: the keyframes alone",
+    )
+    convert.add_argument("--no-report", action="store_true", help="draw no pictures")
+
+
+def _add_propose(commands: "Commands[LineParser]") -> None:
+    propose = _command(
+        commands,
+        "propose",
+        "propose the frames to pose",
+        "Follows the markers and proposes frames to pose as keyframes: about evenly spaced, where the "
+        "markers move slowly.",
+        _propose,
+    )
+    propose.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
+    propose.add_argument(
+        "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
+    )
+    propose.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
+    propose.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
+
+
+def _add_demo(commands: "Commands[LineParser]") -> None:
+    demo = _command(
+        commands,
+        "demo",
+        "convert the demonstration take and score the result",
+        "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
+        "method is from it.",
+        _demo,
+    )
+    demo.add_argument(
+        "--output",
+        "-o",
+        metavar="DIR",
+        type=Path,
+        default=Path("keymark_demo"),
+        help="folder for the result (default: %(default)s)",
+    )
+
+
+def _command(
+    commands: "Commands[LineParser]",
+    name: str,
+    summary: str,
+    description: str,
+    run: Callable[[argparse.Namespace], None],
+) -> LineParser:
+    parser = commands.add_parser(name, help=summary, description=description)
+    parser.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
+    parser.add_argument("--json", action="store_true", help="write one JSON object instead of text")
+    parser.add_argument("--debug", action="store_true", help="on errors, show where in the program")
+    parser.set_defaults(run=run)
+    return parser
+
+
+# Commands are imported when they run: --help and mistakes shall not wait for scipy, OpenCV and Blender.
+
+
+def _no_command(_arguments: argparse.Namespace) -> None:
+    raise UsageError(f"no command is given; convert, propose and demo are valid, see {program_name()} --help")
+
+
+def _convert(arguments: argparse.Namespace) -> None:
+    from .convert import convert_command
+
+    convert_command(arguments)
+
+
+def _propose(arguments: argparse.Namespace) -> None:
+    from .propose import propose_command
+
+    propose_command(arguments)
+
+
+def _demo(arguments: argparse.Namespace) -> None:
+    from .demo import demo_command
+
+    demo_command(arguments)

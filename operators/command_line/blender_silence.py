@@ -1,0 +1,48 @@
+"""Keeping Blender's own messages out of what a command says."""
+
+import ctypes
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+
+@contextmanager
+def blender_silence(debug: bool) -> Iterator[None]:
+    """Send what C code writes meanwhile on standard output and error to nowhere.
+
+    Blender writes past Python, on the file descriptors themselves: to a reader of one JSON object its
+    chatter would be an error.
+
+    Args:
+        debug: Whether to let the chatter through, on standard error.
+    """
+    _flush()
+    try:
+        kept = [os.dup(1), os.dup(2)]
+    except OSError:  # a process without standard streams has nothing to keep clean
+        yield
+        return
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(2 if debug else nowhere, 1)
+        if not debug:
+            os.dup2(nowhere, 2)
+        yield
+    finally:
+        _flush()
+        for descriptor, copy in zip((1, 2), kept, strict=True):
+            os.dup2(copy, descriptor)
+            os.close(copy)
+        os.close(nowhere)
+
+
+def _flush() -> None:
+    """Empty Python's buffers and C's, which would else be written later, elsewhere."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            with suppress(OSError, ValueError):
+                stream.flush()
+    with suppress(OSError, AttributeError):
+        library = ctypes.CDLL("ucrtbase" if os.name == "nt" else None)
+        library.fflush(None)

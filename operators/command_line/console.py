@@ -1,0 +1,107 @@
+"""What a command says: text or JSON on standard output, and progress."""
+
+import argparse
+import json
+import os
+import sys
+import time
+from contextlib import suppress
+from types import TracebackType
+from typing import Any
+
+from ...core.progress import Progress
+
+JOB_SHARE = 0.9
+"""What the job is of all a command does; the rest is writing files."""
+
+
+class Console:
+    """Progress, text and results of one command, as its options ask for; also its stopwatch.
+
+    On a terminal progress is a bar on standard error, where tqdm is at hand; else a line of text for each
+    stage. With `--json` standard output gets one object and nothing else, with `--quiet` nothing at all.
+    """
+
+    def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
+        self.quiet, self.as_json = quiet, as_json
+        self.seconds: dict[str, float] = {}
+        """Time spent in each stage so far [s]."""
+        self._stage = "Starting"
+        self._since = time.perf_counter() if started is None else started
+        self._bar: Any = None if quiet else _bar()
+
+    def __enter__(self) -> "Console":
+        """Start the command."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Take the bar away, whatever happened."""
+        self._close_bar()
+
+    def progress(self, progress: Progress) -> None:
+        """Take note of how far the job is."""
+        if progress.stage != self._stage and progress.fraction < 1.0:
+            self.stage(progress.stage)
+        if self._bar is not None:
+            self._bar.update(max(0.0, 100.0 * JOB_SHARE * progress.fraction - self._bar.n))
+
+    def stage(self, name: str) -> None:
+        """Begin a stage; the time until the next one counts as its own."""
+        self._stop()
+        self._stage = name
+        if self._bar is not None:
+            self._bar.set_description(name)
+        elif name and not self.quiet and not self.as_json:
+            self._write(f"{name} ...")
+
+    def finish(self, result: dict[str, Any], text: str) -> None:
+        """Say the result: the object with `--json`, else the text."""
+        self._stop()
+        self._close_bar()
+        if self.as_json:
+            seconds = {name: round(value, 3) for name, value in self.seconds.items()}
+            seconds["total"] = round(sum(self.seconds.values()), 3)
+            self._write(json.dumps({**result, "seconds": seconds}, allow_nan=False))
+        elif not self.quiet:
+            self._write(text)
+
+    def _stop(self) -> None:
+        now = time.perf_counter()
+        if self._stage:
+            self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
+        self._stage, self._since = "", now
+
+    def _close_bar(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def _write(self, text: str) -> None:
+        encoding = sys.stdout.encoding or "utf-8"
+        with suppress(BrokenPipeError):  # the reader has had enough; the work is worth finishing
+            print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+            return
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def arguments_console(arguments: argparse.Namespace) -> Console:
+    """The console that a command line asks for."""
+    return Console(quiet=arguments.quiet, as_json=arguments.json, started=arguments.started)
+
+
+def _bar() -> Any:
+    """A progress bar, or None where there is no terminal or no tqdm."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return None
+    try:
+        from tqdm import tqdm
+    except ImportError:  # not among the extension's wheels
+        return None
+    return tqdm(
+        total=100.0, leave=False, file=sys.stderr, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}"
+    )

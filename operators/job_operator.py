@@ -1,0 +1,118 @@
+"""Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
+
+from collections.abc import Generator
+from time import monotonic
+from typing import Any
+
+import bpy
+
+from .failures import reported
+
+SLICE_S = 0.05
+"""How long a job runs before the user interface is drawn again."""
+TIMER_S = 0.01
+PREFIX = "KEYMARK_OT_"
+
+
+class JobOperator:
+    """Mixin of an operator whose work is a job that yields its progress.
+
+    A subclass gives `start`, which changes nothing, and `finish`, which writes the result into the scene:
+    so a job that is cancelled or fails leaves everything as it was.
+    """
+
+    _job: Generator[Any, None, Any] | None = None
+    _timer: bpy.types.Timer | None = None
+    _scene_name: str = ""
+
+    def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
+        """The job; it must leave the scene as it was."""
+        raise NotImplementedError
+
+    def finish(self, scene: bpy.types.Scene, result: Any) -> None:
+        """Write the job's result into the scene."""
+        raise NotImplementedError
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do the whole job at once."""
+        with reported(self):
+            from ..core.progress import run
+
+            self.finish(context.scene, run(self.start(context.scene)))
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Do the job in slices, so that the user interface stays alive."""
+        if bpy.app.background:  # there are no timer events
+            return self.execute(context)
+        with reported(self):
+            self._job = self.start(context.scene)
+            self._scene_name = context.scene.name
+            manager = context.window_manager
+            manager.keymark_progress.show("Starting", 0.0)
+            self._timer = manager.event_timer_add(TIMER_S, window=context.window)
+            manager.modal_handler_add(self)
+            return {"RUNNING_MODAL"}
+        return {"CANCELLED"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Go on with the job, or stop it."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"INFO"}, "Cancelled")
+            return {"CANCELLED"}
+        if event.type != "TIMER" or self._job is None:
+            return {"PASS_THROUGH"}
+        with reported(self):
+            until = monotonic() + SLICE_S
+            try:
+                while monotonic() < until:
+                    self._show(context, next(self._job))
+            except StopIteration as stop:
+                self.cancel(context)
+                self.finish(bpy.data.scenes[self._scene_name], stop.value)
+                return {"FINISHED"}
+            except BaseException:
+                self.cancel(context)
+                raise
+            return {"RUNNING_MODAL"}
+        return {"CANCELLED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Stop the job and take its timer and its progress bar away; Blender calls this as well."""
+        if self._job is not None:
+            self._job.close()
+            self._job = None
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        redraw_sidebars(context)
+
+    def _show(self, context: bpy.types.Context, progress: Any) -> None:
+        context.window_manager.keymark_progress.show(progress.stage, progress.fraction)
+        context.workspace.status_text_set(
+            f"{progress.stage}: {100.0 * progress.fraction:.0f}%   |   Esc: Cancel"
+        )
+        redraw_sidebars(context)
+
+
+def redraw_sidebars(context: bpy.types.Context) -> None:
+    """Have every 3D viewport's sidebar drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()
+
+
+def job_is_running(context: bpy.types.Context) -> bool:
+    """Whether one of Keymark's jobs runs in any window."""
+    return any(
+        operator.bl_idname.startswith(PREFIX)
+        for window in context.window_manager.windows
+        for operator in window.modal_operators
+    )

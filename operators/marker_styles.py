@@ -1,0 +1,39 @@
+"""Markers between the scene's settings and core."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+if TYPE_CHECKING:
+    from ..core.footage.markers import MarkerStyle
+
+FULL_SCALE = 255
+
+
+def marker_styles(scene: bpy.types.Scene) -> "tuple[MarkerStyle, ...]":
+    """The scene's markers.
+
+    Raises:
+        InputError: Two markers have one name or one segment.
+    """
+    from ..core.errors import InputError
+    from ..core.footage.markers import MarkerStyle
+
+    styles = tuple(
+        MarkerStyle(marker.name, marker.segment, _to_bytes(marker.color)) for marker in scene.keymark.markers
+    )
+    for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
+        twice = next((value for value in values if values.count(value) > 1), None)
+        if twice is not None:
+            raise InputError(f"two markers have the {kind} '{twice}'; each needs its own")
+    return styles
+
+
+def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: tuple[int, int, int]) -> None:
+    """Set a marker's color from bytes."""
+    marker.color = [value / FULL_SCALE for value in color_srgb]
+
+
+def _to_bytes(color: bpy.types.bpy_prop_array) -> tuple[int, int, int]:
+    red, green, blue = (round(float(value) * FULL_SCALE) for value in color)
+    return red, green, blue

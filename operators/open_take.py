@@ -1,0 +1,72 @@
+"""Open a take from disk: footage, camera, actor, markers and keyframes."""
+
+from pathlib import Path
+
+import bpy
+
+from .failures import reported
+from .requirements import all_met, idle, object_mode_possible
+
+
+class KEYMARK_OT_open_take(bpy.types.Operator):
+    """Open a take: its footage behind its camera, its actor, its markers, and the keyframes posed for it"""
+
+    bl_idname = "keymark.open_take"
+    bl_label = "Open Take"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filepath: bpy.props.StringProperty(
+        name="File Path", description="The take's folder, or the take.json in it", subtype="FILE_PATH"
+    )
+    keyframes: bpy.props.StringProperty(
+        name="Keyframes",
+        description="Name of the keyframe file in the take's folder",
+        default="keyframes.json",
+    )
+    filter_glob: bpy.props.StringProperty(default="take.json", options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Blender adds objects in Object Mode."""
+        return all_met(cls, context, object_mode_possible, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read the take, and only then change the scene."""
+        with reported(self):
+            from .take_scene import read_for_scene, show_take
+
+            folder = _take_folder(self.filepath)
+            opened = read_for_scene(folder, self.keyframes)
+            show_take(context, opened)
+            for note in opened.notes:
+                self.report({"WARNING"}, note)
+            self.report({"INFO"}, f"Opened {folder.name} with {len(opened.take.keyframes)} keyframes")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def _take_folder(filepath: str) -> Path:
+    path = Path(bpy.path.abspath(filepath))
+    return path.parent if path.name == "take.json" else path
+
+
+def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.operator(KEYMARK_OT_open_take.bl_idname, text="Keymark Take (take.json)")
+
+
+def register() -> None:
+    """Add the operator, and an entry to File > Import."""
+    bpy.utils.register_class(KEYMARK_OT_open_take)
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
+
+
+def unregister() -> None:
+    """Take both away."""
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
+    bpy.utils.unregister_class(KEYMARK_OT_open_take)

@@ -1,0 +1,57 @@
+"""What operators need before they can run, as sentences for their tooltips."""
+
+from collections.abc import Callable
+
+import bpy
+
+from .job_operator import job_is_running
+
+Requirement = Callable[[bpy.types.Context], str | None]
+
+
+def footage(context: bpy.types.Context) -> str | None:
+    """A clip is loaded."""
+    return None if context.scene.active_clip else "Load the footage or open a take first"
+
+
+def actor(context: bpy.types.Context) -> str | None:
+    """The scene has an actor."""
+    armature_object = context.scene.keymark.armature
+    there = armature_object is not None and armature_object.name in context.scene.objects
+    return None if there else "Build the actor first, or choose its armature"
+
+
+def markers(context: bpy.types.Context) -> str | None:
+    """There are markers."""
+    return None if len(context.scene.keymark.markers) else "Add the markers that the performer wears first"
+
+
+def keyframes(context: bpy.types.Context) -> str | None:
+    """There is an Action with keyframes."""
+    return None if context.scene.keymark.keyframe_action else "Pose the actor and store a keyframe first"
+
+
+def motion(context: bpy.types.Context) -> str | None:
+    """There is a reconstructed motion."""
+    return None if context.scene.keymark.motion_action else "Reconstruct the motion first"
+
+
+def object_mode_possible(context: bpy.types.Context) -> str | None:
+    """No object is being edited."""
+    active = context.view_layer.objects.active
+    return None if active is None or active.mode == "OBJECT" else "Leave the active object's mode first (Tab)"
+
+
+def idle(context: bpy.types.Context) -> str | None:
+    """None of Keymark's jobs runs."""
+    return "Another of Keymark's jobs is running" if job_is_running(context) else None
+
+
+def all_met(operator_class: type, context: bpy.types.Context, *needed: Requirement) -> bool:
+    """Whether everything is there; the first thing that is not becomes the tooltip."""
+    for requirement in needed:
+        sentence = requirement(context)
+        if sentence is not None:
+            operator_class.poll_message_set(sentence)
+            return False
+    return True

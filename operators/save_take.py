@@ -1,0 +1,59 @@
+"""Save the scene's take as a folder, to be converted elsewhere."""
+
+from pathlib import Path
+
+import bpy
+
+from .failures import reported
+from .marker_styles import marker_styles
+from .requirements import actor, all_met, footage, idle, markers
+
+
+class KEYMARK_OT_save_take(bpy.types.Operator):
+    """Save footage, camera, actor, markers and keyframes as a take folder for the command line or for others"""
+
+    bl_idname = "keymark.save_take"
+    bl_label = "Save Take"
+    bl_options = {"REGISTER"}
+
+    directory: bpy.props.StringProperty(
+        name="Folder",
+        description="Where take.json, keyframes.json and the clip are written",
+        subtype="DIR_PATH",
+    )
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A take needs all but keyframes."""
+        return all_met(cls, context, footage, actor, markers, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the folder."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read the scene and write the folder."""
+        with reported(self):
+            from ..core.progress import run
+            from ..core.take import write_take
+            from .bridge.scene_take import read_scene_take
+
+            settings = context.scene.keymark
+            take, notes = run(
+                read_scene_take(
+                    context.scene, settings.armature, settings.keyframe_action, marker_styles(context.scene)
+                )
+            )
+            folder = Path(bpy.path.abspath(self.directory))
+            folder.mkdir(parents=True, exist_ok=True)
+            write_take(take, folder)
+            for note in notes:
+                self.report({"WARNING"}, note)
+            self.report({"INFO"}, f"Saved the take in {folder}")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_save_take,))

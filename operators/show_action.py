@@ -1,0 +1,44 @@
+"""Show either the keyframes or the reconstructed motion on the actor."""
+
+import bpy
+
+from .failures import reported
+from .requirements import actor, all_met
+
+
+class KEYMARK_OT_show_action(bpy.types.Operator):
+    """Let the keyframes or the reconstructed motion animate the actor"""
+
+    bl_idname = "keymark.show_action"
+    bl_label = "Show on Actor"
+    bl_options = {"REGISTER", "UNDO"}
+
+    which: bpy.props.EnumProperty(
+        name="Show",
+        items=[
+            ("KEYFRAMES", "Keyframes", "Let the keyframes you posed animate the actor"),
+            ("MOTION", "Motion", "Let the reconstructed motion animate the actor"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor."""
+        return all_met(cls, context, actor)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Assign the Action."""
+        settings = context.scene.keymark
+        action = settings.keyframe_action if self.which == "KEYFRAMES" else settings.motion_action
+        if action is None:
+            self.report({"ERROR"}, f"There is no {self.which.lower()} Action yet")
+            return {"CANCELLED"}
+        with reported(self):
+            from .bridge.actions import assign_action
+
+            assign_action(settings.armature, action)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_action,))

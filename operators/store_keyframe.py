@@ -1,0 +1,53 @@
+"""Store the actor's pose as a keyframe."""
+
+import bpy
+
+from .failures import reported
+from .requirements import actor, all_met, idle
+
+
+class KEYMARK_OT_store_keyframe(bpy.types.Operator):
+    """Key the actor's whole pose at the current frame in the keyframe Action"""
+
+    bl_idname = "keymark.store_keyframe"
+    bl_label = "Store Keyframe"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor."""
+        return all_met(cls, context, actor, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Key it; where the pose goes beyond the skeleton, say by how much."""
+        with reported(self):
+            from ..core.body.human import HUMAN
+            from .bridge.actions import assign_action
+            from .bridge.actor_lengths import read_body
+            from .bridge.keyframes import NOTICEABLE_M, store_pose
+            from .bridge.pose import read_posture
+            from .new_actor import new_keyframe_action
+
+            scene = context.scene
+            settings, armature_object = scene.keymark, scene.keymark.armature
+            reading = read_posture(armature_object, read_body(armature_object, HUMAN))
+            if settings.keyframe_action is None:
+                settings.keyframe_action = new_keyframe_action(armature_object)
+            frame = scene.frame_current_final
+            store_pose(armature_object, settings.keyframe_action, HUMAN, frame)
+            data = armature_object.animation_data
+            if data is None or data.action is None:
+                assign_action(armature_object, settings.keyframe_action)
+            if reading.furthest_m > NOTICEABLE_M:
+                self.report(
+                    {"WARNING"},
+                    f"Stored at frame {frame:g}; the pose goes {1000.0 * reading.furthest_m:.0f} mm beyond what "
+                    "the skeleton can do, and its nearest posture will be used",
+                )
+            else:
+                self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

@@ -1,0 +1,1 @@
+"""Properties and panels. Panels show what is there and never compute."""

@@ -1,0 +1,102 @@
+"""A small take made on the spot: a figure of thick lines, filmed as numbered images."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from keymark.core.body.actor import Actor
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.footage.camera import Camera
+
+SIZE = (160, 120)
+COLORS = {
+    "trunk": (40, 150, 70),
+    "forearm.L": (220, 50, 50),
+    "forearm.R": (50, 80, 220),
+    "shin.L": (220, 190, 40),
+    "shin.R": (190, 50, 150),
+}
+BODY = Body(Actor.from_stature(1.75))
+MATRIX_WORLD = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, -4.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]]
+CAMERA = {
+    "lens_mm": 40.0,
+    "sensor_width_mm": 36.0,
+    "resolution": list(SIZE),
+    "matrix_world": MATRIX_WORLD,
+}
+
+
+def true_postures(frames: int) -> Posture:
+    """The performer sways, waves both arms and bends a knee."""
+    names = BODY.skeleton.dof_names
+    vector = np.zeros((frames, len(names)))
+    phase = np.linspace(0.0, 2.0 * np.pi, frames)
+    vector[:, names.index("pelvis.location_x")] = 0.1 * np.sin(phase)
+    vector[:, names.index("pelvis.location_z")] = 0.95
+    for side, out in (("L", 1.0), ("R", -1.0)):
+        vector[:, names.index(f"shoulder.{side}.rotation_y")] = out * (0.9 + 0.4 * np.sin(phase))
+        vector[:, names.index(f"elbow.{side}.flexion")] = 0.3 + 0.2 * np.cos(phase)
+    vector[:, names.index("hip.L.rotation_x")] = -0.4 * (1.0 - np.cos(phase))
+    vector[:, names.index("knee.L.flexion")] = 0.6 * (1.0 - np.cos(phase))
+    return Posture.from_vector(BODY.skeleton, vector)
+
+
+def write_synthetic_take(folder: Path, frames: int = 24, keyframe_every: int = 8) -> Path:
+    """Write clip, take.json, keyframes.json and truth.json; returns the folder."""
+    posture = true_postures(frames)
+    points = BODY.points(BODY.pose(posture))
+    _write_clip(folder / "frames", posture)
+    take = {
+        "fps": 30,
+        "frame_start": 1,
+        "frame_count": frames,
+        "clip": "frames",
+        "camera": CAMERA,
+        "markers": {name: {"color_srgb": list(color)} for name, color in COLORS.items()},
+        "actor": {"segments_m": dict(BODY.actor.segments_m)},
+    }
+    write_json(folder / "take.json", take)
+    posed = sorted({*range(0, frames, keyframe_every), frames - 1})
+    rows = [{"frame": index + 1, "points": named(points[index])} for index in posed]
+    write_json(folder / "keyframes.json", {"keyframes": rows})
+    write_json(
+        folder / "truth.json",
+        {"frames": list(range(1, frames + 1)), "points": named(np.swapaxes(points, 0, 1))},
+    )
+    return folder
+
+
+def named(rows: np.ndarray) -> dict[str, Any]:
+    """Rows by name of principal point."""
+    return dict(zip(BODY.skeleton.point_names, rows.tolist(), strict=True))
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write without any of the product's own code."""
+    path.write_text(json.dumps(value), encoding="utf-8")
+
+
+def _write_clip(folder: Path, posture: Posture) -> None:
+    folder.mkdir(parents=True)
+    camera = Camera.from_dict(CAMERA)
+    pose = BODY.pose(posture)
+    ends = {
+        segment.name: [camera.project(end)[0] for end in BODY.segment_ends(pose, segment.name)]
+        for segment in BODY.skeleton.segments
+    }
+    ends["trunk"] = [ends["pelvis"][0], ends["chest"][1]]
+    noise = np.random.default_rng(7)
+    for frame in range(posture.batch[0]):
+        image = np.full((SIZE[1], SIZE[0], 3), 170, dtype=np.uint8)
+        for name, (start, end) in ends.items():
+            red, green, blue = COLORS.get(name, (90, 80, 75))
+            if name in ("pelvis", "chest"):
+                continue
+            width = 13 if name == "trunk" else 5
+            tips = [tuple(int(round(16 * (value - 0.5))) for value in tip[frame]) for tip in (start, end)]
+            cv2.line(image, tips[0], tips[1], (blue, green, red), width, cv2.LINE_AA, 4)
+        grain = noise.normal(0.0, 1.5, image.shape)
+        cv2.imwrite(str(folder / f"{frame + 1:04d}.png"), np.clip(image + grain, 0, 255).astype(np.uint8))

@@ -1,0 +1,172 @@
+"""Clips of every kind: their order, time stamps and sizes, and what is said of unusable ones."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.clip_timing import is_variable_frame_rate
+
+
+def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
+    """An even image of one grey level."""
+    return np.full((size[1], size[0], 3), level, dtype=np.uint8)
+
+
+def level(index: int) -> int:
+    """The grey level of a frame: so far from its neighbours' that the encoder cannot leave it out."""
+    return 30 + index * 67 % 200
+
+
+def write_video(path: Path, count: int, fps: float = 25.0, size: tuple[int, int] = (64, 48)) -> Path:
+    """A video whose frames all differ widely from the ones beside them; see `level`."""
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), fps, size)
+    assert writer.isOpened()
+    for index in range(count):
+        writer.write(picture(level(index), size))
+    writer.release()
+    return path
+
+
+def test_a_video_yields_its_frames_in_order_with_their_times(tmp_path: Path) -> None:
+    """One pass gives every frame once, at index / fps."""
+    clip = Clip.open(write_video(tmp_path / "clip.mp4", 30))
+    frames = list(clip.frames())
+    assert [index for index, _, _ in frames] == list(range(30))
+    np.testing.assert_allclose([time for _, time, _ in frames], np.arange(30) / 25.0, atol=1e-6)
+    means = [image.mean() for _, _, image in frames]
+    np.testing.assert_allclose(means, [level(index) for index in range(30)], atol=8)
+    assert clip.size == (64, 48) and clip.fps == pytest.approx(25.0) and clip.frame_count == 30
+    assert not clip.variable_frame_rate
+    np.testing.assert_allclose(clip.time_stamps(), np.arange(30) / 25.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(("count", "frames"), [(5, 50), (2, 400), (80, 30)])
+def test_samples_are_spread_over_the_clip_and_are_the_frames_they_say(
+    tmp_path: Path, count: int, frames: int
+) -> None:
+    """Whether the file is run through or searched, and with more samples asked for than frames exist."""
+    path = write_video(tmp_path / "clip.mp4", frames, 30.0)
+    sampled = Clip.open(path).sample(count)
+    assert len(sampled) == min(count, frames)
+    for index, image in sampled:
+        assert image.mean() == pytest.approx(level(index), abs=8)
+    spread = np.diff([index for index, _ in sampled])
+    assert spread.min() >= 1 and spread.max() - spread.min() <= 1
+
+
+def test_images_follow_their_numbers(tmp_path: Path) -> None:
+    """img_2 comes before img_10, by folder, by pattern and by any one of them; other files stay out."""
+    for number in (10, 2, 1, 33):
+        cv2.imwrite(str(tmp_path / f"img_{number}.png"), picture(number))
+    (tmp_path / "notes.txt").write_text("no image")
+    for path in (tmp_path, tmp_path / "img_2.png", tmp_path / "img_##.png", tmp_path / "img_%04d.png"):
+        clip = Clip.open(path, fps=10.0)
+        frames = list(clip.frames())
+        assert [int(image[0, 0, 0]) for _, _, image in frames] == [1, 2, 10, 33]
+        np.testing.assert_allclose([time for _, time, _ in frames], np.arange(4) / 10.0)
+        assert clip.frame_count == 4 and clip.size == (64, 48)
+    assert [index for index, _ in Clip.open(tmp_path).sample(2)] == [1, 3]
+
+
+def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) -> None:
+    """Naming a file takes its own sequence only."""
+    for number in (1, 2):
+        cv2.imwrite(str(tmp_path / f"left{number}.png"), picture(10 + number))
+        cv2.imwrite(str(tmp_path / f"right{number}.png"), picture(20 + number))
+    frames = [int(image[0, 0, 0]) for _, _, image in Clip.open(tmp_path / "right1.png").frames()]
+    assert frames == [21, 22]
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        np.full((8, 9), 200, dtype=np.uint8),
+        np.full((8, 9, 3), 200 * 257, dtype=np.uint16),
+        np.full((8, 9, 4), 200, dtype=np.uint8),
+        np.full((8, 9), 200 * 257, dtype=np.uint16),
+    ],
+    ids=["grey", "16 bit", "alpha", "16 bit grey"],
+)
+def test_every_depth_and_channel_count_becomes_eight_bit_colour(tmp_path: Path, image: np.ndarray) -> None:
+    """A level of 200 stays 200 in three channels."""
+    cv2.imwrite(str(tmp_path / "a1.png"), image)
+    _, _, frame = next(Clip.open(tmp_path).frames())
+    assert frame.dtype == np.uint8 and frame.shape == (8, 9, 3)
+    assert (frame == 200).all()
+
+
+def test_unusable_files_are_named_in_one_sentence(tmp_path: Path) -> None:
+    """Missing, empty, of another kind, cut off before the first frame, or a folder without images."""
+    empty = tmp_path / "empty.mp4"
+    empty.touch()
+    text = tmp_path / "text.mp4"
+    text.write_text("this is no video " * 100)
+    whole = write_video(tmp_path / "whole.mp4", 10).read_bytes()
+    cut = tmp_path / "cut.mp4"
+    cut.write_bytes(whole[:60])
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    broken = tmp_path / "broken1.png"
+    broken.write_bytes(b"\x89PNG nothing more")
+    cases = {
+        tmp_path / "missing.mp4": "no such file",
+        tmp_path / "missing_####.png": "no file fits",
+        empty: "empty",
+        text: "decoded",
+        cut: "decoded",
+        folder: "no image",
+        broken: "decoded",
+    }
+    for path, word in cases.items():
+        with pytest.raises(InputError, match=word) as caught:
+            Clip.open(path)
+        assert str(path) in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_the_decoder_does_not_complain_beside_our_sentence(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Standard error belongs to the one sentence that is raised."""
+    text = tmp_path / "text.mp4"
+    text.write_text("this is no video")
+    with pytest.raises(InputError):
+        Clip.open(text)
+    assert capfd.readouterr().err == ""
+
+
+def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None:
+    """The frames before it are still yielded."""
+    cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
+    cv2.imwrite(str(tmp_path / "a2.png"), picture(5, (32, 48)))
+    frames = Clip.open(tmp_path).frames()
+    next(frames)
+    with pytest.raises(InputError, match=r"a2\.png.*32 x 48.*64 x 48"):
+        next(frames)
+
+
+def test_rates_that_are_no_rates_are_refused(tmp_path: Path) -> None:
+    """An image sequence needs a positive rate."""
+    cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
+    with pytest.raises(InputError, match="fps"):
+        Clip.open(tmp_path, fps=-3.0)
+
+
+@pytest.mark.parametrize(
+    ("time_s", "variable"),
+    [
+        (np.arange(50) / 30.0, False),
+        (np.round(np.arange(50) / 30.0, 3), False),
+        (np.round(np.arange(50) / 240.0, 3), False),
+        (np.delete(np.arange(50), 20) / 30.0, True),
+        (np.cumsum(np.random.default_rng(0).uniform(0.02, 0.05, 50)), True),
+        (np.array([0.0, 0.04]), False),
+        (np.array([]), False),
+    ],
+    ids=["even", "milliseconds", "fast milliseconds", "dropped frame", "phone", "two frames", "none"],
+)
+def test_uneven_stamps_are_told_from_rounded_ones(time_s: np.ndarray, variable: bool) -> None:
+    """A dropped frame makes a clip uneven; rounding to milliseconds does not."""
+    assert is_variable_frame_rate(time_s) is variable

@@ -1,0 +1,288 @@
+"""Finding markers: on drawn clips whose regions are known exactly, and on rendered takes with their truth."""
+
+import json
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.colour_learning import learn_colours
+from keymark.core.footage.markers import MarkerStyle, learn_model, track_markers
+from keymark.core.footage.regions import marker_masks
+from keymark.core.footage.tracks import ExpectedRegions, RegionTracks
+
+SIZE = (320, 240)
+RED, BLUE = (200, 45, 50), (55, 90, 215)
+STYLES = (MarkerStyle("red", "forearm.L", RED), MarkerStyle("blue", "forearm.R", BLUE))
+FINE = 4  # points drawn a pixel and axis
+
+
+@dataclass
+class Drawn:
+    """A clip drawn in memory, in the form of a decoder."""
+
+    images: list[np.ndarray]
+    fps: float = 30.0
+    passes: int = 0
+    size: tuple[int, int] = SIZE
+    frame_count: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Count the frames."""
+        self.frame_count = len(self.images)
+
+    def frames(self) -> Iterator[tuple[int, float, np.ndarray]]:
+        """Yield every frame; how often that is done is counted."""
+        self.passes += 1
+        for index, image in enumerate(self.images):
+            yield index, index / self.fps, image
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield every time."""
+        yield from (index / self.fps for index in range(self.frame_count))
+
+    def at(self, indices: list[int]) -> Iterator[tuple[int, np.ndarray]]:
+        """Yield some frames."""
+        yield from ((index, self.images[index]) for index in indices if index < self.frame_count)
+
+
+Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], float]
+
+
+def draw(
+    shapes: list[Ellipse], rng: np.random.Generator, noise: float = 2.0, light: float = 1.0
+) -> np.ndarray:
+    """Ellipses (colour, centre, half axes, degrees) with soft edges on a warm wall over a brown floor."""
+    fine = np.zeros((SIZE[1] * FINE, SIZE[0] * FINE, 3), dtype=np.uint8)
+    fine[:] = (176, 190, 200)
+    fine[170 * FINE :] = (92, 112, 130)
+    for colour, (x, y), (a, b), angle in shapes:
+        # OpenCV draws about the centres of pixels, with four bits of fraction.
+        centre = (round((x * FINE - 0.5) * 16), round((y * FINE - 0.5) * 16))
+        axes = (round(a * FINE * 16), round(b * FINE * 16))
+        cv2.ellipse(fine, centre, axes, angle, 0, 360, colour[::-1], -1, shift=4)
+    image = cv2.resize(fine, SIZE, interpolation=cv2.INTER_AREA).astype(np.float64)
+    return np.clip(image * light + rng.normal(0, noise, image.shape), 0, 255).astype(np.uint8)
+
+
+def clip_of(images: list[np.ndarray]) -> Clip:
+    """A clip of images in memory."""
+    return Clip(Path("drawn.mp4"), Drawn(images))
+
+
+def finish(job: Generator[float, None, RegionTracks]) -> RegionTracks:
+    """Drive the extraction to its end; its progress must rise from 0 to 1."""
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions[0] == 0.0 and fractions[-1] == pytest.approx(1.0)
+            assert fractions == sorted(fractions)
+            return stop.value
+
+
+def path(index: int) -> tuple[float, float]:
+    """Where the red ellipse is in a frame."""
+    return 60.3 + 3.1 * index, 90.7 + 20.0 * np.sin(index / 5.0)
+
+
+def moving(index: int) -> list[Ellipse]:
+    """Red wanders and turns, blue stands still."""
+    return [(RED, path(index), (16.0, 6.0), 5.0 * index), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
+
+
+def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:
+    """Centroid within 0.2 px, area within 6 %, second moments within 10 %."""
+    rng = np.random.default_rng(1)
+    tracks = finish(track_markers(clip_of([draw(moving(index), rng) for index in range(40)]), STYLES))
+    truth = np.array([path(index) for index in range(40)])
+    assert tracks.visible.all() and tracks.names == ("red", "blue") and tracks.size == SIZE
+    assert np.abs(tracks.centroid[:, 0] - truth).max() < 0.2
+    assert np.abs(tracks.centroid[:, 1] - [250.5, 120.5]).max() < 0.2
+    np.testing.assert_allclose(tracks.area[:, 0], np.pi * 16 * 6, rtol=0.06)
+    np.testing.assert_allclose(tracks.area[:, 1], np.pi * 8 * 18, rtol=0.06)
+    np.testing.assert_allclose(np.linalg.eigvalsh(tracks.second_moment[:, 0])[:, 1], 16**2 / 4, rtol=0.1)
+    assert tracks.quality.min() > 0.8 and not tracks.clipped.any()
+    np.testing.assert_allclose(tracks.time_s, np.arange(40) / 30.0)
+
+
+def test_the_clip_is_decoded_once_for_the_extraction() -> None:
+    """Learning looks at samples only."""
+    rng = np.random.default_rng(1)
+    drawn = Drawn([draw(moving(index), rng) for index in range(15)])
+    finish(track_markers(Clip(Path("drawn.mp4"), drawn), STYLES))
+    assert drawn.passes == 1
+
+
+def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
+    """Ten frames without red give no observation and no quality; blue goes on."""
+    rng = np.random.default_rng(2)
+    images = [draw(moving(index)[1 if 15 <= index < 25 else 0 :], rng) for index in range(40)]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    hidden = np.zeros(40, dtype=bool)
+    hidden[15:25] = True
+    np.testing.assert_array_equal(~tracks.visible[:, 0], hidden)
+    assert np.isnan(tracks.second_moment[hidden, 0]).all() and np.isnan(tracks.area[hidden, 0]).all()
+    assert (tracks.quality[hidden, 0] == 0.0).all() and tracks.visible[:, 1].all()
+
+
+def test_changing_light_and_noise_do_not_lose_a_marker() -> None:
+    """The light falls to six tenths over the clip, under noise of five levels."""
+    rng = np.random.default_rng(3)
+    images = [draw(moving(index), rng, 5.0, 1.0 - 0.01 * index) for index in range(40)]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    assert tracks.visible.all()
+    assert np.median(np.abs(tracks.centroid[:, 0] - [path(index) for index in range(40)])) < 0.2
+
+
+def test_a_still_thing_of_the_markers_colour_is_clutter_even_while_the_marker_is_hidden() -> None:
+    """It is larger than the marker, and the marker is away for a while."""
+    rng = np.random.default_rng(4)
+    bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
+    images = [draw([*moving(index)[15 <= index < 25 :], bucket], rng) for index in range(40)]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    seen = tracks.visible[:, 0]
+    np.testing.assert_array_equal(~seen, (np.arange(40) >= 15) & (np.arange(40) < 25))
+    truth = np.array([path(index) for index in range(40)])
+    assert np.abs(tracks.centroid[seen, 0] - truth[seen]).max() < 0.3
+
+
+def test_a_marker_that_rests_is_no_clutter() -> None:
+    """Nothing else of its colour moves, so a still region is the marker."""
+    rng = np.random.default_rng(5)
+    tracks = finish(track_markers(clip_of([draw(moving(8), rng) for _ in range(30)]), STYLES))
+    assert tracks.visible.all()
+
+
+def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_colour() -> None:
+    """A larger red ball crosses the picture; only the expectation can know which of the two it is."""
+    rng = np.random.default_rng(6)
+    balls: list[Ellipse] = [(RED, (300.0 - 3.0 * index, 40.0), (14.0, 14.0), 0.0) for index in range(40)]
+    images = [draw([*moving(index), balls[index]], rng) for index in range(40)]
+    truth = np.array([path(index) for index in range(40)])
+    centre = np.stack([truth + [9.0, -7.0], np.tile([250.5, 120.5], (40, 1))], axis=1)
+    expected = ExpectedRegions(centre, np.full((40, 2), 30.0))
+    tracks = finish(track_markers(clip_of(images), STYLES, expected))
+    apart = np.linalg.norm(truth - [ball[1] for ball in balls], axis=1) > 45.0
+    assert np.abs(tracks.centroid[apart, 0] - truth[apart]).max() < 0.3
+
+
+def test_a_region_that_an_arm_splits_stays_one() -> None:
+    """A dark bar before the middle of a large region takes its area, not its centroid; its quality sinks."""
+    rng = np.random.default_rng(7)
+    images = []
+    for index in range(30):
+        image = draw([(RED, (150.0, 100.0), (30.0, 20.0), 0.0), moving(index)[1]], rng)
+        if index >= 15:
+            image[94:106] = rng.normal(45, 2, (12, 320, 3)).astype(np.uint8)
+        images.append(image)
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    assert np.abs(tracks.centroid[:, 0] - [150.0, 100.0]).max() < 0.5
+    assert (tracks.area[15:, 0] < 0.75 * tracks.area[0, 0]).all()
+    assert tracks.quality[20, 0] < 0.75 * tracks.quality[5, 0]
+
+
+def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
+    """The marker walks out of the picture."""
+    rng = np.random.default_rng(8)
+    images = [
+        draw(
+            [(RED, (250.0 + 3.0 * index, 100.0), (16.0, 6.0), 0.0), (BLUE, (60.0, 60.0), (9.0, 9.0), 0.0)],
+            rng,
+        )
+        for index in range(25)
+    ]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    assert tracks.clipped[20, 0] and not tracks.clipped[:15, 0].any() and not tracks.clipped[:, 1].any()
+    assert tracks.quality[20, 0] < 0.5 * tracks.quality[10, 0]
+
+
+def test_a_colour_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
+    """The sentence names the marker, its colour and colours that are in the clip."""
+    rng = np.random.default_rng(9)
+    clip = clip_of([draw(moving(index), rng) for index in range(20)])
+    with pytest.raises(InputError, match=r"marker shin.*\[40, 220, 60\].*nearest.*\[\d+, \d+, \d+\]"):
+        finish(track_markers(clip, (*STYLES, MarkerStyle("shin", "shin.L", (40, 220, 60)))))
+
+
+def test_previews_show_what_the_extraction_measures() -> None:
+    """The masks' coverage sums to the regions' areas and every mask lies where its marker is."""
+    rng = np.random.default_rng(10)
+    images = [draw(moving(index), rng) for index in range(12)]
+    clip = clip_of(images)
+    tracks = finish(track_markers(clip, STYLES))
+    masks = marker_masks(images[5], learn_model(clip, STYLES))
+    assert masks.shape == (2, 240, 320)
+    np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
+    assert masks[0][90:92, 70:80].max() <= 1.0 and masks[0][120, 250] == 0.0 and masks[1][120, 250] == 1.0
+
+
+def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_one() -> None:
+    """At four times the size the centroids are four times as far and as exact."""
+    rng = np.random.default_rng(11)
+    large = [
+        cv2.resize(draw(moving(index), rng, 0.0), None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
+        for index in range(8)
+    ]
+    noisy = [np.clip(image + rng.normal(0, 2, image.shape), 0, 255).astype(np.uint8) for image in large]
+    tracks = finish(track_markers(Clip(Path("large"), Drawn(noisy, size=(1280, 960))), STYLES))
+    truth = 4.0 * np.array([path(index) for index in range(8)])
+    assert np.abs(tracks.centroid[:, 0] - truth).max() < 0.5
+    np.testing.assert_allclose(tracks.area[:, 0], 16 * np.pi * 16 * 6, rtol=0.06)
+
+
+def test_one_sample_off_in_light_still_teaches_the_markers_colour() -> None:
+    """A sample from the shaded side, a third darker, finds the same pixels as the true colour."""
+    rng = np.random.default_rng(12)
+    images = [draw(moving(index), rng) for index in range(6)]
+    dark = (RED[0] * 2 // 3, RED[1] * 2 // 3, RED[2] * 2 // 3)
+    right, shaded = (learn_colours(images, [sample, BLUE]).found for sample in (RED, dark))
+    np.testing.assert_allclose(shaded, right, rtol=0.1)
+
+
+def test_tracks_refuse_shapes_that_disagree() -> None:
+    """Every array has one row a frame and one column a marker."""
+    good: dict[str, Any] = {
+        "names": ("a",),
+        "centroid": np.zeros((3, 1, 2)),
+        "second_moment": np.zeros((3, 1, 2, 2)),
+        "area": np.zeros((3, 1)),
+        "quality": np.zeros((3, 1)),
+        "clipped": np.zeros((3, 1), dtype=bool),
+        "time_s": np.arange(3.0),
+        "size": SIZE,
+    }
+    tracks = RegionTracks(**good)
+    assert tracks.frame_count == 3 and tracks.visible.all() and not tracks.variable_frame_rate
+    with pytest.raises(ValueError, match="read-only"):
+        tracks.area[0, 0] = 1.0
+    with pytest.raises(ValueError, match="quality"):
+        RegionTracks(**{**good, "quality": np.zeros((3, 2))})
+
+
+@pytest.mark.parametrize("name", ["walk", "reach", "aerobic"])
+def test_rendered_takes_agree_with_the_exactly_visible_pixels(
+    name: str, take_folder: Callable[[str], Path]
+) -> None:
+    """Median centroid error under 0.8 px for every marker, no region while none is visible, few misses."""
+    folder = take_folder(name)
+    markers = json.loads((folder / "take.json").read_text())["markers"]
+    truth = json.loads((folder / "visibility.json").read_text())
+    styles = [MarkerStyle(key, key, tuple(value["color_srgb"])) for key, value in markers.items()]
+    tracks = finish(track_markers(Clip.open(folder / "clip.mp4"), styles))
+    for marker, key in enumerate(tracks.names):
+        pixels = np.array(truth[key]["pixels"])
+        centre = np.array([place or [np.nan, np.nan] for place in truth[key]["centroid_px"]], dtype=float)
+        seen = tracks.visible[:, marker]
+        assert not (seen & (pixels == 0)).any(), f"{key} is found where it is hidden"
+        assert np.count_nonzero(~seen & (pixels >= 40)) <= 1, f"{key} is missed"
+        both = seen & (pixels > 0)
+        error = np.linalg.norm(tracks.centroid[both, marker] - centre[both], axis=1)
+        assert np.median(error) < 0.8 and np.quantile(error, 0.95) < 2.5
+        assert 0.8 < np.median(tracks.area[both, marker] / pixels[both]) < 1.2

@@ -1,0 +1,114 @@
+"""Folders of results: whole or not at all."""
+
+import os
+from pathlib import Path
+
+import pytest
+from keymark.core import output_folder as module
+from keymark.core.errors import ConversionError, InputError
+from keymark.core.output_folder import output_folder
+
+
+def tree(folder: Path) -> dict[str, str]:
+    """Every file below a folder with its text, and every folder."""
+    return {
+        str(path.relative_to(folder)): path.read_text(encoding="utf-8") if path.is_file() else "(folder)"
+        for path in folder.rglob("*")
+    }
+
+
+def fill(place: Path, text: str) -> None:
+    """Make one file and one in a folder below."""
+    (place / "motion.json").write_text(text, encoding="utf-8")
+    (place / "report").mkdir()
+    (place / "report" / "speed.png").write_text(text, encoding="utf-8")
+
+
+def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
+    """A folder and its parents are made, and nothing is left beside it."""
+    with output_folder(tmp_path / "a" / "b" / "out") as place:
+        fill(place, "new")
+        assert not (tmp_path / "a" / "b" / "out").exists()
+    assert tree(tmp_path / "a" / "b" / "out") == {
+        "motion.json": "new",
+        "report": "(folder)",
+        "report/speed.png": "new",
+    }
+    assert [path.name for path in (tmp_path / "a" / "b").iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, GeneratorExit])
+def test_a_failing_block_changes_nothing(tmp_path: Path, error: type[BaseException]) -> None:
+    """Whatever ends the block, the folder is as before; a new one is not there, nor are its parents."""
+    for out in (tmp_path / "old", tmp_path / "not" / "there"):
+        if out.name == "old":
+            out.mkdir()
+            (out / "motion.json").write_text("old", encoding="utf-8")
+        before = tree(tmp_path)
+        with pytest.raises(error), output_folder(out) as place:
+            fill(place, "new")
+            raise error
+        assert tree(tmp_path) == before
+
+
+def test_files_of_others_stay_and_files_of_earlier_runs_go(tmp_path: Path) -> None:
+    """A second run replaces its own files, removes what it no longer makes, and keeps what is not its own."""
+    out = tmp_path / "out"
+    with output_folder(out) as place:
+        fill(place, "first")
+    (out / "notes.txt").write_text("mine", encoding="utf-8")
+    with output_folder(out, ["motion.json", "report/speed.png"]) as place:
+        (place / "motion.json").write_text("second", encoding="utf-8")
+    assert tree(out) == {"motion.json": "second", "notes.txt": "mine"}
+
+
+@pytest.mark.parametrize("fails_at", [1, 2, 3, 4])
+def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When the files cannot all be moved, those moved already go back."""
+    out = tmp_path / "out"
+    with output_folder(out) as place:
+        fill(place, "old")
+    before, moves = tree(tmp_path), 0
+    replace = os.replace
+
+    def fail_once(source: Path, destination: Path) -> None:
+        nonlocal moves
+        moves += 1
+        if moves == fails_at:
+            raise OSError(28, "No space left on device")
+        replace(source, destination)
+
+    monkeypatch.setattr(module.os, "replace", fail_once)
+    with pytest.raises(ConversionError, match="No space left"), output_folder(out) as place:
+        fill(place, "new")
+    assert tree(tmp_path) == before
+
+
+def test_a_place_that_is_no_folder_is_refused(tmp_path: Path) -> None:
+    """A file under the output's name, or under a parent's, is one sentence and stays."""
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match="is a file"), output_folder(tmp_path / "file"):
+        pass
+    with pytest.raises(InputError, match="cannot be written"), output_folder(tmp_path / "file" / "out"):
+        pass
+    assert tree(tmp_path) == {"file": "mine"}
+
+
+def test_a_mounted_folder_is_filled_from_within(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the parent may not be written, the work lies in the folder itself and is gone afterwards."""
+    out = tmp_path / "out"
+    out.mkdir()
+    monkeypatch.setattr(module.os, "access", lambda path, mode: Path(path) == out)
+    with output_folder(out) as place:
+        assert place.parent == out
+        fill(place, "new")
+    assert sorted(tree(out)) == ["motion.json", "report", "report/speed.png"]
+
+
+def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
+    """Results go where the link leads."""
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "out").symlink_to(tmp_path / "disk", target_is_directory=True)
+    with output_folder(tmp_path / "out") as place:
+        fill(place, "new")
+    assert (tmp_path / "out").is_symlink() and (tmp_path / "disk" / "motion.json").read_text() == "new"
