@@ -1,4 +1,4 @@
-"""A performer of average size before a fixed camera, and regions predicted from postures without any picture."""
+"""A performer of average size before a fixed camera, and regions predicted without any picture."""
 
 import numpy as np
 from keymark.core.body.actor import Actor

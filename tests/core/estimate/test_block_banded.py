@@ -8,7 +8,7 @@ SIZE = 4
 
 
 def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
-    """A positive definite system from random rows over one, two and three frames, and the same matrix dense."""
+    """A positive definite system from random rows over one to three frames, and the same matrix dense."""
     rng = np.random.default_rng(seed)
     banded = BlockBanded(frames, SIZE)
     dense = np.zeros((frames * SIZE, frames * SIZE))
