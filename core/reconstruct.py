@@ -10,7 +10,6 @@ from .body.kinematics import Body
 from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
-from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
 from .footage.markers import track_markers
 from .footage.tracks import ExpectedRegions, RegionTracks
@@ -78,8 +77,6 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
     if method == "map":
         motion = yield from _whole_clip(take, tracks, prior)
     elif method == "ekf":
-        motion = yield from _filter(take, tracks, prior)
-    elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior)
     yield Progress("Done", 1.0)
     return Reconstruction(motion, baseline, tracks, marker_speed(tracks), _notes(take, tracks))
@@ -119,19 +116,6 @@ def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
         "row_count": result.row_count.astype(np.float64),
         "gated": result.gated.astype(np.float64),
         "quality": tracks.quality,
-    }
-    return _motion(take, tracks, result.posture, result.covariance, "ekf", diagnostics)
-
-
-def _filter(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
-    segments = tuple(style.segment for style in take.markers)
-    keyframes = tuple(keyframe.index for keyframe in take.keyframes)
-    estimate = filter_clip(take.body, take.camera, tracks, segments, prior, keyframes)
-    result = yield from within("Filtering the motion", estimate, EXTRACTION_SHARE, 1.0)
-    diagnostics = {
-        "quality": tracks.quality,
-        "normalized_innovation_squared": result.normalized_innovation_squared,
-        "row_count": result.row_count.astype(np.float64),
     }
     return _motion(take, tracks, result.posture, result.covariance, "ekf", diagnostics)
 
