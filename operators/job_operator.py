@@ -1,6 +1,6 @@
 """Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from time import monotonic
 from typing import Any
 
@@ -21,6 +21,7 @@ class JobOperator:
     so a job that is cancelled or fails leaves everything as it was.
     """
 
+    report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     _job: Generator[Any, None, Any] | None = None
     _timer: bpy.types.Timer | None = None
     _scene_name: str = ""

@@ -24,7 +24,7 @@ class Outcome:
 
 
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
-    """Reconstruct the motion of every frame from the footage and the keyframes; writes it as an Action of its own"""
+    """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
 
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"

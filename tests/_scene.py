@@ -1,4 +1,4 @@
-"""A performer of average size before a fixed camera, and regions predicted from postures without any picture."""
+"""A performer of average size before a fixed camera, and regions predicted without any picture."""
 
 import numpy as np
 from keymark.core.body.actor import Actor
@@ -58,6 +58,4 @@ def film(posture: Posture, noise_px: float = 0.0, seed: int = 0, model: RegionMo
 
 def point_error_m(estimate: Posture, truth: Posture) -> np.ndarray:
     """Distance (F, 13) between the principal points of two batches [m]."""
-    return np.linalg.norm(
-        BODY.points(BODY.pose(estimate)) - BODY.points(BODY.pose(truth)), axis=-1
-    )
+    return np.linalg.norm(BODY.points(BODY.pose(estimate)) - BODY.points(BODY.pose(truth)), axis=-1)

@@ -121,8 +121,7 @@ class Body:
         """d points / d tangent, (..., P, 3, D) [m per m or rad]."""
         world = self.points(pose)
         rows = [
-            pose.place_jacobian(point.joint, world[..., i, :])
-            for i, point in enumerate(self.skeleton.points)
+            pose.place_jacobian(point.joint, world[..., i, :]) for i, point in enumerate(self.skeleton.points)
         ]
         return np.stack(rows, axis=-3)
 

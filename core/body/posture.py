@@ -70,9 +70,7 @@ class Posture:
 
     def __getitem__(self, index: Index) -> "Posture":
         """Postures picked along the batch axes."""
-        return Posture(
-            self.skeleton, self.translation[index], self.rotations[index], self.angles[index]
-        )
+        return Posture(self.skeleton, self.translation[index], self.rotations[index], self.angles[index])
 
     def to_vector(self) -> Array:
         """The posture vector (..., D): what `from_vector` reads; rotation vectors of at most π."""

@@ -56,6 +56,4 @@ class ClipState:
     def stepped(self, step: Array) -> "ClipState":
         """The state a step (F, N) away."""
         count = self.deviation.shape[1]
-        return ClipState(
-            self.body, self.prior, self.deviation + step[:, :count], self.bias + step[:, count:]
-        )
+        return ClipState(self.body, self.prior, self.deviation + step[:, :count], self.bias + step[:, count:])

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaincinv
+from scipy.special import gammaincinv  # scipy.stats, which has chi2 by name, takes a second to import
 
 from ..body import rotations
 from ..body.kinematics import Body, Pose
@@ -101,8 +101,9 @@ class FuzzyKalmanFilter:
 
     @cached_property
     def _gates(self) -> Array:
-        """(5,) largest NIS that is believed of a marker's 0 to 4 rows: quantiles of χ²."""
-        return np.asarray([0.0, *2.0 * gammaincinv(0.5 * np.arange(1, 5), self.options.gate_probability)])
+        """(5,) largest NIS that is believed of a marker's 0 to 4 rows."""
+        half_rows = 0.5 * np.arange(1, 5)  # quantiles of χ² with 1 to 4 degrees of freedom
+        return np.asarray([0.0, *(2.0 * gammaincinv(half_rows, self.options.gate_probability))])
 
     @property
     def _deviations(self) -> Array:

@@ -178,7 +178,7 @@ class _Problem:
             covariance,
             self.posing_scale,
             self.model.placements,
-            np.where(compared, distance, np.nan),
+            np.asarray(np.where(compared, distance, np.nan), dtype=np.float64),
         )
 
     def _feature_variance(self, index: NDArray[np.intp]) -> Array:

@@ -26,7 +26,7 @@ def footage_color(scene: bpy.types.Scene, pixel: ArrayLike) -> tuple[int, int, i
         Red, green, blue in 0 to 255.
 
     Raises:
-        InputError: There is no footage, no frame of it at the scene's current frame, or the pixel lies outside.
+        InputError: There is no footage, no frame of it at the current frame, or the pixel lies outside.
     """
     clip = scene.active_clip
     if clip is None:

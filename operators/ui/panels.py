@@ -17,6 +17,7 @@ class SubPanel(SidebarPanel):
     """A panel inside the main one, with properties in Blender's two columns."""
 
     bl_parent_id = "KEYMARK_PT_main"
+    layout: bpy.types.UILayout
 
     def column(self) -> bpy.types.UILayout:
         """The panel's column of properties."""

@@ -11,7 +11,7 @@ from keymark.core.errors import InputError
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.reconstruct import METHODS, Reconstruction, reconstruct
-from keymark.core.score import score_points
+from keymark.core.score import read_truth, score_points
 from keymark.core.take import Take, read_take
 
 
@@ -65,7 +65,7 @@ def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
     result: Reconstruction = run(reconstruct(take))
     frames = result.tracks.frame_count
     linear = take.body.points(take.body.pose(interpolate_linearly(take.keyframes, frames)))
-    truth, _ = read_truth(folder / "truth.json", take.frame_start)
+    truth = read_truth(folder / "truth.json", take.frame_start, frames)
     ours, plain, smooth = (
         score_points(points, truth, result.motion.keyframe_indices, take.camera).mpjpe
         for points in (result.motion.points, linear, result.interpolation.points)

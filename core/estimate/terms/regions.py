@@ -79,14 +79,14 @@ class ObservedRegions:
         return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
 
 
-def feature_rows(
-    observed: ObservedRegions, predicted: RegionPrediction
-) -> tuple[Array, Array | None]:
+def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
     """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
     centroid = predicted.centroid - observed.centroid
-    turned = np.swapaxes(observed.axes, -1, -2) @ (
-        predicted.second_moment - observed.second_moment
-    ) @ observed.axes
+    turned = (
+        np.swapaxes(observed.axes, -1, -2)
+        @ (predicted.second_moment - observed.second_moment)
+        @ observed.axes
+    )
     divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
     shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
     residual = np.concatenate([centroid, shape], axis=-1)
@@ -160,7 +160,7 @@ class RegionTerm:
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in (slice(0, 2), slice(2, FEATURES)):
             size = group.stop - group.start
-            information[..., group] *= student_weight(
-                squared[..., group].sum(-1), self.noise.degrees, size
-            )[..., None]
+            information[..., group] *= student_weight(squared[..., group].sum(-1), self.noise.degrees, size)[
+                ..., None
+            ]
         return np.asarray(information)

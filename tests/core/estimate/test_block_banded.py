@@ -8,7 +8,7 @@ SIZE = 4
 
 
 def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
-    """A positive definite system from random rows over one, two and three frames, and the same matrix dense."""
+    """A positive definite system from random rows over one to three frames, and the same matrix dense."""
     rng = np.random.default_rng(seed)
     banded = BlockBanded(frames, SIZE)
     dense = np.zeros((frames * SIZE, frames * SIZE))
@@ -31,7 +31,9 @@ def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) ->
     vector = np.random.default_rng(9).normal(size=(frames, SIZE))
     np.testing.assert_allclose(banded.multiply(vector).ravel(), dense @ vector.ravel(), atol=1e-10)
     factor = banded.factorise()
-    np.testing.assert_allclose(factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10)
+    np.testing.assert_allclose(
+        factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10
+    )
     inverse = np.linalg.inv(dense)
     for t, block in enumerate(factor.covariance_blocks()):
         part = slice(t * SIZE, (t + 1) * SIZE)

@@ -126,7 +126,9 @@ def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
     predicted = MODEL.evaluate(BODY.pose(posture), np.arange(1))
     tracks = film(posture)
     observed = ObservedRegions.from_tracks(tracks)
-    stretched = observed.axes @ np.apply_along_axis(np.diag, -1, [1.0, 1.1]) @ np.swapaxes(observed.axes, -1, -2)
+    stretched = (
+        observed.axes @ np.apply_along_axis(np.diag, -1, [1.0, 1.1]) @ np.swapaxes(observed.axes, -1, -2)
+    )
     moment = stretched @ observed.second_moment @ np.swapaxes(stretched, -1, -2)
     wider = replace(tracks, second_moment=moment)
     residual, _ = feature_rows(ObservedRegions.from_tracks(wider), predicted)

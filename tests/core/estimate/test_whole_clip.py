@@ -110,7 +110,7 @@ def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -
 
 
 def test_footage_without_any_marker_gives_the_prior_back() -> None:
-    """With nothing seen the estimate neither fails nor wanders."""
+    """With nothing seen the estimate neither fails nor wanders; only slow feet are steadied a little."""
     tracks = film(TRUTH)
     empty = replace(
         tracks,
@@ -121,7 +121,7 @@ def test_footage_without_any_marker_gives_the_prior_back() -> None:
     )
     prior = prior_from(TRUTH[np.array(POSED)])
     result = solve(prior, empty)
-    assert point_error_m(result.posture, prior).max() < 0.03
+    assert point_error_m(result.posture, prior).mean() < 0.015
     assert np.isnan(result.residual_px).all()
 
 

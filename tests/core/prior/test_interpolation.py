@@ -75,9 +75,7 @@ def test_even_motion_is_reproduced_evenly() -> None:
 def test_a_turn_past_half_a_circle_keeps_its_direction() -> None:
     """Keyframes a third of a turn apart go on turning the same way."""
     vectors = np.zeros((4, HUMAN.dof_count))
-    turns = Posture.from_vector(HUMAN, vectors).plus(
-        np.arange(4)[:, None] * 2.0 * np.eye(HUMAN.dof_count)[5]
-    )
+    turns = Posture.from_vector(HUMAN, vectors).plus(np.arange(4)[:, None] * 2.0 * np.eye(HUMAN.dof_count)[5])
     posed = tuple(Keyframe(10 * i, turns[i]) for i in range(4))
     curve = interpolate(posed, 31)
     steps = curve[np.arange(1, 31)].minus(curve[np.arange(30)])

@@ -1,0 +1,242 @@
+"""Filming: cameras, a shutter open half the frame, sensor noise, H.264, and the markers' true masks."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+import cv2
+import numpy as np
+from choreography import FRAME_COUNT, Performance
+from keymark.core.footage.camera import Camera
+from mathutils import Matrix
+from numpy.typing import NDArray
+from performer import MARKERS, Performer
+
+Array = NDArray[np.float64]
+
+FPS = 30
+SHUTTER_FRAMES = 0.5
+ROOM_SAMPLES = 24
+MARGIN_PX = 16
+SHADOW_PER_HEIGHT = np.array([0.08, 0.30, 0.0])
+"""How far the shadow of a point falls beside it on the floor, for each metre of its height."""
+SIXTEEN_BITS = 65535.0
+GAMMA = 2.2
+"""Exposures add up in linear light; near enough to the sRGB curve for blur and noise."""
+
+
+def look_at(
+    place: tuple[float, float, float],
+    target: tuple[float, float, float],
+    lens_mm: float,
+    size: tuple[int, int],
+) -> Camera:
+    """A camera with a horizontal horizon that looks from `place` at `target` [m]."""
+    backwards = np.array(place) - np.array(target)
+    backwards /= np.linalg.norm(backwards)
+    right = np.cross([0.0, 0.0, 1.0], backwards)
+    right /= np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([right, np.cross(backwards, right), backwards], axis=-1)
+    matrix[:3, 3] = place
+    return Camera(lens_mm, 36.0, size, np.round(matrix, 9))
+
+
+def place_camera(camera: Camera) -> None:
+    """Make the scene's camera the one described."""
+    scene = bpy.context.scene
+    data = bpy.data.cameras.new("Camera")
+    data.lens, data.sensor_width, data.sensor_fit = camera.lens_mm, camera.sensor_width_mm, "HORIZONTAL"
+    thing = bpy.data.objects.new("Camera", data)
+    thing.matrix_world = Matrix(camera.matrix_world.tolist())
+    scene.collection.objects.link(thing)
+    scene.camera = thing
+    scene.render.resolution_x, scene.render.resolution_y = camera.resolution
+    scene.render.resolution_percentage = 100
+
+
+def prepare_cycles(seed: int) -> None:
+    """Render by path tracing on the processor, the same on every machine."""
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.device = "CPU"
+    scene.cycles.seed = seed
+    scene.cycles.use_adaptive_sampling = scene.cycles.use_light_tree = False
+    scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 2, 1
+    scene.cycles.use_denoising = True
+    scene.cycles.denoiser = "OPENIMAGEDENOISE"
+    scene.cycles.denoising_quality, scene.cycles.denoising_prefilter = "FAST", "NONE"
+    scene.render.use_persistent_data = True
+    scene.view_settings.view_transform = "Standard"
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode = "RGB"
+    scene.render.image_settings.color_depth = "16"
+    scene.render.image_settings.compression = 0
+
+
+def render(samples: int) -> Array:
+    """Render the scene: (height, width, 3) blue, green, red from 0 to 1, display values."""
+    bpy.context.scene.cycles.samples = samples
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "image.png"
+        bpy.context.scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        return np.asarray(cv2.imread(str(path), cv2.IMREAD_UNCHANGED)[..., :3] / SIXTEEN_BITS)
+
+
+def film(
+    performer: Performer, performance: Performance, camera: Camera, moments: int, samples: int
+) -> list[Array]:
+    """All frames of the performance as one camera sees them, without sensor noise.
+
+    The empty room is rendered once; each frame renders only where the performer and the shadow are, and the
+    seam is blended.
+
+    Args:
+        performer: Who is filmed.
+        performance: The motion.
+        camera: The scene's camera is made this one.
+        moments: Renders while the shutter is open, whose mean is the frame.
+        samples: Light paths a pixel of each render.
+    """
+    place_camera(camera)
+    performer.thing.hide_render = True
+    room = render(ROOM_SAMPLES)
+    performer.thing.hide_render = False
+    offsets = SHUTTER_FRAMES * ((np.arange(moments) + 0.5) / moments - 0.5)
+    images = []
+    for frame in range(FRAME_COUNT):
+        indices = performance.at(frame + offsets)
+        performer.bend(performance, int(indices[moments // 2]))
+        left, top, right, bottom = _neighbourhood(performer.world_places(), camera)
+        with _border(camera, left, top, right, bottom):
+            light = np.zeros((bottom - top, right - left, 3))
+            for index in indices:
+                performer.bend(performance, int(index))
+                light += render(samples) ** GAMMA / moments
+        share = _seam(light.shape[:2], (left, top, right, bottom), camera.resolution)[..., None]
+        image = room.copy()
+        image[top:bottom, left:right] *= 1.0 - share
+        image[top:bottom, left:right] += share * light ** (1.0 / GAMMA)
+        images.append(image)
+    return images
+
+
+def _neighbourhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom pixel bounds of the performer and the darkest part of the shadow."""
+    shadow = places * [1.0, 1.0, 0.0] + places[:, 2:] * SHADOW_PER_HEIGHT
+    pixels, _ = camera.project(np.concatenate([places, shadow]))
+    width, height = camera.resolution
+    first = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - MARGIN_PX, 0)
+    last = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + MARGIN_PX, [width, height])
+    return int(first[0]), int(first[1]), int(last[0]), int(last[1])
+
+
+@contextmanager
+def _border(camera: Camera, left: int, top: int, right: int, bottom: int) -> Iterator[None]:
+    """While open, only these pixels are rendered."""
+    render_settings = bpy.context.scene.render
+    width, height = camera.resolution
+    inside = 0.01  # of a pixel, against rounding to a neighbour
+    render_settings.use_border = render_settings.use_crop_to_border = True
+    render_settings.border_min_x, render_settings.border_max_x = (
+        (left + inside) / width,
+        (right + inside) / width,
+    )
+    render_settings.border_min_y = (height - bottom + inside) / height
+    render_settings.border_max_y = (height - top + inside) / height
+    try:
+        yield
+    finally:
+        render_settings.use_border = render_settings.use_crop_to_border = False
+
+
+def _seam(shape: tuple[int, int], bounds: tuple[int, int, int, int], resolution: tuple[int, int]) -> Array:
+    """Share of the new render in each pixel: rising from its edges, except where those are the image's."""
+    rows, columns = shape
+    left, top, right, bottom = bounds
+    x, y = np.arange(columns) + 1.0, np.arange(rows) + 1.0
+    ramps = [
+        x if left > 0 else np.full(columns, np.inf),
+        x[::-1] if right < resolution[0] else np.full(columns, np.inf),
+        y if top > 0 else np.full(rows, np.inf),
+        y[::-1] if bottom < resolution[1] else np.full(rows, np.inf),
+    ]
+    across, down = np.minimum(ramps[0], ramps[1]), np.minimum(ramps[2], ramps[3])
+    return np.clip(np.minimum(down[:, None], across[None, :]) / MARGIN_PX, 0.0, 1.0)
+
+
+def add_sensor_noise(image: Array, random: np.random.Generator, strength: float) -> NDArray[np.uint8]:
+    """Eight-bit image with noise that is strongest in the shadows, as a small sensor's is after gamma."""
+    spread = strength * (1.4 - 0.8 * image)
+    noisy = 255.0 * image + spread * random.standard_normal(image.shape)
+    return np.asarray(np.clip(np.rint(noisy), 0, 255), dtype=np.uint8)
+
+
+def encode(images: list[NDArray[np.uint8]], path: Path, quality: str) -> None:
+    """Write images as H.264 in MP4, by Blender's sequencer."""
+    with tempfile.TemporaryDirectory() as folder:
+        for number, image in enumerate(images):
+            cv2.imwrite(str(Path(folder) / f"{number:04d}.png"), image)
+        scene = bpy.data.scenes.new("Encoding")
+        height, width = images[0].shape[:2]
+        scene.render.resolution_x, scene.render.resolution_y, scene.render.fps = width, height, FPS
+        scene.frame_start, scene.frame_end = 1, len(images)
+        scene.view_settings.view_transform = "Standard"
+        editor = scene.sequence_editor_create()
+        strip = editor.strips.new_image("Frames", str(Path(folder) / "0000.png"), 1, 1)
+        for number in range(1, len(images)):
+            strip.elements.append(f"{number:04d}.png")
+        strip.frame_final_duration = len(images)
+        scene.render.image_settings.file_format = "FFMPEG"
+        scene.render.ffmpeg.format, scene.render.ffmpeg.codec = "MPEG4", "H264"
+        scene.render.ffmpeg.constant_rate_factor = quality
+        scene.render.ffmpeg.ffmpeg_preset = "BEST"
+        scene.render.ffmpeg.audio_codec = "NONE"
+        scene.render.filepath = str(path)
+        bpy.ops.render.render(animation=True, scene=scene.name)
+        bpy.data.scenes.remove(scene)
+
+
+@contextmanager
+def only_markers(performer: bpy.types.Object) -> Iterator[list[int]]:
+    """While open, renders are flat: each marker in a grey of its own, all else black; yields those greys."""
+    scene = bpy.context.scene
+    mesh = performer.data
+    painted = list(mesh.materials)
+    others = [thing for thing in scene.objects if thing.type in ("MESH", "LIGHT") and thing is not performer]
+    greys = [40 * (number + 1) for number in range(len(MARKERS))]
+    for slot in range(len(painted)):
+        mesh.materials[slot] = _flat(greys[slot] / 255.0 if slot < len(MARKERS) else 0.0)
+    kept = (scene.cycles.use_denoising, scene.cycles.filter_width, scene.world)
+    scene.cycles.use_denoising, scene.cycles.filter_width = False, 0.01
+    scene.view_settings.view_transform, scene.world = "Raw", None
+    for thing in others:
+        thing.hide_render = True
+    try:
+        yield greys
+    finally:
+        for slot, material in enumerate(painted):
+            mesh.materials[slot] = material
+        scene.cycles.use_denoising, scene.cycles.filter_width, scene.world = kept
+        scene.view_settings.view_transform = "Standard"
+        for thing in others:
+            thing.hide_render = False
+
+
+def marker_masks(greys: list[int]) -> NDArray[np.bool_]:
+    """(M, height, width) the pixels in whose centre each marker is seen, from one flat render."""
+    image = np.rint(255.0 * render(1)[..., 0])
+    return np.stack([image == grey for grey in greys])
+
+
+def _flat(value: float) -> bpy.types.Material:
+    material = bpy.data.materials.new("Flat")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    light = nodes.new("ShaderNodeEmission")
+    light.inputs["Color"].default_value = (value, value, value, 1.0)
+    links.new(light.outputs["Emission"], nodes["Material Output"].inputs["Surface"])
+    return material

@@ -1,0 +1,73 @@
+"""From the angles and places that describe an exercise to the skeleton's joint rotations."""
+
+import numpy as np
+from keymark.core.body.kinematics import Body
+from keymark.core.body.rotations import hinge
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+X, Y, Z = np.eye(3)
+MIRROR = np.diag([-1.0, 1.0, 1.0])
+"""Takes left to right, the sagittal plane being x = 0."""
+STRAIGHTEST = 0.9985
+"""Share of a leg's length it may reach: a leg stretched to the last has no knee direction."""
+
+
+def turned(yaw: Array, pitch: Array, roll: Array) -> Array:
+    """Rotations (T, 3, 3) that bow by `pitch`, lean by `roll` and turn left by `yaw` (T,) [degrees]."""
+    return np.asarray(hinge(Z, np.radians(yaw)) @ hinge(Y, np.radians(roll)) @ hinge(X, np.radians(pitch)))
+
+
+def arm_rotations(side: str, elevation: Array, forward: Array, twist: Array) -> Array:
+    """Shoulder rotations (T, 3, 3) relative to the chest.
+
+    Args:
+        side: `L` or `R`.
+        elevation: (T,) angle from hanging down [degrees]; 90 is level, 180 overhead.
+        forward: (T,) angle of the plane of elevation before the sideways plane [degrees].
+        twist: (T,) turn about the upper arm itself [degrees].
+    """
+    left = (
+        hinge(Z, -np.radians(forward)) @ hinge(Y, np.radians(90.0 - elevation)) @ hinge(X, np.radians(twist))
+    )
+    return np.asarray(left if side == "L" else MIRROR @ left @ MIRROR)
+
+
+def leg_rotations(
+    body: Body, side: str, pelvis: Array, pelvis_rotation: Array, ankle: Array, foot: Array
+) -> tuple[Array, Array]:
+    """Hip rotation (T, 3, 3) in the pelvis and knee flexion (T,) [rad] that put the ankle in its place.
+
+    The knee points where the toes do.
+
+    Args:
+        body: The performer.
+        side: `L` or `R`.
+        pelvis: (T, 3) hips' midpoint [m].
+        pelvis_rotation: (T, 3, 3).
+        ankle: (T, 3) where the ankle shall be [m].
+        foot: (T, 3, 3) rotation of the foot.
+
+    Raises:
+        ValueError: A place is out of reach.
+    """
+    lengths = body.actor.segments_m
+    thigh, shin = lengths[f"thigh.{side}"], lengths[f"shin.{side}"]
+    hip = pelvis + pelvis_rotation @ (0.5 * lengths["hip_width"] * (X if side == "L" else -X))
+    reach = ankle - hip
+    distance = np.linalg.norm(reach, axis=-1)
+    if np.any(distance > STRAIGHTEST * (thigh + shin)):
+        worst = int(np.argmax(distance))
+        raise ValueError(
+            f"leg {side} is {distance[worst] - thigh - shin:+.3f} m beyond its length at step {worst}"
+        )
+    down = reach / distance[:, None]
+    across = np.cross(-foot[:, :, 1], down)  # toes point along the foot's -y
+    across /= np.linalg.norm(across, axis=-1, keepdims=True)
+    ahead = np.cross(down, across)
+    at_hip = np.arccos((thigh**2 + distance**2 - shin**2) / (2.0 * thigh * distance))[:, None]
+    at_knee = np.arccos((thigh**2 + shin**2 - distance**2) / (2.0 * thigh * shin))
+    axis = -(down * np.cos(at_hip) + ahead * np.sin(at_hip))
+    frame = np.stack([across, np.cross(axis, across), axis], axis=-1)
+    return np.swapaxes(pelvis_rotation, -1, -2) @ frame, np.pi - at_knee
