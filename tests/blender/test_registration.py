@@ -93,3 +93,13 @@ def test_every_operator_has_a_label_a_tooltip_and_the_usual_options() -> None:
         assert len(kind.description) > 10
         assert not kind.description.endswith(".")
         assert "REGISTER" in getattr(bpy.ops.keymark, name).bl_options
+
+
+def test_the_command_comes_and_goes() -> None:
+    """Blender keeps the command as long as the extension is there."""
+    from keymark.operators import command
+
+    keymark.register()
+    assert len(command._registered) == 1
+    keymark.unregister()
+    assert command._registered == []
