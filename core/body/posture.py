@@ -63,6 +63,16 @@ class Posture:
             np.stack([p.angles for p in postures]),
         )
 
+    @classmethod
+    def concatenate(cls, batches: list["Posture"]) -> "Posture":
+        """One batch of several, joined along their first axis."""
+        return cls(
+            batches[0].skeleton,
+            np.concatenate([p.translation for p in batches]),
+            np.concatenate([p.rotations for p in batches]),
+            np.concatenate([p.angles for p in batches]),
+        )
+
     @property
     def batch(self) -> tuple[int, ...]:
         """Leading axes; () for a single posture."""

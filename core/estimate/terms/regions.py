@@ -78,6 +78,16 @@ class ObservedRegions:
         deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
         return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
 
+    def __getitem__(self, index: slice | NDArray[np.intp]) -> "ObservedRegions":
+        """The same markers in some of the frames."""
+        return ObservedRegions(
+            self.centroid[index],
+            self.second_moment[index],
+            self.axes[index],
+            self.deviation[index],
+            self.quality[index],
+        )
+
 
 def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
     """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
@@ -113,10 +123,9 @@ def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tupl
     return residual, np.concatenate(rows, axis=-2)
 
 
-def limb_widths(model: RegionModel, points: Array, frame: NDArray[np.intp]) -> Array:
-    """(F, M) image half-width of each marker's limb at the body's mean depth [px]."""
-    depth = model.camera.depth(points, frame[:, None]).mean(axis=1)
-    scale = model.camera.focal_px / np.maximum(depth, 0.1)
+def limb_widths(model: RegionModel, places: Array, frame: NDArray[np.intp]) -> Array:
+    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
+    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 
@@ -132,8 +141,7 @@ class RegionTerm:
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
-        frames = np.arange(state.frames)
-        predicted = self.model.evaluate(state.pose, frames, jacobian=True)
+        predicted = self.model.evaluate(state.pose, state.frame, jacobian=True)
         residual, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
         count = len(self.model.placements)

@@ -22,7 +22,13 @@ DOFS = HUMAN.dof_count
 def state(seed: int = 1, size: float = 0.05) -> ClipState:
     """A prior and a seeded deviation from it."""
     rng = np.random.default_rng(seed)
-    return ClipState(BODY, exercise(FRAMES), size * rng.normal(size=(FRAMES, DOFS)), np.zeros((FRAMES, 0)))
+    return ClipState(
+        BODY,
+        exercise(FRAMES),
+        np.arange(FRAMES),
+        size * rng.normal(size=(FRAMES, DOFS)),
+        np.zeros((FRAMES, 0)),
+    )
 
 
 def gradient(term: Term, at: ClipState) -> np.ndarray:
@@ -65,7 +71,7 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
     knee = HUMAN.dof_names.index("knee.R.flexion")
     deviation = np.zeros((FRAMES, DOFS))
     deviation[2, knee] = -0.5
-    push = gradient(LimitTerm(), ClipState(BODY, at.prior, deviation, at.bias))
+    push = gradient(LimitTerm(), ClipState(BODY, at.prior, at.frame, deviation, at.bias))
     assert push[2, knee] < 0.0
     assert np.count_nonzero(push) == 1
 
@@ -79,7 +85,13 @@ def test_the_stillness_term_holds_a_slow_foot_and_lets_a_fast_one_go() -> None:
         deviation = np.zeros((FRAMES, DOFS))
         deviation[:, 0] = speed_m_s / 30.0 * np.arange(FRAMES)
         held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
-        return float(np.abs(gradient(term, ClipState(BODY, held, deviation, np.zeros((FRAMES, 0))))[0, 0]))
+        return float(
+            np.abs(
+                gradient(term, ClipState(BODY, held, np.arange(FRAMES), deviation, np.zeros((FRAMES, 0))))[
+                    0, 0
+                ]
+            )
+        )
 
     assert pull(0.03) > 0.0
     assert pull(1.2) < 0.2 * pull(0.06)
