@@ -1,6 +1,6 @@
 """Accuracy on every take with truth: what a user could do without the footage beside the project's methods.
 
-Usage: accuracy.py [NAME ...] with names of takes; by default all that are found. README.md says how to read it.
+Usage: accuracy.py [NAME ...] with names of takes; by default all found. See README.md.
 """
 
 import json

@@ -1,7 +1,7 @@
 """Where the time and the memory of `keymark convert` go, and how both grow with the clip's length.
 
-Usage: speed.py [NAME] with the name of a take, by default the first found. Each row is a process of its own, so
-that start-up and peak memory are those of a user's call. See README.md beside this file.
+Usage: speed.py [NAME] with the name of a take, by default the first found. Each row is a process of its own,
+so that start-up and peak memory are those of a user's call. See README.md beside this file.
 """
 
 import json

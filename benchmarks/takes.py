@@ -21,7 +21,7 @@ def load_project() -> None:
 
 
 def take_names() -> dict[str, Path]:
-    """Folders of takes with truth by the name that tables give them; the demonstration's begins with `demo`."""
+    """Folders of takes with truth by the name in tables; the demonstration's begins with `demo`."""
     found: dict[str, Path] = {}
     for place in PLACES:
         for truth in sorted(place.glob("*/truth.json")):

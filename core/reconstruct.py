@@ -10,8 +10,8 @@ from .body.kinematics import Body
 from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
-from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
+from .footage.clip import Clip
 from .footage.markers import track_markers
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
@@ -19,13 +19,14 @@ from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
 from .progress import Job, Progress, within
-from .take import Take, check_frame_count, open_clip
+from .take import Take, check_frame_count, open_clip, rate_note
 
 Array = NDArray[np.float64]
 
 METHODS = ("map", "ekf", "interpolation")
 EXPECTED_RADIUS_M = 0.45
 """How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
+CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6
 """Share of the work that reading the footage usually is."""
 
@@ -78,22 +79,27 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
     if method == "map":
         motion = yield from _whole_clip(take, tracks, prior)
     elif method == "ekf":
-        motion = yield from _filter(take, tracks, prior)
-    elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior)
     yield Progress("Done", 1.0)
-    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), _notes(take, tracks))
+    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), _notes(take, clip, tracks))
 
 
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     """Where the interpolated keyframes put each marker, with a generous radius."""
-    pose = take.body.pose(interpolate(take.keyframes, frame_count))
+    prior = interpolate(take.keyframes, frame_count)
     placements = tuple(MarkerPlacement(style.segment) for style in take.markers)
-    frame = np.arange(frame_count)
-    predicted = RegionModel(take.body, take.camera, placements).evaluate(pose, frame)
-    depth = take.camera.depth(pose.posture.translation, frame)
+    model = RegionModel(take.body, take.camera, placements)
+    centre = np.empty((frame_count, len(placements), 2))
+    for frame in _chunks(frame_count):
+        centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
+    depth = take.camera.depth(prior.translation, np.arange(frame_count))
     radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
-    return ExpectedRegions(predicted.centroid, np.repeat(radius[:, None], len(placements), axis=1))
+    return ExpectedRegions(centre, np.repeat(radius[:, None], len(placements), axis=1))
+
+
+def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
+    """The clip's frames in stretches short enough that work on one needs little memory."""
+    return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
 def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
@@ -119,19 +125,6 @@ def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
         "row_count": result.row_count.astype(np.float64),
         "gated": result.gated.astype(np.float64),
         "quality": tracks.quality,
-    }
-    return _motion(take, tracks, result.posture, result.covariance, "ekf", diagnostics)
-
-
-def _filter(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
-    segments = tuple(style.segment for style in take.markers)
-    keyframes = tuple(keyframe.index for keyframe in take.keyframes)
-    estimate = filter_clip(take.body, take.camera, tracks, segments, prior, keyframes)
-    result = yield from within("Filtering the motion", estimate, EXTRACTION_SHARE, 1.0)
-    diagnostics = {
-        "quality": tracks.quality,
-        "normalized_innovation_squared": result.normalized_innovation_squared,
-        "row_count": result.row_count.astype(np.float64),
     }
     return _motion(take, tracks, result.posture, result.covariance, "ekf", diagnostics)
 
@@ -166,13 +159,20 @@ def _motion(
 
 def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D)."""
-    jacobian = body.points_jacobian(body.pose(posture))
-    return np.asarray(np.einsum("fpid,fde,fpje->fpij", jacobian, covariance, jacobian, optimize=True))
+    points = len(body.skeleton.points)
+    spread = np.empty((len(covariance), points, 3, 3))
+    for frame in _chunks(len(covariance)):
+        jacobian = body.points_jacobian(body.pose(posture[frame]))  # (F, P, 3, D)
+        spread[frame] = jacobian @ covariance[frame, None] @ np.swapaxes(jacobian, -1, -2)
+    return spread
 
 
-def _notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
+def _notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
     """Sentences on what may have gone wrong."""
     notes = list(take.notes)
+    rate = rate_note(take, clip)
+    if rate is not None:
+        notes.append(rate)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
         if seen < 0.5 * tracks.frame_count:

@@ -1,6 +1,6 @@
 """Keymark in Blender's user interface and on its command line: one operator a file.
 
-Nothing is imported before `register()`: the command line of an ordinary Python environment shares this folder.
+Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
 """
 
 from importlib import import_module

@@ -4,6 +4,7 @@ Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is
 On all but 0, one line on standard error says why, and the output is as it was before.
 """
 
+import os
 import signal
 import sys
 import threading
@@ -17,6 +18,8 @@ from ..core.errors import InputError, KeymarkError
 from .command_line.arguments import UsageError, build_parser, program_name
 
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,6 +33,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     words = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in words
+    if "numpy" not in sys.modules:  # which reads these once, when it is loaded
+        for variable in ONE_THREAD:
+            os.environ.setdefault(variable, "1")
     started = time.perf_counter()
     try:
         arguments = build_parser().parse_args(words)

@@ -1,15 +1,18 @@
 """Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from .failures import reported
 
-SLICE_S = 0.05
-"""How long a job runs before the user interface is drawn again."""
+if TYPE_CHECKING:
+    from ..core.progress import Job
+
+SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
+"""How long a job runs before the user interface is drawn again: as long as drawing took, between these."""
 TIMER_S = 0.01
 PREFIX = "KEYMARK_OT_"
 
@@ -21,9 +24,11 @@ class JobOperator:
     so a job that is cancelled or fails leaves everything as it was.
     """
 
+    report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     _job: Generator[Any, None, Any] | None = None
     _timer: bpy.types.Timer | None = None
     _scene_name: str = ""
+    _slice_end: float = 0.0
 
     def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
         """The job; it must leave the scene as it was."""
@@ -50,9 +55,10 @@ class JobOperator:
             self._job = self.start(context.scene)
             self._scene_name = context.scene.name
             manager = context.window_manager
-            manager.keymark_progress.show("Starting", 0.0)
             self._timer = manager.event_timer_add(TIMER_S, window=context.window)
             manager.modal_handler_add(self)
+            self._show(context, "Starting", 0.0)
+            self._slice_end = monotonic()
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
@@ -65,10 +71,14 @@ class JobOperator:
         if event.type != "TIMER" or self._job is None:
             return {"PASS_THROUGH"}
         with reported(self):
-            until = monotonic() + SLICE_S
+            drawing = monotonic() - self._slice_end
+            until = monotonic() + min(max(drawing, SHORTEST_SLICE_S), LONGEST_SLICE_S)
             try:
+                progress = next(self._job)
                 while monotonic() < until:
-                    self._show(context, next(self._job))
+                    progress = next(self._job)
+                self._show(context, progress.stage, progress.fraction)
+                self._slice_end = monotonic()
             except StopIteration as stop:
                 self.cancel(context)
                 self.finish(bpy.data.scenes[self._scene_name], stop.value)
@@ -91,11 +101,9 @@ class JobOperator:
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
 
-    def _show(self, context: bpy.types.Context, progress: Any) -> None:
-        context.window_manager.keymark_progress.show(progress.stage, progress.fraction)
-        context.workspace.status_text_set(
-            f"{progress.stage}: {100.0 * progress.fraction:.0f}%   |   Esc: Cancel"
-        )
+    def _show(self, context: bpy.types.Context, stage: str, fraction: float) -> None:
+        context.window_manager.keymark_progress.show(stage, fraction)
+        context.workspace.status_text_set(f"{stage}: {100.0 * fraction:.0f}%   |   Esc: Cancel")
         redraw_sidebars(context)
 
 
@@ -116,3 +124,15 @@ def job_is_running(context: bpy.types.Context) -> bool:
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
+
+
+def stretch(job: "Job[Any]", first: float, last: float) -> "Job[Any]":
+    """Run a job as the stretch `first` to `last` of a longer one."""
+    from ..core.progress import Progress
+
+    while True:
+        try:
+            progress = next(job)
+        except StopIteration as stop:
+            return stop.value
+        yield Progress(progress.stage, first + (last - first) * progress.fraction)

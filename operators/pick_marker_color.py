@@ -53,8 +53,12 @@ class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
                     {"ERROR"}, "That is not on the footage; look through the camera and click on a marker"
                 )
                 return {"CANCELLED"}
-            self.pixel = pixel
-            return self.execute(context)
+            with reported(self):
+                from .bridge.footage_color import footage_pixel
+
+                self.pixel = footage_pixel(context.scene, pixel)
+                return self.execute(context)
+            return {"CANCELLED"}
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:

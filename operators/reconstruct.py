@@ -5,13 +5,16 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .job_operator import JobOperator
+from .job_operator import JobOperator, stretch
 from .marker_styles import marker_styles
 from .requirements import actor, all_met, footage, idle, keyframes, markers
 
 if TYPE_CHECKING:
     from ..core.motion import Motion
     from ..core.progress import Job
+
+READING_SHARE = 0.05
+"""Share of the job that reading the scene and the clip's times is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +27,7 @@ class Outcome:
 
 
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
-    """Reconstruct the motion of every frame from the footage and the keyframes; writes it as an Action of its own"""
+    """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
 
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
@@ -42,10 +45,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
 
         settings = scene.keymark
         method = settings.method
-        take, notes = yield from read_scene_take(
-            scene, settings.armature, settings.keyframe_action, marker_styles(scene)
-        )
-        result = yield from reconstruct(take, method)
+        reading = read_scene_take(scene, settings.armature, settings.keyframe_action, marker_styles(scene))
+        take, notes = yield from stretch(reading, 0.0, READING_SHARE)
+        result = yield from stretch(reconstruct(take, method), READING_SHARE, 1.0)
         return Outcome(result.motion, take.fps, (*notes, *result.notes))
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:

@@ -47,7 +47,9 @@ def idle(context: bpy.types.Context) -> str | None:
     return "Another of Keymark's jobs is running" if job_is_running(context) else None
 
 
-def all_met(operator_class: type, context: bpy.types.Context, *needed: Requirement) -> bool:
+def all_met(
+    operator_class: type[bpy.types.Operator], context: bpy.types.Context, *needed: Requirement
+) -> bool:
     """Whether everything is there; the first thing that is not becomes the tooltip."""
     for requirement in needed:
         sentence = requirement(context)

@@ -10,7 +10,7 @@ from .requirements import actor, all_met, footage, idle, markers
 
 
 class KEYMARK_OT_save_take(bpy.types.Operator):
-    """Save footage, camera, actor, markers and keyframes as a take folder for the command line or for others"""
+    """Save footage, camera, actor, markers and keyframes as a take folder, to convert it elsewhere"""
 
     bl_idname = "keymark.save_take"
     bl_label = "Save Take"

@@ -41,8 +41,8 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             if reading.furthest_m > NOTICEABLE_M:
                 self.report(
                     {"WARNING"},
-                    f"Stored at frame {frame:g}; the pose goes {1000.0 * reading.furthest_m:.0f} mm beyond what "
-                    "the skeleton can do, and its nearest posture will be used",
+                    f"Stored at frame {frame:g}; the pose goes {1000.0 * reading.furthest_m:.0f} mm beyond "
+                    "what the skeleton can do, and its nearest posture will be used",
                 )
             else:
                 self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}")

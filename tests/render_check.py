@@ -23,9 +23,8 @@ STEP = 6
 SHIFT = 10
 """A motion this many frames late must not pass."""
 LEAST_AREA_SHARE = 0.4
-"""Of the largest area that a marker has in the same images. Below it the marker is mostly hidden: the remainder
-says where it is hidden, and in the side view, which hardly ever shows the far shin, clutter of like hue stands in.
-"""
+"""Of the largest area that a marker has in the same images. Below it the marker is mostly hidden: the
+remainder says where it is hidden, and for the far shin in the side view clutter of like hue stands in."""
 DEMO = Path("presets") / "demo" / "aerobic"
 KEYFRAMES = "keyframes_noisy.json"
 """Posed with a person's errors, as users' keyframes are."""
@@ -40,8 +39,8 @@ class View:
         clip: Its footage in the take's folder.
         median_px: Largest distance between a marker's two centroids for half of them [px].
         p95_px: The same for 95 % of them [px].
-        least_share: Of all markers and rendered frames, how many must be compared: it must not pass because next
-            to nothing was found.
+        least_share: Of all markers and rendered frames, how many must be compared: it must not pass because
+            next to nothing was found.
     """
 
     name: str
@@ -64,9 +63,9 @@ class View:
         return bool(np.median(found) <= self.median_px and np.percentile(found, 95) <= self.p95_px)
 
 
-# Measured with keyframes posed by hand: front median 1.6 and p95 5.1 px, side 1.7 and 6.2 px; ten frames late 10 and
-# 39, 5.5 and 39. The body drawn is plainer than the performer (the trunk's colour begins at the hips: 4 to 5 px),
-# a pixel is about 10 mm, and the estimate's own error in depth, which the side shows, is about 17 mm.
+# Measured with keyframes posed by hand: front median 1.6 and p95 5.1 px, side 1.7 and 6.2 px; ten frames late
+# 10 and 39, 5.5 and 39 px. The body drawn is plainer than the performer (the trunk's colour begins at the hips:
+# 4 to 5 px), a pixel is about 10 mm, and the estimate's error in depth, which the side shows, about 17 mm.
 VIEWS = (View("front", "clip.mp4", 3.0, 8.0, 0.7), View("side", "side.mp4", 4.0, 12.0, 0.5))
 
 

@@ -4,7 +4,7 @@ Usage: blender -b --factory-startup --python-exit-code 1 --python render_motion.
        python render_motion.py BLEND CAMERA OUTPUT STEP
 
 CAMERA is a JSON file in the form of take.json's camera, or `scene` for the scene's own; every STEP-th frame
-becomes a PNG in OUTPUT. Cycles on the processor is the one engine that every Blender has without a graphics card.
+becomes a PNG in OUTPUT. Cycles on the processor is the engine that every Blender has without a graphics card.
 """
 
 import json

@@ -204,9 +204,7 @@ def _points(index: dict[str, int]) -> tuple[PrincipalPoint, ...]:
     for side in SIDES:
         out = 1.0 if side == "L" else -1.0
         points.append(
-            PrincipalPoint(
-                f"wrist.{side}", index[f"forearm.{side}"], {f"forearm.{side}": (out, 0.0, 0.0)}
-            )
+            PrincipalPoint(f"wrist.{side}", index[f"forearm.{side}"], {f"forearm.{side}": (out, 0.0, 0.0)})
         )
     for name, joint in (("hip", "hip"), ("knee", "knee")):
         points += [PrincipalPoint(f"{name}.{side}", index[f"{joint}.{side}"], HERE) for side in SIDES]

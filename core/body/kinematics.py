@@ -1,5 +1,6 @@
 """Forward kinematics and Jacobians of an actor's skeleton, over any batch of postures."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -34,16 +35,16 @@ class Pose:
         skeleton = self.posture.skeleton
         screws = np.zeros((*self.posture.batch, 6, skeleton.dof_count))
         screws[..., 0:3, 0:3] = np.eye(3)
-        for ball, dofs in zip(skeleton.ball_joints, skeleton.ball_dofs, strict=True):
-            axes = self.rotation[..., ball, :, :]
-            screws[..., 3:6, dofs] = axes
-            screws[..., 0:3, dofs] = np.cross(
-                self.origin[..., ball, :, None], axes, axisa=-2, axisb=-2, axisc=-2
-            )
-        for joint, dof in zip(skeleton.hinge_joints, skeleton.hinge_dofs, strict=True):
-            axis = self.rotation[..., joint, :, :] @ np.asarray(skeleton.joints[joint].axis)
-            screws[..., 3:6, dof] = axis
-            screws[..., 0:3, dof] = np.cross(self.origin[..., joint, :], axis)
+        balls, hinges = list(skeleton.ball_joints), list(skeleton.hinge_joints)
+        axes = self.rotation[..., balls, :, :]  # (..., B, 3, 3), an axis a column
+        moments = rotations.cross_matrix(self.origin[..., balls, :]) @ axes
+        screws[..., 3:6, skeleton.ball_dofs] = np.moveaxis(axes, -3, -2)
+        screws[..., 0:3, skeleton.ball_dofs] = np.moveaxis(moments, -3, -2)
+        local = np.array([skeleton.joints[joint].axis for joint in hinges])[..., None]
+        axis = self.rotation[..., hinges, :, :] @ local  # (..., H, 3, 1)
+        moment = rotations.cross_matrix(self.origin[..., hinges, :]) @ axis
+        screws[..., 3:6, skeleton.hinge_dofs] = np.swapaxes(axis[..., 0], -1, -2)
+        screws[..., 0:3, skeleton.hinge_dofs] = np.swapaxes(moment[..., 0], -1, -2)
         return screws
 
     def place(self, joint: int, local: Array) -> Array:
@@ -52,11 +53,13 @@ class Pose:
 
     def place_jacobian(self, joint: int, world: Array) -> Array:
         """d place / d tangent, (..., 3, D), of points `world` (..., 3) fixed in a joint's frame."""
-        screws = self.screws
-        linear = screws[..., 0:3, :] + np.cross(
-            screws[..., 3:6, :], world[..., :, None], axisa=-2, axisb=-2, axisc=-2
-        )
-        return np.asarray(linear * self.posture.skeleton.moved_by[joint])
+        return self.places_jacobian([joint], world[..., None, :])[..., 0, :, :]
+
+    def places_jacobian(self, joints: Sequence[int], world: Array) -> Array:
+        """The same, (..., N, 3, D), of points `world` (..., N, 3), one fixed in each joint's frame."""
+        screws = self.screws[..., None, :, :]
+        linear = screws[..., 0:3, :] - rotations.cross_matrix(world) @ screws[..., 3:6, :]
+        return np.asarray(linear * self.posture.skeleton.moved_by[list(joints)][:, None, :])
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,12 +122,7 @@ class Body:
 
     def points_jacobian(self, pose: Pose) -> Array:
         """d points / d tangent, (..., P, 3, D) [m per m or rad]."""
-        world = self.points(pose)
-        rows = [
-            pose.place_jacobian(point.joint, world[..., i, :])
-            for i, point in enumerate(self.skeleton.points)
-        ]
-        return np.stack(rows, axis=-3)
+        return pose.places_jacobian([point.joint for point in self.skeleton.points], self.points(pose))
 
     def segment_ends(self, pose: Pose, name: str) -> tuple[Array, Array]:
         """World places (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""

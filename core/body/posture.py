@@ -63,6 +63,16 @@ class Posture:
             np.stack([p.angles for p in postures]),
         )
 
+    @classmethod
+    def concatenate(cls, batches: list["Posture"]) -> "Posture":
+        """One batch of several, joined along their first axis."""
+        return cls(
+            batches[0].skeleton,
+            np.concatenate([p.translation for p in batches]),
+            np.concatenate([p.rotations for p in batches]),
+            np.concatenate([p.angles for p in batches]),
+        )
+
     @property
     def batch(self) -> tuple[int, ...]:
         """Leading axes; () for a single posture."""
@@ -70,9 +80,7 @@ class Posture:
 
     def __getitem__(self, index: Index) -> "Posture":
         """Postures picked along the batch axes."""
-        return Posture(
-            self.skeleton, self.translation[index], self.rotations[index], self.angles[index]
-        )
+        return Posture(self.skeleton, self.translation[index], self.rotations[index], self.angles[index])
 
     def to_vector(self) -> Array:
         """The posture vector (..., D): what `from_vector` reads; rotation vectors of at most π."""

@@ -73,9 +73,7 @@ def guess_posture(body: Body, points: Array) -> Posture:
     level = _unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
     chest = _frame(level, np.cross(trunk, level), trunk)
     turns = {"pelvis": pelvis, "waist": np.swapaxes(pelvis, -1, -2) @ chest}
-    turns["neck"] = _least_turn(
-        np.array([0.0, 0.0, 1.0]), _in_frame(chest, _unit(place["head"] - shoulders))
-    )
+    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, _unit(place["head"] - shoulders)))
     angles: dict[str, Array] = {}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
         for ball, middle, end, above, start, bend in (
@@ -93,12 +91,19 @@ def _in_frame(frame: Array, direction: Array) -> Array:
     return np.einsum("nji,nj->ni", frame, direction)
 
 
+def _nearest_rotation(matrix: Array) -> Array:
+    """The rotation nearest to each matrix (N, 3, 3); some rotation where coinciding points left no frame."""
+    left, _, right = np.linalg.svd(matrix)
+    left[..., 2] *= np.linalg.det(left @ right)[..., None]
+    return np.asarray(left @ right)
+
+
 def _assemble(body: Body, hips: Array, turns: dict[str, Array], angles: dict[str, Array]) -> Posture:
     skeleton = body.skeleton
     rest = Posture.rest(skeleton, (len(hips),))
     matrices, hinges = np.array(rest.rotations), np.array(rest.angles)
     for column, joint in enumerate(skeleton.ball_joints):
-        matrices[:, column] = turns[skeleton.joints[joint].name]
+        matrices[:, column] = _nearest_rotation(turns[skeleton.joints[joint].name])
     for column, joint in enumerate(skeleton.hinge_joints):
         name = skeleton.joints[joint].name
         if name in angles:

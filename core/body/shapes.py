@@ -124,8 +124,8 @@ def segment_piece(body: Body, name: str) -> Piece:
     axis = (end - start) / np.linalg.norm(end - start)
     # Lateral is the body's x where the axis is not along it, else its y.
     reference = np.array([0.0, 1.0, 0.0]) if abs(axis[0]) > 0.7 else np.array([1.0, 0.0, 0.0])
-    lateral = reference - (reference @ axis) * axis
-    lateral /= np.linalg.norm(lateral)
+    across: Array = reference - np.dot(reference, axis) * axis
+    lateral: Array = across / np.linalg.norm(across)
     widths = np.array(HALF_WIDTHS[name.split(".")[0]]) * body.actor.stature_m
     return Piece(name, segment.joint, start, end, lateral, np.cross(axis, lateral), widths)
 
@@ -147,5 +147,3 @@ def marker_segments(body: Body) -> tuple[str, ...]:
 def marker_parts(segment: str) -> tuple[str, ...]:
     """Segments that a marker bound to `segment` covers."""
     return TRUNK_PARTS if segment == TRUNK else (segment,)
-
-

@@ -59,7 +59,7 @@ class BlockBanded:
     def factorise(self) -> "Factor":
         """The Cholesky factorisation; LinAlgError where the matrix is not positive definite."""
         diagonal, coupling = self._pairs()
-        factors = []
+        factors: list[tuple[Array, bool]] = []
         for g, block in enumerate(diagonal):
             if g > 0:
                 block = block - coupling[g - 1].T @ cho_solve(factors[-1], coupling[g - 1])

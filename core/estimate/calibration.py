@@ -60,7 +60,9 @@ def calibrate(
     values = prior.copy()
     for _ in range(ITERATIONS):
         residual, visible = _features(body, camera, start, values, known)
-        usable = np.isfinite(residual) & (visible > 0.3)[..., None] & (known.observed.quality > 0.3)[..., None]
+        usable = (
+            np.isfinite(residual) & (visible > 0.3)[..., None] & (known.observed.quality > 0.3)[..., None]
+        )
         slopes = np.stack(
             [
                 (_features(body, camera, start, values + DIFFERENCE * unit, known)[0] - residual) / step

@@ -23,6 +23,8 @@ class ClipState:
     body: Body
     prior: Posture
     """A batch of F postures."""
+    frame: NDArray[np.intp]
+    """(F,) their places in the clip, by which a moving camera knows its pose."""
     deviation: Array
     """(F, D) [m, rad]."""
     bias: Array
@@ -56,6 +58,5 @@ class ClipState:
     def stepped(self, step: Array) -> "ClipState":
         """The state a step (F, N) away."""
         count = self.deviation.shape[1]
-        return ClipState(
-            self.body, self.prior, self.deviation + step[:, :count], self.bias + step[:, count:]
-        )
+        deviation, bias = self.deviation + step[:, :count], self.bias + step[:, count:]
+        return ClipState(self.body, self.prior, self.frame, deviation, bias)

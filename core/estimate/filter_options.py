@@ -34,7 +34,7 @@ class FilterOptions:
     far_width: float = 0.3
     """Half-width of the far rule's output set, a frame's step [natural deviations]."""
     gate_probability: float = 0.999
-    """A marker is left out of a frame where so large a share of right observations would lie nearer."""
+    """A marker counts for less in a frame where so large a share of right observations would lie nearer."""
     memberships: Memberships = field(default_factory=Memberships)
     """The rules' input sets."""
 

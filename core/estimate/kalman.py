@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import gammaincinv  # scipy.stats, which has chi2 by name, takes a second to import
 
 from ..body import rotations
 from ..body.kinematics import Body, Pose
@@ -63,7 +63,7 @@ class FilterResult:
     row_count: NDArray[np.intp]
     """(F,) number of rows that were used."""
     gated: NDArray[np.bool_]
-    """(F, M) whether a marker was seen but not believed."""
+    """(F, M) whether a marker was so unlikely that it was believed in part only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +98,12 @@ class FuzzyKalmanFilter:
         """(F, P) depths of the a priori postures' principal points [m]."""
         body, camera = self.line_ends.body, self.line_ends.camera
         return depths.evaluate(body, camera, body.pose(self.prior), np.arange(self.prior.batch[0]))
+
+    @cached_property
+    def _gates(self) -> Array:
+        """(5,) largest NIS that is believed of a marker's 0 to 4 rows."""
+        half_rows = 0.5 * np.arange(1, 5)  # quantiles of χ² with 1 to 4 degrees of freedom
+        return np.asarray([0.0, *(2.0 * gammaincinv(half_rows, self.options.gate_probability))])
 
     @property
     def _deviations(self) -> Array:
@@ -165,7 +171,7 @@ class FuzzyKalmanFilter:
         Args:
             predicted: (..., M, 4) characteristics.
             observed: (..., M, 4) characteristics.
-            quality: (..., M) in 0..1; noise grows with its inverse.
+            quality: (..., M) in 0..1, about the share of the region that is seen; divides the variance.
             width_px: (..., M) width of each segment in the image [px].
         """
         options = self.options
@@ -177,12 +183,12 @@ class FuzzyKalmanFilter:
         weight = angle_weight(np.minimum(predicted[..., LOG_RATIO], observed[..., LOG_RATIO]))
         std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, LEAST_ANGLE_WEIGHT)
         std[..., LOG_RATIO] = options.log_ratio_std
-        return np.asarray(std / np.maximum(quality, LEAST_QUALITY)[..., None])
+        return np.asarray(std / np.sqrt(np.maximum(quality, LEAST_QUALITY))[..., None])
 
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
     ) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-        """Scaled rows and innovations of the markers seen and believed; which were seen only, (M,)."""
+        """Scaled rows and innovations of the markers seen; which of them are past their gate, (M,)."""
         predicted = self.line_ends.evaluate(pose, frame)
         std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))
         scaled = residual(observed, predicted) / std
@@ -194,11 +200,12 @@ class FuzzyKalmanFilter:
             H, nu = matrix[marker, seen], scaled[marker, seen]
             if not len(nu):
                 continue
-            limit = chi2.ppf(self.options.gate_probability, len(nu))
-            gated[marker] = normalized_innovation_squared(state.covariance, H, nu) > limit
-            if not gated[marker]:
-                rows.append(H)
-                innovation.append(nu)
+            surprise = normalized_innovation_squared(state.covariance, H, nu)
+            gated[marker] = surprise > self._gates[len(nu)]
+            # Left out altogether, a marker could never call back an estimate that has lost it.
+            weight = (self._gates[len(nu)] / surprise) ** 0.5 if gated[marker] else 1.0
+            rows.append(H * weight)
+            innovation.append(nu * weight)
         return rows, innovation, gated
 
 

@@ -19,15 +19,15 @@ from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
 from ..observation.regions import MarkerPlacement, RegionModel
-from .calibration import KnownFrames, calibrate
 from .clip_state import ClipState
-from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_covariance
+from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, feature_rows, limb_widths
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
 from .terms.stillness import StillnessTerm
 from .terms.term import NormalEquations, Term
+from .windows import Window, windows
 
 Array = NDArray[np.float64]
 
@@ -51,10 +51,14 @@ class MotionModel:
 
 @dataclass(frozen=True)
 class WholeClipOptions:
-    """What the whole-clip estimate believes."""
+    """What the whole-clip estimate believes, and how long a stretch it solves at once."""
 
     motion: MotionModel = field(default_factory=MotionModel)
     regions: RegionNoise = field(default_factory=RegionNoise)
+    window_s: float = 20.0
+    """Longer clips are solved in windows of about this length [s] ..."""
+    margin_s: float = 3.0
+    """... that reach this far into their neighbours: several times as far as any term remembers [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +66,13 @@ class WholeClipResult:
     """The estimate of F frames."""
 
     posture: Posture
+    """A batch of F postures."""
     covariance: Array
     """(F, D, D) of the posture's own tangent."""
     posing_scale: float
     """Estimated size of the keyframes' error, relative to a person's usual one."""
     placements: tuple[MarkerPlacement, ...]
+    """Where the markers were found to sit."""
     residual_px: Array
     """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
 
@@ -88,8 +94,8 @@ def estimate_whole_clip(
         tracks: Observed regions of F frames and M markers.
         segments: The segment each marker is bound to.
         prior: F postures that pass through the keyframes.
-        keyframe_indices: Frames whose prior was posed.
-        options: Noise and smoothness.
+        keyframe_indices: Frames whose prior was posed, at least one.
+        options: Noise, smoothness and windows.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -98,142 +104,125 @@ def estimate_whole_clip(
         Postures, their covariance and what was calibrated on the way.
     """
     options = options or WholeClipOptions()
-    problem = _Problem(body, camera, tracks, segments, prior, keyframe_indices, options)
-    state = problem.start()
-    for i, temperature in enumerate(TEMPERATURES):
-        equations = problem.equations(state, temperature)
-        step = equations.matrix.factorise().solve(-equations.gradient)
-        dofs = state.deviation.shape[1]
-        step[:, :dofs] = np.clip(step[:, :dofs], -LARGEST_STEP, LARGEST_STEP)
-        state = state.stepped(step)
-        yield (i + 1) / (len(TEMPERATURES) + 1)
-        if temperature == 1.0 and np.abs(step[:, :dofs]).max() < SETTLED:
-            break
-    return problem.result(state)
+    observed = ObservedRegions.from_tracks(tracks)
+    model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
+    frame = np.arange(tracks.frame_count)
+    width_px = limb_widths(model, prior.translation, frame)
+    index = np.array(keyframe_indices, dtype=np.intp)
+    evidence = read_keyframes(model, options.regions, observed[index], width_px[index], prior[index], index)
+    step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
+    pace = float(np.median(step_s)) if len(step_s) else REFERENCE_STEP_S
+    parts: list[tuple[Posture, Array, Array]] = []
+    for window in windows(len(frame), round(options.window_s / pace), round(options.margin_s / pace)):
+        inside = (index >= window.first) & (index < window.last)
+        problem = _Problem(
+            body,
+            camera,
+            evidence,
+            prior[window.frames],
+            frame[window.frames],
+            observed[window.frames],
+            width_px[window.frames],
+            step_s[window.first : window.last - 1],
+            np.flatnonzero(inside),
+            index[inside] - window.first,
+            options,
+        )
+        for done in problem.solve():
+            yield (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
+        parts.append(problem.kept(window))
+    postures, covariances, residuals = zip(*parts, strict=True)
+    return WholeClipResult(
+        Posture.concatenate(list(postures)),
+        np.concatenate(covariances),
+        evidence.posing_scale,
+        evidence.model.placements,
+        np.concatenate(residuals),
+    )
 
 
+@dataclass(eq=False)
 class _Problem:
-    """Everything of one clip that stays the same from step to step."""
+    """The estimation problem of one window, and its solution."""
 
-    def __init__(
-        self,
-        body: Body,
-        camera: Camera,
-        tracks: RegionTracks,
-        segments: tuple[str, ...],
-        prior: Posture,
-        keyframe_indices: tuple[int, ...],
-        options: WholeClipOptions,
-    ) -> None:
-        self.body, self.camera, self.prior, self.options = body, camera, prior, options
-        self.frames = len(prior.translation)
-        self.keyframes = np.array(keyframe_indices, dtype=np.intp)
-        self.step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
-        self.observed = ObservedRegions.from_tracks(tracks)
-        pose = body.pose(prior)
-        frame = np.arange(self.frames)
-        model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
-        self.width_px = limb_widths(model, body.points(pose), frame)
-        self.model = RegionModel(body, camera, self._calibrate(model))
-        self.posing = posing_covariance(body, body.pose(prior[self.keyframes]))
-        self.posing_scale = self._posing_scale()
-        self.terms: list[Term] = [
-            self._quadratic(),
-            RegionTerm(self.model, self.observed, options.regions, self.width_px),
-            DepthTerm(camera, depths.evaluate(body, camera, pose, frame)),
-            LimitTerm(),
-        ]
-        points = tuple(body.skeleton.point_names.index(name) for name in FOOT_POINTS)
-        self.terms.append(StillnessTerm(points, self.step_s))
+    body: Body
+    camera: Camera
+    evidence: KeyframeEvidence
+    prior: Posture
+    frame: NDArray[np.intp]
+    observed: ObservedRegions
+    width_px: Array
+    step_s: Array
+    keyframes: NDArray[np.intp]
+    """Which of the keyframes lie in the window."""
+    keyframe_frames: NDArray[np.intp]
+    """Their places in the window."""
+    options: WholeClipOptions
 
-    def start(self) -> ClipState:
-        """The prior itself, without biases."""
+    def __post_init__(self) -> None:
         skeleton = self.body.skeleton
-        markers = len(self.model.placements)
-        return ClipState(
+        frames, unknowns = len(self.frame), self.observed.quality.shape[1] * FEATURES
+        self.state = ClipState(
             self.body,
             self.prior,
-            np.zeros((self.frames, skeleton.dof_count)),
-            np.zeros((self.frames, markers * FEATURES)),
+            self.frame,
+            np.zeros((frames, skeleton.dof_count)),
+            np.zeros((frames, unknowns)),
         )
-
-    def equations(self, state: ClipState, temperature: float) -> NormalEquations:
-        """The normal equations of all terms at a state."""
-        equations = NormalEquations(self.frames, state.unknowns.shape[1])
-        for term in self.terms:
-            term.add_to(equations, state, temperature)
-        return equations
-
-    def result(self, state: ClipState) -> WholeClipResult:
-        """The state with its uncertainty."""
-        equations = self.equations(state, 1.0)
-        blocks = equations.matrix.factorise().covariance_blocks()
-        dofs = state.deviation.shape[1]
-        covariance = state.chain @ blocks[:, :dofs, :dofs] @ np.swapaxes(state.chain, -1, -2)
-        predicted = self.model.evaluate(state.pose, np.arange(self.frames))
-        distance = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
-        compared = predicted.visible > self.options.regions.least_visible
-        return WholeClipResult(
-            state.posture,
-            covariance,
-            self.posing_scale,
-            self.model.placements,
-            np.where(compared, distance, np.nan),
-        )
-
-    def _feature_variance(self, index: NDArray[np.intp]) -> Array:
-        """(K, M, 5) variance of a region's features at a true posture, slow biases included [px²]."""
-        noise, width = self.options.regions, self.width_px[index]
-        return np.asarray(noise.pixel_std_px**2 + noise.surface_std(width) ** 2 + noise.bias_std(width) ** 2)
-
-    def _known(self) -> KnownFrames:
-        index = self.keyframes
-        observed = self.observed
-        picked = ObservedRegions(
-            observed.centroid[index],
-            observed.second_moment[index],
-            observed.axes[index],
-            observed.deviation[index],
-            observed.quality[index],
-        )
-        std = np.sqrt(self._feature_variance(index))
-        return KnownFrames(self.body.pose(self.prior[index]), index, picked, std)
-
-    def _calibrate(self, model: RegionModel) -> tuple[MarkerPlacement, ...]:
-        return calibrate(self.body, self.camera, model.placements, self._known())
-
-    def _posing_scale(self) -> float:
-        known = self._known()
-        predicted = self.model.evaluate(known.pose, known.frame, jacobian=True)
-        residual, jacobian = feature_rows(known.observed, predicted)
-        assert jacobian is not None
-        usable = np.isfinite(residual).all(-1) & (predicted.visible > 0.5) & (known.observed.quality > 0.5)
-        innovations = [
-            KeyframeInnovation(
-                residual[k][usable[k]].ravel(),
-                jacobian[k][usable[k]].reshape(-1, jacobian.shape[-1]),
-                known.std_px[k][usable[k]].ravel() ** 2,
-                self.posing[k],
-            )
-            for k in range(len(self.keyframes))
-            if usable[k].any()
+        prior_depth = depths.evaluate(self.body, self.camera, self.body.pose(self.prior), self.frame)
+        feet = tuple(skeleton.point_names.index(name) for name in FOOT_POINTS)
+        self.terms: list[Term] = [
+            self._quadratic(),
+            RegionTerm(self.evidence.model, self.observed, self.options.regions, self.width_px),
+            DepthTerm(self.camera, prior_depth),
+            LimitTerm(),
+            StillnessTerm(feet, self.step_s),
         ]
-        return estimate_posing_scale(innovations)
+
+    def solve(self) -> Generator[float, None, None]:
+        """Gauss-Newton with annealed image noise; yields the fraction done."""
+        dofs = self.state.deviation.shape[1]
+        for i, temperature in enumerate(TEMPERATURES):
+            equations = self._equations(temperature)
+            step = equations.matrix.factorise().solve(-equations.gradient)
+            step[:, :dofs] = np.clip(step[:, :dofs], -LARGEST_STEP, LARGEST_STEP)
+            self.state = self.state.stepped(step)
+            yield (i + 1) / len(TEMPERATURES)
+            if temperature == 1.0 and np.abs(step[:, :dofs]).max() < SETTLED:
+                break
+
+    def kept(self, window: Window) -> tuple[Posture, Array, Array]:
+        """Postures, their covariance and the centroids' residuals of the frames a window keeps."""
+        state, dofs = self.state, self.state.deviation.shape[1]
+        blocks = self._equations(1.0).matrix.factorise().covariance_blocks()[window.kept, :dofs, :dofs]
+        chain = state.chain[window.kept]
+        covariance = np.asarray(chain @ blocks @ np.swapaxes(chain, -1, -2), dtype=np.float64)
+        predicted = self.evidence.model.evaluate(state.pose, state.frame)
+        offset = predicted.centroid - self.observed.centroid
+        distance = np.hypot(offset[..., 0], offset[..., 1])
+        distance[predicted.visible <= self.options.regions.least_visible] = np.nan
+        return state.posture[window.kept], covariance, distance[window.kept]
+
+    def _equations(self, temperature: float) -> NormalEquations:
+        """The normal equations of all terms at the current state."""
+        equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
+        for term in self.terms:
+            term.add_to(equations, self.state, temperature)
+        return equations
 
     def _quadratic(self) -> QuadraticTerm:
         """Smoothness of the deviation, trust in keyframes, and the biases' slow drift."""
         skeleton, motion, noise = self.body.skeleton, self.options.motion, self.options.regions
-        dofs = skeleton.dof_count
-        markers = len(self.model.placements)
-        builder = QuadraticBuilder(self.frames, dofs + markers * FEATURES)
+        dofs, frames = skeleton.dof_count, len(self.frame)
+        size = noise.bias_std(self.width_px).reshape(frames, -1)
+        builder = QuadraticBuilder(frames, dofs + size.shape[1])
         posture, bias = slice(0, dofs), slice(dofs, None)
         natural = skeleton.deviations
         pace = np.median(self.step_s) / REFERENCE_STEP_S if len(self.step_s) else 1.0
         builder.add(posture, (1.0, -2.0, 1.0), motion.acceleration_share * natural * pace**1.5)
         builder.add(posture, (1.0,), motion.size_share * natural)
-        builder.add_blocks(self.keyframes, np.linalg.inv(self.posing * self.posing_scale**2))
-        size = noise.bias_std(self.width_px).reshape(self.frames, -1)
-        kept = np.exp(-self.step_s / noise.bias_time_s)[:, None] if len(self.step_s) else np.zeros((0, 1))
+        builder.add_blocks(self.keyframe_frames, self.evidence.information[self.keyframes])
+        kept = np.exp(-self.step_s / noise.bias_time_s)[:, None]
         builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))
         first = np.full_like(size, np.inf)
         first[0] = size[0]

@@ -20,9 +20,13 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-_HIDDEN_COST: Final = 5.0
-"""Cost of a frame without the marker: a region less likely than 1 in 150 is rather none."""
-_RESTART_COST: Final = 15.0
+_HIDING_COST: Final = 4.0
+"""Cost of hiding at all: a marker seen a moment ago is seen again in 98 of 100 frames."""
+_HIDDEN_COST: Final = 2.5
+"""Cost of each hidden frame: once hidden, a marker stays so for a while."""
+_CERTAINTY_WEIGHT: Final = 3.0
+"""A region's pixels err together, but less than fully: its colour counts as a few independent witnesses."""
+_RESTART_COST: Final = 10.0
 _LONGEST_GAP: Final = 12
 """Frames over which the speed still bounds where a marker comes back."""
 _AREA_DEVIATION: Final = 1.2
@@ -146,7 +150,7 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
             if here.start > first:
                 gap = frame - found.frame[first : here.start]
                 step = np.linalg.norm(centroid[here, None] - centroid[None, first : here.start], axis=-1)
-                through = total[first : here.start] + _HIDDEN_COST * (gap - 1)
+                through = total[first : here.start] + _HIDDEN_COST * (gap - 1) + _HIDING_COST * (gap > 1)
                 through = through + 0.5 * (step / (_STEP_IN_SIZES * size_px * gap)) ** 2
                 nearest = np.argmin(through, axis=1)
                 cheaper = through[np.arange(len(nearest)), nearest] < cost
@@ -183,10 +187,13 @@ def region_costs(
     if not len(found.frame):
         return np.zeros(0)
     cost = 0.5 * (np.log(found.area / usual_area) / _AREA_DEVIATION) ** 2
-    cost += -np.log(np.clip(found.certainty, 1e-3, 1.0))
+    cost -= _CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
     cost += np.where(clutter, _STILL_COST, 0.0)
     if expected_centre is not None and expected_radius is not None:
-        offset = np.linalg.norm(found.centroid - expected_centre[found.frame], axis=1)
-        relative = offset / np.maximum(expected_radius[found.frame], 1.0)
-        cost += np.nan_to_num(np.minimum(0.5 * (2.0 * relative) ** 2, 2.0 * _RESTART_COST))
+        # A container's claimed frame count may fall short: frames beyond it have no expectation.
+        known = np.flatnonzero(found.frame < len(expected_centre))
+        frame = found.frame[known]
+        offset = np.linalg.norm(found.centroid[known] - expected_centre[frame], axis=1)
+        relative = offset / np.maximum(expected_radius[frame], 1.0)
+        cost[known] += np.nan_to_num(np.minimum(0.5 * (2.0 * relative) ** 2, 2.0 * _RESTART_COST))
     return np.asarray(cost)

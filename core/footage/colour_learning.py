@@ -24,7 +24,10 @@ _HUE_DEVIATION: Final = 0.10
 _LOG_LUMA_DEVIATION: Final = 0.45
 
 _STRONG: Final = 7.8  # squared distances: 95 % and 99.9 % of a chi-squared with 3 degrees of freedom
-_WEAK: Final = 16.3
+_FARTHEST: Final = 16.3
+_NEAR: Final = 2.4  # half of it
+_LEARNED_SHARE: Final = 0.7
+"""Share of a marker's pixels, those nearest its sample, that its distribution is fitted to."""
 _ROUNDS: Final = 3
 _FEWEST_PIXELS: Final = 40
 _LARGEST_SHARE: Final = 0.25
@@ -80,9 +83,7 @@ def learn_colours(
         found = np.array([sum(np.count_nonzero(mask) for mask in row) for row in masks])
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colours([_interior(mask) for mask in masks[marker]])
-            # What the sample itself would not take for its own is a blend at a border or clutter beside the
-            # marker; learning from it would widen the distribution round by round.
-            own = start.distance(chroma, luma)[0] < _WEAK
+            own = _near_sample(chroma, luma, start)
             if np.count_nonzero(own) >= _FEWEST_PIXELS:
                 distributions[marker] = fit_distribution(chroma[own], luma[own], start)
         labels = sampled.weighed(distributions, np.maximum(found, 1), background)
@@ -136,7 +137,7 @@ def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribu
 
 def _within_reach(fitted: ColourDistribution, start: ColourDistribution) -> bool:
     offset = fitted.mean - start.mean
-    return float(offset @ np.linalg.solve(start.covariance, offset)) <= _WEAK
+    return float(offset @ np.linalg.solve(start.covariance, offset)) <= _FARTHEST
 
 
 class _Sampled:
@@ -220,6 +221,18 @@ def _with_core(mask: NDArray[np.bool_], strong: NDArray[np.bool_]) -> NDArray[np
     good = (core >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * mask.size)
     good[0] = False
     return np.asarray(good[components])
+
+
+def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> NDArray[np.bool_]:
+    """Mark the pixels (N,) to learn from.
+
+    What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it
+    would widen and move the distribution round by round.
+    """
+    distance, _ = start.distance(chroma, luma)
+    if not len(distance):
+        return np.zeros(0, dtype=np.bool_)
+    return distance <= np.clip(np.quantile(distance, _LEARNED_SHARE), _NEAR, _FARTHEST)
 
 
 def _interior(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -34,13 +34,14 @@ def coverage(image: NDArray[np.uint8], mask: Mask, border: int) -> NDArray[np.fl
         cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3
     )
     depth = depth[1:-1, 1:-1]
-    luma, red, blue = cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32))
-    planes = [luma / _LUMA_DEVIATION, red, blue]
+    colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb)
+    planes = [np.asarray(plane, dtype=np.float32) for plane in cv2.split(colour)]
+    planes[0] /= _LUMA_DEVIATION
     size = 4 * border + 3
     foreground, has_foreground = _local_mean(planes, depth * depth, size)
     background, has_background = _local_mean(planes, (1 - grown).astype(np.float32), size)
-    along = np.zeros_like(luma)
-    length = np.ones_like(luma)  # one squared level, below which two colours are the same
+    along = np.zeros(mask.shape, dtype=np.float32)
+    length = np.ones(mask.shape, dtype=np.float32)  # one squared level, below which two colours are the same
     for plane, front, back in zip(planes, foreground, background, strict=True):
         axis = front - back
         along += (plane - back) * axis

@@ -24,7 +24,7 @@ _SURE: Final = 230
 """A region must hold pixels this sure (in 1/255) to be more than a blend of other colours."""
 _FEWEST_PIXELS: Final = 6
 _BORDER: Final = 2
-"""Half-width in grid pixels of the band in which edges are blurred: by optics, and chroma at half resolution."""
+"""Half-width in grid pixels of the band in which edges are blurred, by optics and halved chroma."""
 _KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 
 

@@ -26,7 +26,7 @@ NEGLIGIBLE = 8.0
 
 @dataclass(frozen=True, eq=False)
 class Covers:
-    """Image outlines of the O parts that may hide others, per frame; the last axis runs over an axis' ends."""
+    """Image outlines of the O parts that may hide others, per frame; the last axis runs over both ends."""
 
     start: Array
     """(F, O, 2) image of the axis' first end [px]."""

@@ -42,7 +42,7 @@ def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
 
 
 def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest thing to compare with."""
+    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest comparison."""
     index = np.array([k.index for k in keyframes], dtype=np.float64)
     posed = Posture.stack([k.posture for k in keyframes])
     frame = np.clip(np.arange(frame_count), index[0], index[-1])

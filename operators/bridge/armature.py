@@ -13,7 +13,7 @@ from math import pi
 import bpy
 import numpy as np
 from mathutils import Vector
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
@@ -99,7 +99,7 @@ def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: Bone
 def _limit_ik(
     pose_bone: bpy.types.PoseBone,
     model: BoneModel,
-    axis: NDArray[np.float64],
+    axis: ArrayLike,
     limits_deg: tuple[float, float],
 ) -> None:
     along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign

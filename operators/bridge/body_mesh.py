@@ -142,7 +142,7 @@ def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material
     material = bpy.data.materials.new(name)
     linear = (*_linear(color_srgb), 1.0)
     material.diffuse_color = linear
-    if not material.use_nodes:
+    if material.node_tree is None:  # Blender 5 gives every material its nodes
         material.use_nodes = True
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     shader.inputs["Base Color"].default_value = linear

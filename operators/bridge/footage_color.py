@@ -1,11 +1,14 @@
 """The colour of the footage under a pixel, as an eyedropper on the file itself gives it."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...core.errors import InputError
 from ...core.footage.clip import Clip
+from .scene_camera import read_camera
 from .scene_footage import clip_rate
 from .scene_take import clip_path
 
@@ -26,7 +29,7 @@ def footage_color(scene: bpy.types.Scene, pixel: ArrayLike) -> tuple[int, int, i
         Red, green, blue in 0 to 255.
 
     Raises:
-        InputError: There is no footage, no frame of it at the scene's current frame, or the pixel lies outside.
+        InputError: There is no footage, no frame of it at the current frame, or the pixel lies outside.
     """
     clip = scene.active_clip
     if clip is None:
@@ -43,6 +46,20 @@ def footage_color(scene: bpy.types.Scene, pixel: ArrayLike) -> tuple[int, int, i
     around = image[max(0, y - REACH_PX) : y + REACH_PX + 1, max(0, x - REACH_PX) : x + REACH_PX + 1]
     blue, green, red = (round(float(value)) for value in np.median(around.reshape(-1, 3), axis=0))
     return red, green, blue
+
+
+def footage_pixel(scene: bpy.types.Scene, pixel: ArrayLike) -> NDArray[np.float64]:
+    """The pixel of the clip's file, (2,), that the camera's background shows at `pixel` (2,).
+
+    They differ where the clip has lens distortion: the background is straightened, the file is not.
+
+    Raises:
+        InputError: The scene's camera or clip cannot be used.
+    """
+    camera = replace(read_camera(scene, np.array([scene.frame_current_final])), matrix_world=np.eye(4))
+    straight = replace(camera, distortion=(0.0, 0.0, 0.0))
+    _, direction = straight.rays(pixel)
+    return camera.project(direction)[0]
 
 
 def _shown_index(scene: bpy.types.Scene, clip: bpy.types.MovieClip, source: Clip) -> int:

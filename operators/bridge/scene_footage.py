@@ -31,7 +31,7 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
         clip = bpy.data.movieclips.load(str(file.resolve()), check_existing=True)
     except RuntimeError as error:
         raise InputError(f"{file}: Blender cannot read this clip; name a video or numbered images") from error
-    if not clip.size[0]:
+    if not clip.frame_duration:  # Blender gives what it cannot decode a size, but no frames
         bpy.data.movieclips.remove(clip)
         raise InputError(
             f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images"

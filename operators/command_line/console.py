@@ -103,5 +103,5 @@ def _bar() -> Any:
     except ImportError:  # not among the extension's wheels
         return None
     return tqdm(
-        total=100.0, leave=False, file=sys.stderr, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}"
+        total=100.0, leave=False, file=sys.stderr, bar_format="{desc}{percentage:3.0f}% |{bar}| {elapsed}"
     )

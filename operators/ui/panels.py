@@ -17,6 +17,7 @@ class SubPanel(SidebarPanel):
     """A panel inside the main one, with properties in Blender's two columns."""
 
     bl_parent_id = "KEYMARK_PT_main"
+    layout: bpy.types.UILayout
 
     def column(self) -> bpy.types.UILayout:
         """The panel's column of properties."""
@@ -74,6 +75,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
         row = layout.row()
         row.scale_y = 1.4
         row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
+        layout.prop(settings, "method", text="")
         _draw_show(layout, settings)
 
 
@@ -105,7 +107,6 @@ class KEYMARK_PT_keyframes(SubPanel, bpy.types.Panel):
         column.operator("keymark.propose_keyframes", icon="MARKER_HLT")
         column.separator()
         column.prop(settings, "keyframe_action", text="Action")
-        column.prop(settings, "method")
 
 
 class KEYMARK_PT_markers(SubPanel, bpy.types.Panel):

@@ -60,6 +60,7 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         name="Height",
         description="The performer's body height, from which an actor of average proportions is built",
         subtype="DISTANCE",
+        precision=3,
         default=1.75,
         min=0.5,
         max=3.0,

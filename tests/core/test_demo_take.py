@@ -106,7 +106,7 @@ def test_the_regions_lie_on_the_true_segments(folder: Path, take: Take, truth: A
 
 
 def test_the_footage_shows_each_colour_where_it_is_said_to_be(folder: Path, take: Take) -> None:
-    """Around a marker's true centroid the footage has the colour that take.json gives, in nearly all frames."""
+    """Around a marker's true centroid the footage has the colour of take.json, in nearly all frames."""
     visibility = json.loads((folder / "visibility.json").read_text(encoding="utf-8"))
     images = [image for _, _, image in open_clip(take).frames()]
     for style in take.markers:
@@ -136,7 +136,7 @@ def test_nothing_moves_faster_than_people_do(take: Take, truth: Array) -> None:
 
 
 def test_exact_keyframes_are_the_truth(take: Take, truth: Array) -> None:
-    """The postures of keyframes.json put all points where truth.json has them, to hundredths of a millimetre."""
+    """The postures of keyframes.json put all points where truth.json has them, to 0.01 mm."""
     indices = [keyframe.index for keyframe in take.keyframes]
     assert np.abs(_posed_points(take) - truth[indices]).max() < 1e-5
 

@@ -1,8 +1,8 @@
 """The performer's outer shape at one posture: limbs as stacks of rings with calves, hips, cuffs and a face.
 
-The shape is drawn by eye, and on purpose not with the estimator's tapered cylinders: muscles bulge, cloth
-stands off, the trunk is one curved form. Sizes are metres. Each part moves with one joint; where parts meet the skin
-blends.
+The shape is drawn by eye, and on purpose not by the estimator's tapered cylinders: muscles bulge,
+cloth stands off, the trunk is one curved form. Sizes are metres. Each part moves with one joint; where
+parts meet the skin blends.
 """
 
 from dataclasses import dataclass

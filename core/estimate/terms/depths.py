@@ -24,7 +24,6 @@ class DepthTerm:
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each point."""
-        frame = np.arange(state.frames)
-        residual = depths.evaluate(state.body, self.camera, state.pose, frame) - self.prior_depth
-        jacobian = depths.jacobian(state.body, self.camera, state.pose, frame) @ state.chain
+        residual = depths.evaluate(state.body, self.camera, state.pose, state.frame) - self.prior_depth
+        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.chain
         equations.add_rows(residual / self.std_m, jacobian / self.std_m)

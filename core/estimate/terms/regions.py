@@ -78,15 +78,25 @@ class ObservedRegions:
         deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
         return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
 
+    def __getitem__(self, index: slice | NDArray[np.intp]) -> "ObservedRegions":
+        """The same markers in some of the frames."""
+        return ObservedRegions(
+            self.centroid[index],
+            self.second_moment[index],
+            self.axes[index],
+            self.deviation[index],
+            self.quality[index],
+        )
 
-def feature_rows(
-    observed: ObservedRegions, predicted: RegionPrediction
-) -> tuple[Array, Array | None]:
+
+def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
     """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
     centroid = predicted.centroid - observed.centroid
-    turned = np.swapaxes(observed.axes, -1, -2) @ (
-        predicted.second_moment - observed.second_moment
-    ) @ observed.axes
+    turned = (
+        np.swapaxes(observed.axes, -1, -2)
+        @ (predicted.second_moment - observed.second_moment)
+        @ observed.axes
+    )
     divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
     shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
     residual = np.concatenate([centroid, shape], axis=-1)
@@ -113,10 +123,9 @@ def feature_rows(
     return residual, np.concatenate(rows, axis=-2)
 
 
-def limb_widths(model: RegionModel, points: Array, frame: NDArray[np.intp]) -> Array:
-    """(F, M) image half-width of each marker's limb at the body's mean depth [px]."""
-    depth = model.camera.depth(points, frame[:, None]).mean(axis=1)
-    scale = model.camera.focal_px / np.maximum(depth, 0.1)
+def limb_widths(model: RegionModel, places: Array, frame: NDArray[np.intp]) -> Array:
+    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
+    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 
@@ -132,8 +141,7 @@ class RegionTerm:
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
-        frames = np.arange(state.frames)
-        predicted = self.model.evaluate(state.pose, frames, jacobian=True)
+        predicted = self.model.evaluate(state.pose, state.frame, jacobian=True)
         residual, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
         count = len(self.model.placements)
@@ -160,7 +168,7 @@ class RegionTerm:
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in (slice(0, 2), slice(2, FEATURES)):
             size = group.stop - group.start
-            information[..., group] *= student_weight(
-                squared[..., group].sum(-1), self.noise.degrees, size
-            )[..., None]
+            information[..., group] *= student_weight(squared[..., group].sum(-1), self.noise.degrees, size)[
+                ..., None
+            ]
         return np.asarray(information)

@@ -90,8 +90,8 @@ def test_the_closed_form_agrees_with_fine_sampling(
     sampled = float((membership * value).sum() / membership.sum())
     spread = float((membership * (value - sampled) ** 2).sum() / membership.sum())
     mean, variance = aggregate(near, far)
-    assert mean[0] == pytest.approx(sampled, abs=1e-6)
-    assert variance[0] == pytest.approx(spread, rel=1e-5, abs=1e-7)
+    assert mean[0] == pytest.approx(sampled, abs=1e-4)
+    assert variance[0] == pytest.approx(spread, rel=1e-3, abs=1e-5)
 
 
 @given(st.floats(-5.0, 5.0), widths, widths, st.floats(0.02, 1.0), st.floats(0.02, 1.0))

@@ -167,7 +167,7 @@ def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_colour()
     images = [draw([*moving(index), balls[index]], rng) for index in range(40)]
     truth = np.array([path(index) for index in range(40)])
     centre = np.stack([truth + [9.0, -7.0], np.tile([250.5, 120.5], (40, 1))], axis=1)
-    expected = ExpectedRegions(centre, np.full((40, 2), 30.0))
+    expected = ExpectedRegions(centre[:38], np.full((38, 2), 30.0))  # a container may claim too few frames
     tracks = finish(track_markers(clip_of(images), STYLES, expected))
     apart = np.linalg.norm(truth - [ball[1] for ball in balls], axis=1) > 45.0
     assert np.abs(tracks.centroid[apart, 0] - truth[apart]).max() < 0.3

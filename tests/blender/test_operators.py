@@ -1,0 +1,222 @@
+"""The operators, scripted as an animator would press them."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.human import HUMAN
+from keymark.core.body.shapes import marker_segments
+from keymark.core.motion import Motion
+from keymark.core.take import Take, read_take
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.pose import write_posture
+from keymark.operators.ui.properties import SEGMENTS
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture
+def opened(tiny_take: Take) -> bpy.types.Scene:
+    """The scene with the tiny take opened."""
+    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
+    return bpy.context.scene
+
+
+def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
+    """The menu of segments is core's list."""
+    assert set(SEGMENTS) == set(marker_segments(body))
+
+
+def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Footage, actor of the right sizes, markers with their colours, keyframes on the actor."""
+    settings = opened.keymark
+    assert opened.active_clip.frame_duration == 13
+    lengths = read_body(settings.armature, HUMAN).actor.segments_m
+    assert dict(lengths) == pytest.approx(dict(tiny_take.body.actor.segments_m), rel=1e-5)
+    assert [(m.name, m.segment) for m in settings.markers] == [(s.name, s.segment) for s in tiny_take.markers]
+    assert [round(255 * v) for v in settings.markers[1].color] == list(tiny_take.markers[1].color_srgb)
+    assert settings.armature.animation_data.action == settings.keyframe_action
+
+
+def test_a_take_that_cannot_be_read_changes_nothing(tiny_take: Take) -> None:
+    """The sentence is core's, and the scene stays empty."""
+    (tiny_take.folder / "take.json").write_text("{")
+    with pytest.raises(RuntimeError, match=r"take\.json"):
+        bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
+    assert len(bpy.data.objects) == len(bpy.data.movieclips) == 0
+
+
+def test_a_take_goes_out_and_comes_back(opened: bpy.types.Scene, tiny_take: Take, tmp_path: Path) -> None:
+    """Saved from the scene, it says what was opened."""
+    folder = tmp_path / "saved"
+    bpy.ops.keymark.save_take(directory=str(folder))
+    saved = read_take(folder)
+    assert (saved.fps, saved.frame_start, saved.frame_count) == (tiny_take.fps, 1, 13)
+    assert [style.color_srgb for style in saved.markers] == [style.color_srgb for style in tiny_take.markers]
+    points = np.array([[0.3, 0.2, 1.4]])
+    assert saved.camera.project(points)[0] == pytest.approx(tiny_take.camera.project(points)[0], abs=0.01)
+    for was, now in zip(tiny_take.keyframes, saved.keyframes, strict=True):
+        assert now.index == was.index
+        assert now.posture.minus(was.posture) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_from_an_empty_scene_to_a_motion(
+    tiny_take: Take, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
+) -> None:
+    """Load, build, mark, pose, reconstruct: the result lies near the truth, keyframes stay."""
+    scene = bpy.context.scene
+    settings = scene.keymark
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    camera = scene.camera
+    camera.matrix_world = np.array(tiny_take.camera.matrix_world).T.tolist()
+    camera.data.lens, camera.data.sensor_width = 35.0, 36.0
+    bpy.ops.keymark.build_actor(stature=1.72)
+    for style in tiny_take.markers:
+        bpy.ops.keymark.add_marker()
+        assert settings.markers[-1].segment == style.segment
+        settings.markers[-1].color = [value / 255.0 for value in style.color_srgb]
+    for index in wave_motion.keyframe_indices:
+        scene.frame_set(index + 1)
+        write_posture(settings.armature, wave_motion.posture[index])
+        assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    assert settings.armature.animation_data.action == settings.motion_action != settings.keyframe_action
+    errors = []
+    for frame in range(1, 14):
+        scene.frame_set(frame)
+        errors.append(np.linalg.norm(shown_points(settings.armature) - wave_motion.points[frame - 1], axis=1))
+    assert np.mean(errors) < 0.04
+    bpy.ops.keymark.show_action(which="KEYFRAMES")
+    assert settings.armature.animation_data.action == settings.keyframe_action
+
+
+def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scene) -> None:
+    """No second Action, no doubled keys."""
+    settings = opened.keymark
+    settings.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    first, count = settings.motion_action, len(bpy.data.actions)
+    bpy.ops.keymark.reconstruct()
+    assert settings.motion_action == first
+    assert len(bpy.data.actions) == count
+
+
+def test_reading_for_a_reconstruction_leaves_the_frame(opened: bpy.types.Scene) -> None:
+    """The animator stays where they are."""
+    opened.keymark.method = "interpolation"
+    opened.frame_set(9)
+    bpy.ops.keymark.reconstruct()
+    assert opened.frame_current == 9
+
+
+def test_proposals_become_timeline_markers_and_can_be_jumped_to(opened: bpy.types.Scene) -> None:
+    """The animator's own timeline markers stay, a second run replaces proposals only."""
+    opened.timeline_markers.new("Clap", frame=3)
+    opened.keymark.keyframe_count = 4
+    for _ in range(2):
+        bpy.ops.keymark.propose_keyframes()
+        frames = sorted(m.frame for m in opened.timeline_markers if m.name == "Pose")
+        assert len(frames) == 4
+        assert (frames[0], frames[-1]) == (1, 13)
+    assert len(opened.timeline_markers) == 5
+    opened.frame_set(1)
+    bpy.ops.keymark.jump_to_proposal(direction="NEXT")
+    assert opened.frame_current == frames[1]
+    bpy.ops.keymark.jump_to_proposal(direction="PREVIOUS")
+    assert opened.frame_current == 1
+    assert bpy.ops.keymark.jump_to_proposal(direction="PREVIOUS") == {"CANCELLED"}
+
+
+def test_a_colour_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Where the trunk is, the active marker gets nearly the colour that was drawn."""
+    settings = opened.keymark
+    settings.active_marker = 0
+    settings.markers[0].color = (0.0, 0.0, 0.0)
+    hips = tiny_take.keyframes[0].posture.translation + [0.0, 0.0, 0.25]
+    (pixel,), _ = tiny_take.camera.project(hips[None])
+    bpy.ops.keymark.pick_marker_color(pixel=pixel)
+    picked = 255.0 * np.array(settings.markers[0].color)
+    assert np.abs(picked - tiny_take.markers[0].color_srgb).max() < 20.0
+
+
+def test_a_pixel_outside_the_footage_is_refused(opened: bpy.types.Scene) -> None:
+    """The sentence names the pixel and the size."""
+    with pytest.raises(RuntimeError, match=r"\(500, 3\) lies outside the footage, which is 160 x 120"):
+        bpy.ops.keymark.pick_marker_color(pixel=(500.0, 3.0))
+
+
+def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
+    """A sixth marker takes a part that has none; removing it makes the one before active."""
+    settings = opened.keymark
+    bpy.ops.keymark.add_marker()
+    assert settings.markers[5].segment not in {marker.segment for marker in settings.markers[:5]}
+    bpy.ops.keymark.remove_marker()
+    assert (len(settings.markers), settings.active_marker) == (5, 4)
+
+
+def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
+    """Each marker needs its own body part."""
+    opened.keymark.markers[1].segment = "trunk"
+    with pytest.raises(RuntimeError, match="two markers have the segment 'trunk'"):
+        bpy.ops.keymark.reconstruct()
+
+
+@pytest.mark.parametrize(
+    ("operator", "sentence"),
+    [
+        ("reconstruct", "Load the footage or open a take first"),
+        ("store_keyframe", "Build the actor first"),
+        ("propose_keyframes", "Load the footage"),
+        ("remove_marker", "Add the markers"),
+        ("jump_to_proposal", "Propose keyframes first"),
+        ("pick_marker_color", "Load the footage"),
+        ("save_take", "Load the footage"),
+        ("show_action", "Build the actor first"),
+    ],
+)
+def test_an_operator_that_cannot_run_says_what_is_missing(operator: str, sentence: str) -> None:
+    """The tooltip of a greyed-out button."""
+    with pytest.raises(RuntimeError, match=sentence):
+        getattr(bpy.ops.keymark, operator)()
+
+
+def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
+    """As Blender's own Add operators do; its predecessor's keyframes are not taken over."""
+    bpy.ops.keymark.build_actor(stature=1.6)
+    layer = bpy.context.view_layer
+    assert list(layer.objects.selected) == [opened.keymark.armature] == [layer.objects.active]
+    assert opened.keymark.keyframe_action is None
+    assert read_body(opened.keymark.armature, HUMAN).actor.stature_m == pytest.approx(1.6, rel=1e-4)
+
+
+def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.Scene) -> None:
+    """The animator's pose is kept as it is."""
+    forearm = opened.keymark.armature.pose.bones["forearm.L"]
+    forearm.rotation_euler = (0.5, 0.0, 0.6)
+    opened.frame_set(4)
+    forearm.rotation_euler = (0.5, 0.0, 0.6)
+    assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
+    opened.frame_set(5)
+    opened.frame_set(4)
+    assert tuple(forearm.rotation_euler) == pytest.approx((0.5, 0.0, 0.6))
+
+
+def test_a_clip_that_vanished_is_named(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """The footage was moved after it was loaded."""
+    tiny_take.clip.rename(tiny_take.clip.with_name("moved.mp4"))
+    with pytest.raises(RuntimeError, match=r"clip\.mp4: the footage is not there"):
+        bpy.ops.keymark.reconstruct()
+
+
+def test_too_few_keyframes_are_refused(tiny_take: Take) -> None:
+    """One pose is no motion."""
+    one = replace(tiny_take, keyframes=())
+    (tiny_take.folder / "keyframes.json").unlink()
+    assert one.keyframes == ()
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
+    bpy.ops.keymark.store_keyframe()
+    with pytest.raises(RuntimeError, match="at least 2"):
+        bpy.ops.keymark.reconstruct()

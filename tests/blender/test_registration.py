@@ -1,0 +1,105 @@
+"""Registering the extension, and taking it back."""
+
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import bpy
+import keymark
+import pytest
+from keymark import operators
+
+
+def traces() -> list[str]:
+    """What of Keymark is in Blender now."""
+    classes = [name for name in dir(bpy.types) if name.startswith("KEYMARK_")]
+    operator_names = [name for name in dir(bpy.ops.keymark)]
+    properties = [
+        f"{owner.__name__}.{name}"
+        for owner in (bpy.types.Scene, bpy.types.WindowManager)
+        for name in ("keymark", "keymark_progress")
+        if hasattr(owner, name)
+    ]
+    drawn = getattr(bpy.types.TOPBAR_MT_file_import.draw, "_draw_funcs", [])
+    menus = [function.__module__ for function in drawn if function.__module__.startswith("keymark")]
+    return classes + operator_names + properties + menus
+
+
+def test_everything_is_there_and_gone_again_twice() -> None:
+    """Register, unregister, register, unregister: nothing stays behind."""
+    assert traces() == []
+    for _ in range(2):
+        keymark.register()
+        there = traces()
+        assert "reconstruct" in there
+        assert "KEYMARK_PT_main" in there
+        assert "Scene.keymark" in there
+        assert "keymark.operators.open_take" in there
+        keymark.unregister()
+        assert traces() == []
+
+
+@pytest.mark.parametrize("place", [1, 7, len(operators.MODULES)])
+def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, place: int) -> None:
+    """The error comes through, and Blender is as before."""
+    broken = ModuleType("keymark.operators.broken")
+
+    def register() -> None:
+        raise RuntimeError("broken on purpose")
+
+    broken.register = register
+    monkeypatch.setitem(sys.modules, "keymark.operators.broken", broken)
+    modules = [*operators.MODULES[:place], "broken", *operators.MODULES[place:]]
+    monkeypatch.setattr(operators, "MODULES", tuple(modules))
+    with pytest.raises(RuntimeError, match="broken on purpose"):
+        keymark.register()
+    assert traces() == []
+
+
+def test_registering_imports_no_library_that_may_be_missing(repository: Path) -> None:
+    """A fresh interpreter registers without SciPy and OpenCV, and says what is missing when it is needed."""
+    script = f"""
+import sys
+sys.path.insert(0, {str(repository / "tests")!r})
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in ("scipy", "cv2"):
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+sys.meta_path.insert(0, Missing())
+from _boot import load_package
+load_package()
+import bpy, keymark
+keymark.register()
+try:
+    bpy.ops.keymark.build_actor()
+except RuntimeError as error:
+    print("SAID", error)
+keymark.unregister()
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    said = [line for line in done.stdout.splitlines() if line.startswith("SAID")]
+    assert len(said) == 1
+    assert "needs the Python library scipy" in said[0]
+
+
+@pytest.mark.usefixtures("registered")
+def test_every_operator_has_a_label_a_tooltip_and_the_usual_options() -> None:
+    """What the user interface shows for each operator."""
+    for name in dir(bpy.ops.keymark):
+        kind = getattr(bpy.ops.keymark, name).get_rna_type()
+        assert kind.name == kind.name.title().replace(" To ", " to ").replace(" On ", " on ")
+        assert len(kind.description) > 10
+        assert not kind.description.endswith(".")
+        assert "REGISTER" in getattr(bpy.ops.keymark, name).bl_options
+
+
+def test_the_command_comes_and_goes() -> None:
+    """Blender keeps the command as long as the extension is there."""
+    from keymark.operators import command
+
+    keymark.register()
+    assert len(command._registered) == 1
+    keymark.unregister()
+    assert command._registered == []

@@ -1,0 +1,54 @@
+"""The block-banded solver against dense linear algebra."""
+
+import numpy as np
+import pytest
+from keymark.core.estimate.block_banded import BlockBanded
+
+SIZE = 4
+
+
+def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
+    """A positive definite system from random rows over one to three frames, and the same matrix dense."""
+    rng = np.random.default_rng(seed)
+    banded = BlockBanded(frames, SIZE)
+    dense = np.zeros((frames * SIZE, frames * SIZE))
+    for reach in range(min(3, frames)):
+        rows = frames - reach
+        jacobians = tuple(rng.normal(size=(rows, 6, SIZE)) for _ in range(reach + 1))
+        banded.add_rows(jacobians)
+        for t in range(rows):
+            wide = np.zeros((6, frames * SIZE))
+            for k, jacobian in enumerate(jacobians):
+                wide[:, (t + k) * SIZE : (t + k + 1) * SIZE] = jacobian[t]
+            dense += wide.T @ wide
+    return banded, dense
+
+
+@pytest.mark.parametrize("frames", [1, 2, 3, 6, 7])
+def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) -> None:
+    """For even and odd numbers of frames, down to one."""
+    banded, dense = random_system(frames, seed=frames)
+    vector = np.random.default_rng(9).normal(size=(frames, SIZE))
+    np.testing.assert_allclose(banded.multiply(vector).ravel(), dense @ vector.ravel(), atol=1e-10)
+    factor = banded.factorise()
+    np.testing.assert_allclose(
+        factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10
+    )
+    inverse = np.linalg.inv(dense)
+    for t, block in enumerate(factor.covariance_blocks()):
+        part = slice(t * SIZE, (t + 1) * SIZE)
+        np.testing.assert_allclose(block, inverse[part, part], atol=1e-10)
+
+
+def test_rows_about_the_leading_unknowns_leave_the_others_alone() -> None:
+    """Narrow Jacobians touch the leading columns only."""
+    banded = BlockBanded(2, SIZE)
+    banded.add_rows((np.ones((2, 1, 2)),))
+    assert banded.bands[0][:, :2, :2].sum() == 8.0
+    assert banded.bands[0].sum() == 8.0
+
+
+def test_a_singular_system_is_refused() -> None:
+    """Nothing is solved from a matrix that determines nothing."""
+    with pytest.raises(np.linalg.LinAlgError):
+        BlockBanded(3, SIZE).factorise()

@@ -1,0 +1,132 @@
+"""The whole-clip estimate on footage whose truth is known because the region model itself filmed it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.posing_error import posing_covariance
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.footage.tracks import RegionTracks
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+
+FRAMES = 46
+POSED = (0, 9, 18, 27, 36, 45)
+TRUTH = exercise(FRAMES)
+
+
+def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
+    """Run the estimate to its end."""
+    job = estimate_whole_clip(BODY, CAMERA, tracks, SEGMENTS, prior, POSED)
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions == sorted(fractions) and 0.0 < fractions[0] <= fractions[-1] <= 1.0
+            return stop.value
+
+
+def prior_from(posed: Posture) -> Posture:
+    """The interpolation of postures at the posed frames."""
+    keyframes = tuple(Keyframe(index, posed[i]) for i, index in enumerate(POSED))
+    return interpolate(keyframes, FRAMES)
+
+
+def posed_by_hand(seed: int, scale: float = 1.0) -> Posture:
+    """The true keyframes with a person's posing error."""
+    rng = np.random.default_rng(seed)
+    exact = TRUTH[np.array(POSED)]
+    factor = np.linalg.cholesky(posing_covariance(BODY, BODY.pose(exact)))
+    return exact.plus(scale * (factor @ rng.normal(size=(*factor.shape[:-1], 1)))[..., 0])
+
+
+@pytest.fixture(scope="module")
+def exact() -> WholeClipResult:
+    """The estimate from exact keyframes and footage of half a pixel of noise."""
+    return solve(prior_from(TRUTH[np.array(POSED)]), film(TRUTH, 0.3))
+
+
+def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: WholeClipResult) -> None:
+    """The mean error falls well below the interpolation's and below a centimetre."""
+    before = point_error_m(prior_from(TRUTH[np.array(POSED)]), TRUTH).mean()
+    after = point_error_m(exact.posture, TRUTH).mean()
+    assert after < 0.6 * before
+    assert after < 0.010
+
+
+def test_exact_keyframes_are_recognised_and_kept(exact: WholeClipResult) -> None:
+    """The size of the posing error is found small, and the keyframes stay where they were posed."""
+    assert exact.posing_scale < 0.3
+    kept = point_error_m(exact.posture[np.array(POSED)], TRUTH[np.array(POSED)])
+    assert kept.mean() < 0.004
+
+
+def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact: WholeClipResult) -> None:
+    """Every frame has a proper covariance; between keyframes it is larger than at them."""
+    covariance = exact.covariance
+    np.testing.assert_allclose(covariance, np.swapaxes(covariance, -1, -2), atol=1e-12)
+    assert np.linalg.eigvalsh(covariance).min() > 0.0
+    spread = np.trace(covariance, axis1=-2, axis2=-1)
+    middles = [(a + b) // 2 for a, b in zip(POSED, POSED[1:], strict=False)]
+    assert spread[middles].mean() > 1.5 * spread[list(POSED)].mean()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_carelessly_posed_keyframes_are_recognised_and_corrected(seed: int) -> None:
+    """The size of the posing error is found, and the estimate is better than the keyframes themselves."""
+    posed = posed_by_hand(seed)
+    prior = prior_from(posed)
+    result = solve(prior, film(TRUTH, 0.3, seed))
+    assert 0.4 < result.posing_scale < 2.0
+    assert point_error_m(result.posture, TRUTH).mean() < 0.75 * point_error_m(prior, TRUTH).mean()
+    at_keyframes = point_error_m(result.posture[np.array(POSED)], TRUTH[np.array(POSED)]).mean()
+    assert at_keyframes < 0.9 * point_error_m(posed, TRUTH[np.array(POSED)]).mean()
+
+
+def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
+    """A forearm unseen for a gap between keyframes leaves the rest of the body as good as it was."""
+    tracks = film(TRUTH, 0.3)
+    centroid = tracks.centroid.copy()
+    centroid[20:26, 1] = np.nan
+    quality = tracks.quality.copy()
+    quality[20:26, 1] = 0.0
+    result = solve(prior_from(TRUTH[np.array(POSED)]), replace(tracks, centroid=centroid, quality=quality))
+    assert point_error_m(result.posture, TRUTH).mean() < point_error_m(exact.posture, TRUTH).mean() + 0.004
+
+
+def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -> None:
+    """An extraction that jumps to clutter for a frame moves the estimate by millimetres, not centimetres."""
+    tracks = film(TRUTH, 0.3)
+    centroid = tracks.centroid.copy()
+    centroid[22, 3] += 60.0
+    result = solve(prior_from(TRUTH[np.array(POSED)]), replace(tracks, centroid=centroid))
+    moved = np.linalg.norm(
+        BODY.points(BODY.pose(result.posture)) - BODY.points(BODY.pose(exact.posture)), axis=-1
+    )
+    assert moved.max() < 0.03
+
+
+def test_footage_without_any_marker_gives_the_prior_back() -> None:
+    """With nothing seen the estimate neither fails nor wanders; only slow feet are steadied a little."""
+    tracks = film(TRUTH)
+    empty = replace(
+        tracks,
+        centroid=np.full_like(tracks.centroid, np.nan),
+        second_moment=np.full_like(tracks.second_moment, np.nan),
+        area=np.full_like(tracks.area, np.nan),
+        quality=np.zeros_like(tracks.quality),
+    )
+    prior = prior_from(TRUTH[np.array(POSED)])
+    result = solve(prior, empty)
+    assert point_error_m(result.posture, prior).mean() < 0.015
+    assert np.isnan(result.residual_px).all()
+
+
+def test_the_same_input_gives_the_same_postures_bit_for_bit(exact: WholeClipResult) -> None:
+    """Nothing is random."""
+    again = solve(prior_from(TRUTH[np.array(POSED)]), film(TRUTH, 0.3))
+    np.testing.assert_array_equal(again.posture.rotations, exact.posture.rotations)
+    np.testing.assert_array_equal(again.covariance, exact.covariance)

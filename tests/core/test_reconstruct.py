@@ -1,0 +1,73 @@
+"""The whole way from a take to a motion."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _synthetic_take import BODY, true_postures, write_synthetic_take
+from keymark.core.errors import InputError
+from keymark.core.prior.interpolation import interpolate_linearly
+from keymark.core.progress import Progress, run
+from keymark.core.reconstruct import METHODS, Reconstruction, reconstruct
+from keymark.core.score import read_truth, score_points
+from keymark.core.take import Take, read_take
+
+
+@pytest.fixture(scope="module")
+def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
+    """A small synthetic take."""
+    return read_take(write_synthetic_take(tmp_path_factory.mktemp("take"), frames=24, keyframe_every=8))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str) -> None:
+    """From the same take, with progress that only rises from zero to one."""
+    seen: list[Progress] = []
+    result = run(reconstruct(take, method), seen.append)
+    motion = result.motion
+    assert motion.method == method
+    assert motion.points.shape == (24, 13, 3) and np.isfinite(motion.points).all()
+    assert np.isfinite(motion.sigma_m).all() == (method != "interpolation")
+    fractions = [step.fraction for step in seen]
+    assert fractions == sorted(fractions) and fractions[0] == 0.0 and fractions[-1] == 1.0
+    error = np.linalg.norm(motion.points - BODY.points(BODY.pose(true_postures(24))), axis=-1)
+    assert error.mean() < 0.04
+
+
+def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
+    """A cancelled job writes no file and can be started anew."""
+    before = sorted(take.folder.rglob("*"))
+    job = reconstruct(take)
+    for _ in range(5):
+        next(job)
+    job.close()
+    assert sorted(take.folder.rglob("*")) == before
+    assert run(reconstruct(take, "interpolation")).motion.points.shape[0] == 24
+
+
+def test_an_unknown_method_and_too_few_keyframes_are_refused_in_a_sentence(take: Take) -> None:
+    """The message says what is valid."""
+    with pytest.raises(InputError, match="map, ekf, interpolation"):
+        run(reconstruct(take, "magic"))
+    with pytest.raises(InputError, match="at least 2"):
+        run(reconstruct(replace(take, keyframes=take.keyframes[:1])))
+
+
+@pytest.mark.parametrize("name", ["walk", "reach", "aerobic", "real_balance"])
+def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
+    take_folder: Callable[[str], Path], name: str
+) -> None:
+    """On each take with truth, against linear and smooth interpolation of the same keyframes."""
+    folder = take_folder(name)
+    take = read_take(folder, folder / "keyframes_noisy.json")
+    result: Reconstruction = run(reconstruct(take))
+    frames = result.tracks.frame_count
+    linear = take.body.points(take.body.pose(interpolate_linearly(take.keyframes, frames)))
+    truth = read_truth(folder / "truth.json", take.frame_start, frames)
+    ours, plain, smooth = (
+        score_points(points, truth, result.motion.keyframe_indices, take.camera).mpjpe
+        for points in (result.motion.points, linear, result.interpolation.points)
+    )
+    assert ours < 0.8 * min(plain, smooth)
