@@ -64,7 +64,7 @@ class View:
 
 
 # Measured with keyframes posed by hand: front median 1.6, p95 5.1 px; side 1.7 and 6.2 px; ten frames late
-# 10 and 39, 5.5 and 39 px. The body drawn is plainer than the performer (the trunk's colour begins at the hips:
+# 10 and 39, 5.5 and 39 px. The body drawn is plainer than the performer (its trunk begins at the hips:
 # 4 to 5 px), a pixel is about 10 mm, and the estimate's depth error, which the side shows, 17 mm.
 VIEWS = (View("front", "clip.mp4", 3.0, 8.0, 0.7), View("side", "side.mp4", 4.0, 12.0, 0.5))
 
