@@ -1,0 +1,41 @@
+"""The takes that benchmarks measure: those beside the repository, and the demonstration."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PLACES = (ROOT.parent / "shared" / "takes", ROOT / "presets" / "demo")
+OUTPUT = ROOT / "out" / "bench"
+
+
+def load_project() -> None:
+    """Make this very tree importable as `keymark`, whatever is installed."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    spec = importlib.util.spec_from_file_location("_boot", ROOT / "tests" / "_boot.py")
+    if spec is None or spec.loader is None:
+        raise RuntimeError("tests/_boot.py is missing")
+    boot = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(boot)
+    boot.load_package()
+
+
+def take_names() -> dict[str, Path]:
+    """Folders of takes with truth by the name in tables; the demonstration's begins with `demo`."""
+    found: dict[str, Path] = {}
+    for place in PLACES:
+        for truth in sorted(place.glob("*/truth.json")):
+            name = truth.parent.name
+            found[f"demo/{name}" if place.name == "demo" else name] = truth.parent
+    if not found:
+        raise SystemExit("no take with truth was found, not even the demonstration's")
+    return found
+
+
+def write_results(name: str, markdown: str, json_text: str) -> None:
+    """Print a table and keep it, with the same as JSON, in out/bench."""
+    OUTPUT.mkdir(parents=True, exist_ok=True)
+    (OUTPUT / f"{name}.md").write_text(markdown + "\n", encoding="utf-8")
+    (OUTPUT / f"{name}.json").write_text(json_text + "\n", encoding="utf-8")
+    print(markdown)
+    print(f"\nWritten to {OUTPUT / name}.md and .json")
