@@ -11,8 +11,8 @@ from .body.kinematics import Body
 from .body.posture import Posture
 from .body.posture_fit import fit_posture
 from .errors import InputError
-from .fields import Fields, listed
-from .json_file import read_json, shown, write_json
+from .files.fields import Fields, listed
+from .files.json_file import read_json, shown, write_json
 from .prior.keyframes import Keyframe
 
 Array = NDArray[np.float64]

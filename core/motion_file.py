@@ -12,8 +12,8 @@ from .body.actor import Actor
 from .body.kinematics import Body
 from .body.posture import Posture
 from .errors import ConversionError, InputError
-from .fields import Fields
-from .json_file import read_json, shown, write_json
+from .files.fields import Fields
+from .files.json_file import read_json, shown, write_json
 from .keyframe_file import posture_to_json, rounded
 from .motion import Motion
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from .body.human import HUMAN
 from .errors import InputError
-from .fields import Fields
+from .files.fields import Fields
+from .files.json_file import read_json, shown
 from .footage.camera import Camera
-from .json_file import read_json, shown
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ from .body.actor import Actor
 from .body.human import HUMAN
 from .body.kinematics import Body
 from .errors import InputError
-from .fields import Fields, listed
+from .files.fields import Fields, listed
+from .files.json_file import read_json, shown, write_json, write_whole
 from .footage.camera import Camera
 from .footage.clip import Clip
 from .footage.markers import MarkerStyle
-from .json_file import read_json, shown, write_json, write_whole
 from .keyframe_file import read_keyframes, write_keyframes
 from .prior.keyframes import Keyframe
 

@@ -14,9 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .camera_fields import read_distortion, read_number, read_poses, read_resolution
+from ..files.fields import Fields
+from .camera_fields import read_distortion, read_poses, read_resolution
 
 FloatArray = NDArray[np.float64]
+
+LENGTHS_MM = (0.1, 100_000.0)
+"""A focal length or a sensor's width lies between these [mm]."""
+MOST_SHIFT = 100.0
+"""No view is shifted further [image widths]."""
 
 _NEWTON_STEPS = 20
 _NEWTON_TOLERANCE = 1e-12
@@ -65,14 +71,19 @@ class Camera:
         Raises:
             InputError: a field is missing or unusable; the sentence names it.
         """
+        entry = Fields(fields, where)
+
+        def shift(name: str) -> float:
+            return entry.number(name, -MOST_SHIFT, MOST_SHIFT) if entry.has(name) else 0.0
+
         return cls(
-            lens_mm=read_number(fields, "lens_mm", where, positive=True),
-            sensor_width_mm=read_number(fields, "sensor_width_mm", where, positive=True),
-            resolution=read_resolution(fields, where),
-            matrix_world=read_poses(fields, where),
-            shift_x=read_number(fields, "shift_x", where, default=0.0),
-            shift_y=read_number(fields, "shift_y", where, default=0.0),
-            distortion=read_distortion(fields, where),
+            lens_mm=entry.number("lens_mm", *LENGTHS_MM, "mm"),
+            sensor_width_mm=entry.number("sensor_width_mm", *LENGTHS_MM, "mm"),
+            resolution=read_resolution(entry),
+            matrix_world=read_poses(entry),
+            shift_x=shift("shift_x"),
+            shift_y=shift("shift_y"),
+            distortion=read_distortion(entry),
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -9,59 +9,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..files.fields import Fields
+from ..files.json_file import shown
 
 FloatArray = NDArray[np.float64]
 
 _ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision carry about 1e-6
 
 
-def read_number(
-    fields: Mapping[str, Any], name: str, where: str, *, default: float | None = None, positive: bool = False
-) -> float:
-    """Return one finite number.
-
-    Args:
-        fields: the camera's fields.
-        name: field to read.
-        where: how messages name the place.
-        default: value of an absent field; None makes the field required.
-        positive: whether the number must be above zero.
-
-    Raises:
-        InputError: the field is absent or not such a number.
-    """
-    if name not in fields and default is not None:
-        return default
-    valid = "a number above 0" if positive else "a finite number"
-    value = _required(fields, name, where, valid)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}")
-    if positive and value <= 0:
-        raise InputError(f"{where}: {name} is {value!r}; it must be {valid}")
-    return float(value)
-
-
-def read_resolution(fields: Mapping[str, Any], where: str) -> tuple[int, int]:
+def read_resolution(fields: Fields) -> tuple[int, int]:
     """Return the image's width and height in pixels.
 
     Raises:
         InputError: the field is absent or not two whole numbers above 0.
     """
     valid = "two whole numbers above 0, width and height in pixels"
-    value = _required(fields, "resolution", where, valid)
-    numbers = _array(value)
+    numbers = _array(fields.required("resolution", valid))
     if numbers is None or numbers.shape != (2,) or np.any(numbers < 1) or np.any(numbers % 1):
-        raise InputError(f"{where}: resolution is {value!r}; it must be {valid}")
+        shown_value = shown(fields.values["resolution"])
+        raise InputError(f"{fields.where}: resolution is {shown_value}; it must be {valid}")
     return int(numbers[0]), int(numbers[1])
 
 
-def read_distortion(fields: Mapping[str, Any], where: str) -> tuple[float, float, float]:
+def read_distortion(fields: Fields) -> tuple[float, float, float]:
     """Return k1, k2, k3 of the polynomial distortion; absent means none, missing coefficients are 0.
 
     Raises:
         InputError: the field is neither a list of at most three numbers nor an object with k1, k2, k3.
     """
-    value = fields.get("distortion")
+    value = fields.values.get("distortion")
     if value is None:
         return (0.0, 0.0, 0.0)
     listed: Any = value
@@ -69,13 +45,15 @@ def read_distortion(fields: Mapping[str, Any], where: str) -> tuple[float, float
         listed = [value.get(name, 0.0) for name in ("k1", "k2", "k3")]
     numbers = _array(listed)
     if numbers is None or numbers.ndim != 1 or numbers.size > 3:
-        raise InputError(f"{where}: distortion is {value!r}; it must be up to three numbers [k1, k2, k3]")
+        raise InputError(
+            f"{fields.where}: distortion is {shown(value)}; it must be up to three numbers [k1, k2, k3]"
+        )
     padded = np.zeros(3)
     padded[: numbers.size] = numbers
     return float(padded[0]), float(padded[1]), float(padded[2])
 
 
-def read_poses(fields: Mapping[str, Any], where: str) -> FloatArray:
+def read_poses(fields: Fields) -> FloatArray:
     """Return the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
     A uniform scale, as Blender's camera objects may carry, is taken out: it does not change what a camera
@@ -84,16 +62,16 @@ def read_poses(fields: Mapping[str, Any], where: str) -> FloatArray:
     Raises:
         InputError: a matrix is absent, of the wrong shape, or not a rotation with a translation.
     """
-    if fields.get("matrix_world_frames") is not None:
+    if fields.has("matrix_world_frames"):
         name, valid, ndim = "matrix_world_frames", "one 4 by 4 matrix a frame", 3
     else:
         name, valid, ndim = "matrix_world", "a 4 by 4 matrix of finite numbers", 2
-    matrices = _array(_required(fields, name, where, valid))
+    matrices = _array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
-        raise InputError(f"{where}: {name} has the wrong form; it must be {valid}")
+        raise InputError(f"{fields.where}: {name} has the wrong form; it must be {valid}")
     stacked = matrices.reshape(-1, 4, 4).copy()
     for index, matrix in enumerate(stacked):
-        place = f"{where}: {name}" + (f"[{index}]" if ndim == 3 else "")
+        place = f"{fields.where}: {name}" + (f"[{index}]" if ndim == 3 else "")
         matrix[:3, :3] = _rotation(matrix, place)
     return stacked.reshape(matrices.shape)
 
@@ -116,12 +94,6 @@ def _rotation(matrix: FloatArray, place: str) -> FloatArray:
         )
     left, _, right = np.linalg.svd(rotation)
     return np.asarray(left @ right)
-
-
-def _required(fields: Mapping[str, Any], name: str, where: str, valid: str) -> Any:
-    if fields.get(name) is None:
-        raise InputError(f"{where}: {name} is missing; it must be {valid}")
-    return fields[name]
 
 
 def _array(value: Any) -> FloatArray | None:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.errors import ConversionError
+from ...core.files.output_folder import output_folder
 from ...core.motion import Motion
 from ...core.motion_file import write_motion
-from ...core.output_folder import output_folder
 from ...core.progress import run
 from ...core.reconstruct import Reconstruction, reconstruct
 from ...core.report.pictures import PICTURES, write_pictures

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.files.json_file import write_whole
 from ...core.footage.markers import track_markers
-from ...core.json_file import write_whole
 from ...core.prior.speed import marker_speed, propose_keyframes
 from ...core.progress import Job, run, within
 from ...core.report.canvas import write_png

@@ -41,7 +41,7 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     """Where the work cannot lie beside the output, the clip's relative path is right all the same."""
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
-    from keymark.core import output_folder
+    from keymark.core.files import output_folder
 
     monkeypatch.setattr(output_folder.os, "access", lambda path, mode: Path(path) == out)
     words = [

@@ -4,9 +4,9 @@ import os
 from pathlib import Path
 
 import pytest
-from keymark.core import output_folder as module
 from keymark.core.errors import ConversionError, InputError
-from keymark.core.output_folder import output_folder
+from keymark.core.files import output_folder as module
+from keymark.core.files.output_folder import output_folder
 
 
 def tree(folder: Path) -> dict[str, str]:

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from math import isfinite
 from typing import Any
 
-from .errors import InputError
+from ..errors import InputError
 from .json_file import shown
 
 

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from .errors import ConversionError, InputError
+from ..errors import ConversionError, InputError
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from .errors import ConversionError, InputError
+from ..errors import ConversionError, InputError
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""
