@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import expit
 
 from ..body.kinematics import Pose
 from ..body.shapes import PieceStack
@@ -38,14 +39,14 @@ class Covers:
     overshoot: Array
     """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
 
-    def pick(self, part: int, rows: NDArray[np.intp]) -> "Covers":
-        """One part in some frames, with arrays (R, 2)."""
+    def pick(self, frame: NDArray[np.intp], part: NDArray[np.intp]) -> "Covers":
+        """R parts, each in a frame of its own, with arrays (R, 2)."""
         return Covers(
-            self.start[rows, part],
-            self.end[rows, part],
-            self.depth[rows, part],
-            self.half_width[rows, part],
-            self.overshoot[rows, part],
+            self.start[frame, part],
+            self.end[frame, part],
+            self.depth[frame, part],
+            self.half_width[frame, part],
+            self.overshoot[frame, part],
         )
 
 
@@ -76,12 +77,11 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
         (F, Q, S).
     """
     seen = np.ones(depth.shape)
-    candidates = _may_hide(pixels, depth, parts) & ~own
-    for part in range(own.shape[1]):
-        rows, piece = np.nonzero(candidates[..., part])
-        if len(rows):
-            chosen = parts.pick(part, rows)
-            seen[rows, piece] *= 1.0 - _hidden_share(pixels[rows, piece], depth[rows, piece], chosen)
+    frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)
+    if len(frame):
+        shown = 1.0 - _hidden_share(pixels[frame, piece], depth[frame, piece], parts.pick(frame, part))
+        first = np.flatnonzero(np.diff(frame * len(own) + piece, prepend=-1))  # of each piece in each frame
+        seen[frame[first], piece[first]] = np.multiply.reduceat(shown, first, axis=0)
     return seen
 
 
@@ -118,6 +118,4 @@ def _hidden_share(pixels: Array, depth: Array, part: Covers) -> Array:
     reach = np.maximum(at(part.overshoot), 0.5)
     inside = (1.0 - np.sqrt((away / half) ** 2 + (past / reach) ** 2)) * half
     nearer = depth - at(part.depth) - HIDDEN_DEPTH_M
-    edge = np.clip(inside / EDGE_SOFTNESS_PX, -30.0, 30.0)
-    order = np.clip(nearer / DEPTH_SOFTNESS_M, -30.0, 30.0)
-    return np.asarray(1.0 / ((1.0 + np.exp(-edge)) * (1.0 + np.exp(-order))))
+    return np.asarray(expit(inside / EDGE_SOFTNESS_PX) * expit(nearer / DEPTH_SOFTNESS_M))
