@@ -158,7 +158,8 @@ class Camera:
         factor, _ = self._radial_factor(x * x + y * y)
         column, row = self.principal_point
         scale = self.focal_px * factor
-        return np.stack([column + scale * x, row - scale * y], axis=-1), depth
+        # Columns and rows lie in planes of their own in memory, as those who compute with them like best.
+        return np.moveaxis(np.stack([column + scale * x, row - scale * y]), 0, -1), depth
 
     def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return d pixel / d world point, (..., 2, 3) in pixels per metre; NaN behind the camera."""
@@ -180,23 +181,15 @@ class Camera:
             velocity), in pixels per metre and per radian; NaN behind the camera.
         """
         x, y, depth = self._normalised(self.world_to_camera(points, frame))
-        rates = np.zeros((*x.shape, 2, 6))
-        rates[..., 0, 0] = rates[..., 1, 1] = 1.0 / np.where(depth > 0.0, depth, np.nan)
-        rates[..., 0, 2] = x * rates[..., 0, 0]  # depth is -Z, so moving along +Z brings the point nearer
-        rates[..., 1, 2] = y * rates[..., 0, 0]
-        rates[..., 0, 3] = x * y
-        rates[..., 1, 4] = -rates[..., 0, 3]
-        rates[..., 0, 4] = -1.0 - x * x
-        rates[..., 1, 3] = 1.0 + y * y
-        rates[..., 0, 5] = -y
-        rates[..., 1, 5] = x
+        near, zero = 1.0 / np.where(depth > 0.0, depth, np.nan), np.zeros_like(x)
+        # Depth is -Z, so moving along +Z brings the point nearer.
+        across = np.stack([near, zero, x * near, x * y, -1.0 - x * x, -y])
+        up = np.stack([zero, near, y * near, 1.0 + y * y, -x * y, x])
         if any(self.distortion):
             factor, slope = self._radial_factor(x * x + y * y)
-            flat = np.stack([x, y], axis=-1)
-            outer = flat[..., :, None] * flat[..., None, :]  # (..., 2, 2)
-            rates = (factor[..., None, None] * np.eye(2) + 2.0 * slope[..., None, None] * outer) @ rates
-        rates *= self.focal_px * np.array([[1.0], [-1.0]])
-        return rates
+            outward = 2.0 * slope * (x * across + y * up)
+            across, up = factor * across + x * outward, factor * up + y * outward
+        return np.moveaxis(self.focal_px * np.stack([across, -up]), (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the line of sight of each pixel.

@@ -78,7 +78,8 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
     seen = np.ones(depth.shape)
     frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)
     if len(frame):
-        shown = 1.0 - _hidden_share(pixels[frame, piece], depth[frame, piece], parts.pick(frame, part))
+        columns, rows = pixels[..., 0][frame, piece], pixels[..., 1][frame, piece]
+        shown = 1.0 - _hidden_share(columns, rows, depth[frame, piece], parts.pick(frame, part))
         first = np.flatnonzero(np.diff(frame * len(own) + piece, prepend=-1))  # of each piece in each frame
         seen[frame[first], piece[first]] = np.multiply.reduceat(shown, first, axis=0)
     return seen
@@ -86,25 +87,29 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
 
 def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
     """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
-    low, high = pixels.min(axis=2), pixels.max(axis=2)
-    centre, radius = 0.5 * (low + high), 0.5 * np.hypot(*np.moveaxis(high - low, -1, 0))
-    axis = (parts.end - parts.start)[:, None]  # (F, 1, O, 2)
-    offset = centre[:, :, None] - parts.start[:, None]  # (F, Q, O, 2)
-    share = (offset * axis).sum(-1) / np.maximum((axis * axis).sum(-1), 1e-6)
-    away = offset - np.clip(share, 0.0, 1.0)[..., None] * axis
+    columns, rows = pixels[..., 0], pixels[..., 1]
+    left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)
+    radius = 0.5 * np.hypot(right - left, bottom - top)
+    # The nearest place of the part's axis to the circle's centre.
+    across, down = np.moveaxis((parts.end - parts.start)[:, None], -1, 0)  # (F, 1, O)
+    first_x, first_y = np.moveaxis(parts.start[:, None], -1, 0)
+    dx = 0.5 * (left + right)[..., None] - first_x  # (F, Q, O)
+    dy = 0.5 * (top + bottom)[..., None] - first_y
+    share = np.clip((dx * across + dy * down) / np.maximum(across**2 + down**2, 1e-6), 0.0, 1.0)
+    dx, dy = dx - share * across, dy - share * down
     extent = np.maximum(parts.half_width, parts.overshoot).max(axis=-1)
     reach = radius[:, :, None] + extent[:, None] + NEGLIGIBLE * EDGE_SOFTNESS_PX
-    close = (away * away).sum(-1) < reach**2
+    close = dx**2 + dy**2 < reach**2
     margin = HIDDEN_DEPTH_M - NEGLIGIBLE * DEPTH_SOFTNESS_M
     return np.asarray(close & (parts.depth.min(-1)[:, None] + margin < depth.max(2)[:, :, None]))
 
 
-def _hidden_share(pixels: Array, depth: Array, part: Covers) -> Array:
+def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Array:
     """How far one part hides samples (R, S) in R chosen frames."""
     axis = part.end - part.start
     length = np.maximum(np.hypot(axis[:, 0], axis[:, 1]), 1e-6)[:, None]
     across, down = axis[:, :1] / length, axis[:, 1:] / length
-    x, y = pixels[..., 0] - part.start[:, :1], pixels[..., 1] - part.start[:, 1:]
+    x, y = columns - part.start[:, :1], rows - part.start[:, 1:]
     run = x * across + y * down
     away = y * across - x * down
     on_axis = np.clip(run, 0.0, length)

@@ -139,8 +139,8 @@ class RegionModel:
         factor = factor / total[:, self._marker_of, None]
         weight = factor * samples.area  # (F, Q, S), one in sum over a marker
         centroid = self._per_marker((weight[:, :, None] @ pixels)[:, :, 0])
-        centred = pixels - centroid[:, self._marker_of, None]
-        moment = self._per_marker(np.swapaxes(weight[..., None] * centred, -1, -2) @ centred)
+        centred = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
+        moment = self._per_marker((weight[:, :, None] * centred) @ np.swapaxes(centred, -1, -2))
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
@@ -148,8 +148,11 @@ class RegionModel:
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
-        firsts = np.searchsorted(self._marker_of, np.arange(len(self.placements)))
-        return np.asarray(np.add.reduceat(values, firsts, axis=1))
+        _, first = np.unique(self._marker_of, return_index=True)
+        total = values[:, first]
+        for piece in np.setdiff1d(np.arange(values.shape[1]), first):
+            total[:, self._marker_of[piece]] += values[:, piece]
+        return total
 
     def _derive(
         self,
@@ -164,17 +167,19 @@ class RegionModel:
 
         `factor` (F, Q, S) turns a sample's area into its weight.
         """
-        weight = (factor * samples.area)[..., None]
+        count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
-        weights = np.swapaxes(np.concatenate([weight, weight * centred], axis=-1), -1, -2)  # (F, Q, 3, S)
-        summed = (weights @ rates.reshape(*rates.shape[:3], 12)).reshape(*weights.shape[:3], 2, 6)
+        flat = np.moveaxis(rates, 2, -1).reshape(*rates.shape[:2], 12, count)
+        x, y = centred[:, :, 0], centred[:, :, 1]
+        weights = np.stack([np.ones_like(x), x, y], axis=2) * (factor * samples.area)[:, :, None]
+        summed = (weights @ np.swapaxes(flat, -1, -2)).reshape(*weights.shape[:3], 2, 6)
         mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
         rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
         # Turning also changes how much of the silhouette each sample stands for.
         middle = moment[:, self._marker_of]
-        spread = [centred[..., a] * centred[..., b] - middle[..., a, b, None] for a, b in MOMENTS]
-        effect = np.stack([centred[..., 0], centred[..., 1], *spread], axis=2) * factor[:, :, None]
+        spread = [centred[:, :, a] * centred[:, :, b] - middle[..., a, b, None] for a, b in MOMENTS]
+        effect = np.stack([x, y, *spread], axis=2) * factor[:, :, None]
         rows[..., 3:] += effect @ samples.area_rate
         moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
