@@ -68,8 +68,10 @@ def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
     height, width = image.shape[:2]
     measuring = reduce(image, measuring_factor((width, height)))
     label, probability = model.classify(smooth(measuring))
-    masks = [_clean(label == marker, probability) for marker in range(len(model.distributions))]
-    shares = [coverage(measuring, mask, _BORDER) for mask in masks]
+    shares = [
+        coverage(measuring, _clean(label == marker, probability)[0] > 0, _BORDER)
+        for marker in range(len(model.distributions))
+    ]
     if measuring.shape == image.shape:
         return np.stack(shares)
     return np.stack([np.asarray(cv2.resize(share, (width, height)), dtype=np.float32) for share in shares])
@@ -81,14 +83,22 @@ def _enlarged(region: Region, scale: int) -> Region:
     return Region(region.moments * powers, region.box * scale, region.certainty, region.clipped)
 
 
-def _clean(mask: NDArray[np.bool_], probability: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Close one-pixel holes and drop specks and regions without a sure core."""
-    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, _KERNEL)
+def _clean(
+    mask: NDArray[np.bool_], probability: NDArray[np.uint8]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Close one-pixel holes and drop specks and regions without a sure core.
+
+    Returns:
+        The connected regions left, numbered from 1 on (rows, columns), 0 elsewhere; and left, top, width,
+        height and area of each, (N, 5).
+    """
+    closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, _KERNEL)
     count, components, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
     good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
-    return np.asarray(good[components], dtype=np.uint8)
+    number = np.where(good, np.cumsum(good, dtype=np.int32), np.int32(0))
+    return number[components], np.asarray(stats[good], dtype=np.int32)
 
 
 def _boxes(
@@ -96,16 +106,14 @@ def _boxes(
 ) -> list[tuple[int, int, int, int]]:
     """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the measuring grid."""
     mask = label == marker
-    x, y, columns, rows = cv2.boundingRect(mask.astype(np.uint8))
+    x, y, columns, rows = cv2.boundingRect(mask.view(np.uint8))
     if not columns:
         return []
     inside = np.s_[y : y + rows, x : x + columns]
-    _, _, stats, _ = cv2.connectedComponentsWithStats(
-        _clean(mask[inside], probability[inside]), connectivity=8
-    )
-    left, top, width, height = (stats[1:, column] for column in range(4))
+    _, stats = _clean(np.ascontiguousarray(mask[inside]), probability[inside])
+    left, top, width, height, area = stats.T
     corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
-    largest = np.argsort(-stats[1:, cv2.CC_STAT_AREA])[: 2 * MOST_REGIONS]
+    largest = np.argsort(-area)[: 2 * MOST_REGIONS]
     return [(int(a), int(b), int(c), int(d)) for a, b, c, d in corners[largest]]
 
 
@@ -134,16 +142,14 @@ def _measure(
     right, bottom = min(box[2] + margin, width), min(box[3] + margin, height)
     window = image[top:bottom, left:right]
     label, probability = model.classify(smooth(window))
-    mask = _clean(label == marker, probability)
-    count, components, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    if count == 1:
+    components, stats = _clean(label == marker, probability)
+    if not len(stats):
         return []
-    share = coverage(window, mask, _BORDER)
-    owner = components if count == 2 else _nearest_component(np.asarray(components, dtype=np.int32))
+    share = coverage(window, components > 0, _BORDER)
+    owner = components if len(stats) == 1 else _nearest_component(components)
     regions = []
-    for component in range(1, count):
-        weights = share if count == 2 else np.where(owner == component, share, 0.0)
-        x, y, columns, rows, _ = (int(value) for value in stats[component])
+    for component, (x, y, columns, rows, _) in enumerate(stats.tolist(), start=1):
+        weights = share if len(stats) == 1 else np.where(owner == component, share, 0.0)
         corners = np.array([left + x, top + y, left + x + columns, top + y + rows], dtype=np.float64)
         moments = raw_moments(weights, (left, top))
         if moments[0] < _FEWEST_PIXELS:
