@@ -41,11 +41,8 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.bool_], border: int) -> 
     axis = cv2.subtract(foreground, background)
     along = cv2.transform(cv2.multiply(cv2.subtract(colour, background), axis), _SUM)
     length = cv2.transform(cv2.multiply(axis, axis), _SUM) + 1.0  # one squared level: less is the same colour
-    share = np.clip(along / length, 0.0, 1.0)
-    share = np.where(has_foreground & has_background, share, inside)
-    share[grown == 0] = 0.0
-    share[depth > border] = 1.0
-    return np.asarray(share, dtype=np.float32)
+    mixed = has_foreground & has_background & (grown > 0) & (depth <= border)
+    return np.where(mixed, np.minimum(np.maximum(along / length, 0.0), 1.0), inside).astype(np.float32)
 
 
 def _local_mean(

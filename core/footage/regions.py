@@ -68,10 +68,10 @@ def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
     height, width = image.shape[:2]
     measuring = reduce(image, measuring_factor((width, height)))
     label, probability = model.classify(smooth(measuring))
-    shares = [
-        coverage(measuring, _clean(label == marker, probability)[0] > 0, _BORDER)
-        for marker in range(len(model.distributions))
-    ]
+    shares = []
+    for marker in range(len(model.distributions)):
+        components, stats = _clean(label == marker, probability)
+        shares.append(coverage(measuring, np.isin(components, stats[:, 0]), _BORDER))
     if measuring.shape == image.shape:
         return np.stack(shares)
     return np.stack([np.asarray(cv2.resize(share, (width, height)), dtype=np.float32) for share in shares])
@@ -85,20 +85,20 @@ def _enlarged(region: Region, scale: int) -> Region:
 
 def _clean(
     mask: NDArray[np.bool_], probability: NDArray[np.uint8]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Close one-pixel holes and drop specks and regions without a sure core.
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Close one-pixel holes and tell specks and regions without a sure core from the rest.
 
     Returns:
-        The connected regions left, numbered from 1 on (rows, columns), 0 elsewhere; and left, top, width,
-        height and area of each, (N, 5).
+        The number of each pixel's connected region (rows, columns); and of the regions to keep the number,
+        left, top, width, height and area, (N, 6).
     """
     closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, _KERNEL)
     count, components, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
     good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
-    number = np.where(good, np.cumsum(good, dtype=np.int32), np.int32(0))
-    return number[components], np.asarray(stats[good], dtype=np.int32)
+    kept = np.flatnonzero(good)
+    return np.asarray(components, dtype=np.int32), np.column_stack([kept, stats[kept]])
 
 
 def _boxes(
@@ -111,7 +111,7 @@ def _boxes(
         return []
     inside = np.s_[y : y + rows, x : x + columns]
     _, stats = _clean(np.ascontiguousarray(mask[inside]), probability[inside])
-    left, top, width, height, area = stats.T
+    _, left, top, width, height, area = stats.T
     corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
     largest = np.argsort(-area)[: 2 * MOST_REGIONS]
     return [(int(a), int(b), int(c), int(d)) for a, b, c, d in corners[largest]]
@@ -145,10 +145,11 @@ def _measure(
     components, stats = _clean(label == marker, probability)
     if not len(stats):
         return []
-    share = coverage(window, components > 0, _BORDER)
-    owner = components if len(stats) == 1 else _nearest_component(components)
+    inside = components == stats[0, 0] if len(stats) == 1 else np.isin(components, stats[:, 0])
+    share = coverage(window, inside, _BORDER)
+    owner = components if len(stats) == 1 else _nearest_component(np.where(inside, components, 0))
     regions = []
-    for component, (x, y, columns, rows, _) in enumerate(stats.tolist(), start=1):
+    for component, x, y, columns, rows, _ in stats.tolist():
         weights = share if len(stats) == 1 else np.where(owner == component, share, 0.0)
         corners = np.array([left + x, top + y, left + x + columns, top + y + rows], dtype=np.float64)
         moments = raw_moments(weights, (left, top))
