@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..block_banded import BlockBanded
+from ..block_banded import REACH, BlockBanded
 from ..clip_state import ClipState
 from .term import NormalEquations
 
@@ -35,7 +35,7 @@ class QuadraticBuilder:
 
         Args:
             columns: The unknowns.
-            coefficients: c_k for the K + 1 frames of a row, each a number or (R, 1) or (R, n).
+            coefficients: c_k for the K + 1 frames of a row, at most three, each a number or (R, 1) or (R, n).
             std: Standard deviation, broadcastable to (R, n), R = F - K; infinite switches a row off.
         """
         index = np.arange(self.matrix.size)[columns]
@@ -46,14 +46,17 @@ class QuadraticBuilder:
         information = np.broadcast_to(std, shape) ** -2.0
         parts = [np.broadcast_to(c, shape) for c in coefficients]
         for first, left in enumerate(parts):
-            for second in range(first, len(parts)):
-                band = self.matrix.bands[second - first]
-                band[first : first + rows, index, index] += information * left * parts[second]
+            touched = slice(first, first + rows)
+            self.matrix.diagonal[touched, index, index] += information * left**2
+            if first + 1 < len(parts):
+                self.matrix.next[touched, index, index] += information * left * parts[first + 1]
+            if first + REACH < len(parts):
+                self.matrix.after_next[touched, columns] += information * left * parts[first + REACH]
 
     def add_blocks(self, frames: NDArray[np.intp], information: Array) -> None:
         """Add full information matrices (K, n, n) about the leading n unknowns of K different frames."""
         count = information.shape[-1]
-        self.matrix.bands[0][frames, :count, :count] += information
+        self.matrix.diagonal[frames, :count, :count] += information
 
     def term(self) -> QuadraticTerm:
         """The term gathered so far."""

@@ -149,15 +149,10 @@ class RegionTerm:
         weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
         residual = np.where(weight > 0.0, residual, 0.0) * weight
         jacobian = (jacobian @ state.chain[:, None]) * weight[..., None]
-        wide = np.zeros((state.frames, count, FEATURES, equations.matrix.size))
-        dofs = state.deviation.shape[1]
-        wide[..., :dofs] = jacobian
-        for marker in range(count):
-            first = dofs + marker * FEATURES
-            feature = np.arange(FEATURES)
-            wide[:, marker, feature, first + feature] = weight[:, marker]
-        rows = count * FEATURES
-        equations.add_rows(residual.reshape(-1, rows), wide.reshape(state.frames, rows, -1))
+        shape = (state.frames, count * FEATURES)
+        equations.add_biased_rows(
+            residual.reshape(shape), jacobian.reshape(*shape, -1), weight.reshape(shape)
+        )
 
     def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
         """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""

@@ -20,21 +20,37 @@ class NormalEquations:
         self.gradient = np.zeros((frames, size))
 
     def add_rows(self, residual: Array, *jacobians: Array) -> None:
-        """Add rows that touch one frame, or as many consecutive ones as there are Jacobians.
+        """Add rows that touch one frame or two consecutive ones.
 
         Args:
             residual: (R, m) whitened residuals, row r touching frames r, r + 1, ...
-            jacobians: One (R, m, n) array a touched frame, whitened alike.
+            jacobians: One (R, m, n) array a touched frame, whitened alike, about the frame's leading unknowns.
         """
         self.matrix.add_rows(jacobians)
         for offset, jacobian in enumerate(jacobians):
-            gradient = np.einsum("rmn,rm->rn", jacobian, residual)
+            gradient = (residual[:, None] @ jacobian)[:, 0]
             self.gradient[offset : offset + len(residual), : jacobian.shape[-1]] += gradient
+
+    def add_biased_rows(self, residual: Array, jacobian: Array, bias_weight: Array) -> None:
+        """Add rows that each have a bias of their own; the biases are the last unknowns of a frame.
+
+        Args:
+            residual: (F, m) whitened residuals, their biases included.
+            jacobian: (F, m, n) by the leading unknowns, whitened alike; n + m is all of a frame's unknowns.
+            bias_weight: (F, m) derivative of each row by its bias.
+        """
+        self.add_rows(residual, jacobian)
+        n, block = jacobian.shape[-1], self.matrix.diagonal
+        mixed = jacobian * bias_weight[..., None]
+        block[:, n:, :n] += mixed
+        block[:, :n, n:] += np.swapaxes(mixed, -1, -2)
+        bias = np.arange(n, block.shape[-1])
+        block[:, bias, bias] += bias_weight**2
+        self.gradient[:, n:] += bias_weight * residual
 
     def add_quadratic(self, matrix: BlockBanded, unknowns: Array) -> None:
         """Add ½ xᵀ M x at the unknowns x (F, N)."""
-        for mine, theirs in zip(self.matrix.bands, matrix.bands, strict=True):
-            mine += theirs
+        self.matrix.add(matrix)
         self.gradient += matrix.multiply(unknowns)
 
 

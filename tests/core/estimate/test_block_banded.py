@@ -3,24 +3,31 @@
 import numpy as np
 import pytest
 from keymark.core.estimate.block_banded import BlockBanded
+from keymark.core.estimate.terms.quadratic import QuadraticBuilder
 
 SIZE = 4
 
 
 def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
-    """A positive definite system from random rows over one to three frames, and the same matrix dense."""
+    """A positive definite system from random rows and weighted second differences, and the same dense."""
     rng = np.random.default_rng(seed)
-    banded = BlockBanded(frames, SIZE)
+    builder = QuadraticBuilder(frames, SIZE)
+    rows = max(frames - 2, 0)
+    coefficients = [rng.normal(size=(rows, SIZE)) for _ in range(3)]
+    builder.add(slice(0, SIZE), tuple(coefficients), np.ones(SIZE))
     dense = np.zeros((frames * SIZE, frames * SIZE))
-    for reach in range(min(3, frames)):
+    for t in range(rows):
+        wide = np.hstack([np.diag(part[t]) for part in coefficients])
+        dense[t * SIZE : (t + 3) * SIZE, t * SIZE : (t + 3) * SIZE] += wide.T @ wide
+    banded = builder.matrix
+    for reach in range(min(2, frames)):
         rows = frames - reach
         jacobians = tuple(rng.normal(size=(rows, 6, SIZE)) for _ in range(reach + 1))
         banded.add_rows(jacobians)
         for t in range(rows):
-            wide = np.zeros((6, frames * SIZE))
-            for k, jacobian in enumerate(jacobians):
-                wide[:, (t + k) * SIZE : (t + k + 1) * SIZE] = jacobian[t]
-            dense += wide.T @ wide
+            wide = np.hstack([jacobian[t] for jacobian in jacobians])
+            touched = slice(t * SIZE, (t + reach + 1) * SIZE)
+            dense[touched, touched] += wide.T @ wide
     return banded, dense
 
 
@@ -44,8 +51,8 @@ def test_rows_about_the_leading_unknowns_leave_the_others_alone() -> None:
     """Narrow Jacobians touch the leading columns only."""
     banded = BlockBanded(2, SIZE)
     banded.add_rows((np.ones((2, 1, 2)),))
-    assert banded.bands[0][:, :2, :2].sum() == 8.0
-    assert banded.bands[0].sum() == 8.0
+    assert banded.diagonal[:, :2, :2].sum() == 8.0
+    assert banded.diagonal.sum() == 8.0
 
 
 def test_a_singular_system_is_refused() -> None:
