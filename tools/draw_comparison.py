@@ -1,7 +1,7 @@
-"""Draw the demonstration take's motion by each method over both cameras. Usage: draw_comparison.py OUTPUT.jpg.
+"""Draw the demonstration take's motion by each method over both cameras. Usage: draw_comparison.py PICTURE.
 
-The upper rows show the footage that was used, the lower rows the reference camera from the side, which no method
-saw.
+The upper rows show the footage that was used, the lower ones the reference camera from the side, which no
+method saw.
 """
 
 import json
