@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import rotations
 from .kinematics import Body, Pose
 
 Array = NDArray[np.float64]
@@ -127,7 +128,7 @@ def segment_piece(body: Body, name: str) -> Piece:
     across: Array = reference - np.dot(reference, axis) * axis
     lateral: Array = across / np.linalg.norm(across)
     widths = np.array(HALF_WIDTHS[name.split(".")[0]]) * body.actor.stature_m
-    return Piece(name, segment.joint, start, end, lateral, np.cross(axis, lateral), widths)
+    return Piece(name, segment.joint, start, end, lateral, rotations.cross_matrix(axis) @ lateral, widths)
 
 
 def body_pieces(body: Body) -> tuple[Piece, ...]:

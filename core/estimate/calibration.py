@@ -59,16 +59,9 @@ def calibrate(
     prior = np.array([_values(placement) for placement in start])
     values = prior.copy()
     for _ in range(ITERATIONS):
-        residual, visible = _features(body, camera, start, values, known)
+        residual, visible, slopes = _features(body, camera, start, values, known)
         usable = (
             np.isfinite(residual) & (visible > 0.3)[..., None] & (known.observed.quality > 0.3)[..., None]
-        )
-        slopes = np.stack(
-            [
-                (_features(body, camera, start, values + DIFFERENCE * unit, known)[0] - residual) / step
-                for unit, step in zip(np.eye(len(PARAMETERS)), DIFFERENCE, strict=True)
-            ],
-            axis=-1,
         )
         for marker in range(len(start)):
             rows = usable[:, marker]
@@ -95,9 +88,16 @@ def _placements(start: tuple[MarkerPlacement, ...], values: Array) -> tuple[Mark
 
 def _features(
     body: Body, camera: Camera, start: tuple[MarkerPlacement, ...], values: Array, known: KnownFrames
-) -> tuple[Array, Array]:
-    """Residuals (K, M, 5) and visible shares (K, M)."""
-    model = RegionModel(body, camera, _placements(start, values))
-    predicted = model.evaluate(known.pose, known.frame)
-    residual, _ = feature_rows(known.observed, predicted)
-    return residual, predicted.visible
+) -> tuple[Array, Array, Array]:
+    """Residuals (K, M, 5), visible shares (K, M) and the residuals' slopes (K, M, 5, parameters).
+
+    All the differences are taken in one go, as if each marker were worn several times.
+    """
+    variants = np.concatenate([values[None], values + np.diag(DIFFERENCE)[:, None]])  # (1 + P, M, P)
+    worn = tuple(placement for row in variants for placement in _placements(start, row))
+    predicted = RegionModel(body, camera, worn).evaluate(known.pose, known.frame)
+    again = np.tile(np.arange(len(start)), len(variants))
+    rows, _ = feature_rows(known.observed[:, again], predicted)
+    rows = rows.reshape(len(rows), len(variants), len(start), -1)
+    slopes = (np.moveaxis(rows[:, 1:], 1, -1) - rows[:, 0, ..., None]) / DIFFERENCE
+    return rows[:, 0], predicted.visible[:, : len(start)], slopes

@@ -127,8 +127,10 @@ class Camera:
         Raises:
             ValueError: the camera moves and no frame is given.
         """
-        rotation, location = self._pose(frame)
+        rotation, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
+        if rotation.ndim == 2:
+            return np.asarray(offset @ rotation)
         return np.asarray(np.einsum("...ji,...j->...i", rotation, offset))
 
     def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
@@ -137,7 +139,7 @@ class Camera:
 
     def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return d depth / d world point, (..., 3): the viewing direction, the same for every point."""
-        rotation, _ = self._pose(frame)
+        rotation, _ = self.pose(frame)
         points = np.asarray(points, dtype=np.float64)
         shape = np.broadcast_shapes(points.shape, rotation[..., 2].shape)
         return np.array(np.broadcast_to(-rotation[..., 2], shape))
@@ -152,26 +154,42 @@ class Camera:
         Returns:
             Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in metres.
         """
-        normalised, depth = self._normalised(self.world_to_camera(points, frame))
-        radius_squared = np.sum(normalised**2, axis=-1)
-        factor, _ = self._radial_factor(radius_squared)
-        distorted = normalised * factor[..., None]
-        pixels = self.principal_point + self.focal_px * distorted * np.array([1.0, -1.0])
-        return pixels, depth
+        x, y, depth = self._normalised(self.world_to_camera(points, frame))
+        factor, _ = self._radial_factor(x * x + y * y)
+        column, row = self.principal_point
+        scale = self.focal_px * factor
+        # Columns and rows lie in planes of their own in memory, as those who compute with them like best.
+        return np.moveaxis(np.stack([column + scale * x, row - scale * y]), 0, -1), depth
 
     def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return d pixel / d world point, (..., 2, 3) in pixels per metre; NaN behind the camera."""
-        rotation, _ = self._pose(frame)
-        normalised, depth = self._normalised(self.world_to_camera(points, frame))
-        factor, slope = self._radial_factor(np.sum(normalised**2, axis=-1))
-        outer = normalised[..., :, None] * normalised[..., None, :]  # (..., 2, 2)
-        lens = factor[..., None, None] * np.eye(2) + 2.0 * slope[..., None, None] * outer
-        pinhole = np.zeros((*normalised.shape[:-1], 2, 3))
-        pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
-        pinhole[..., 2] = normalised  # depth is -Z, so moving along +Z brings the point nearer
-        pinhole /= np.where(depth > 0.0, depth, np.nan)[..., None, None]
-        to_pixels = self.focal_px * np.array([[1.0], [-1.0]])
-        return to_pixels * (lens @ pinhole @ np.swapaxes(rotation, -1, -2))
+        rotation, _ = self.pose(frame)
+        return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
+
+    def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Return how pixels move with the bodies that hold their points, in the camera's own axes.
+
+        This is the interaction matrix of visual servoing (Chaumette & Hutchinson 2006, *Visual servo control,
+        part I*, eq. 11) for a camera that looks along -Z.
+
+        Args:
+            points: world points, (..., 3), in metres.
+            frame: index of each point's pose; see `world_to_camera`.
+
+        Returns:
+            (..., 2, 6) d pixel / d (velocity of the body's point that passes through the camera, its angular
+            velocity), in pixels per metre and per radian; NaN behind the camera.
+        """
+        x, y, depth = self._normalised(self.world_to_camera(points, frame))
+        near, zero = 1.0 / np.where(depth > 0.0, depth, np.nan), np.zeros_like(x)
+        # Depth is -Z, so moving along +Z brings the point nearer.
+        across = np.stack([near, zero, x * near, x * y, -1.0 - x * x, -y])
+        up = np.stack([zero, near, y * near, 1.0 + y * y, -x * y, x])
+        if any(self.distortion):
+            factor, slope = self._radial_factor(x * x + y * y)
+            outward = 2.0 * slope * (x * across + y * up)
+            across, up = factor * across + x * outward, factor * up + y * outward
+        return np.moveaxis(self.focal_px * np.stack([across, -up]), (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the line of sight of each pixel.
@@ -184,14 +202,22 @@ class Camera:
             Origin (3,) or (..., 3) in metres and unit direction (..., 3), both in the world. Directions are
             NaN for pixels the distortion polynomial reaches from nowhere.
         """
-        rotation, location = self._pose(frame)
+        rotation, location = self.pose(frame)
         offset = np.asarray(pixels, dtype=np.float64) - self.principal_point
         undistorted = self._undistort(offset / self.focal_px * np.array([1.0, -1.0]))
         camera = np.concatenate([undistorted, np.full((*undistorted.shape[:-1], 1), -1.0)], axis=-1)
         camera /= np.linalg.norm(camera, axis=-1, keepdims=True)
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
-    def _pose(self, frame: ArrayLike | None) -> tuple[FloatArray, FloatArray]:
+    def pose(self, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return the camera's orientation (..., 3, 3), its axes as columns, and its place (..., 3) in metres.
+
+        Args:
+            frame: index of each pose wanted; a fixed camera ignores it.
+
+        Raises:
+            ValueError: the camera moves and no frame is given.
+        """
         matrix = self.matrix_world
         if self.is_moving:
             if frame is None:
@@ -200,9 +226,11 @@ class Camera:
         return matrix[..., :3, :3], matrix[..., :3, 3]
 
     @staticmethod
-    def _normalised(camera: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _normalised(camera: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return x, y at unit depth, NaN behind the camera, and the depth."""
         depth = -camera[..., 2]
-        return camera[..., :2] / np.where(depth > 0.0, depth, np.nan)[..., None], depth
+        before = np.where(depth > 0.0, depth, np.nan)
+        return camera[..., 0] / before, camera[..., 1] / before, depth
 
     def _radial_factor(self, radius_squared: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the distortion factor and its derivative by the squared radius."""

@@ -38,14 +38,14 @@ class Covers:
     overshoot: Array
     """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
 
-    def pick(self, part: int, rows: NDArray[np.intp]) -> "Covers":
-        """One part in some frames, with arrays (R, 2)."""
+    def pick(self, frame: NDArray[np.intp], part: NDArray[np.intp]) -> "Covers":
+        """R parts, each in a frame of its own, with arrays (R, 2)."""
         return Covers(
-            self.start[rows, part],
-            self.end[rows, part],
-            self.depth[rows, part],
-            self.half_width[rows, part],
-            self.overshoot[rows, part],
+            self.start[frame, part],
+            self.end[frame, part],
+            self.depth[frame, part],
+            self.half_width[frame, part],
+            self.overshoot[frame, part],
         )
 
 
@@ -76,48 +76,56 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
         (F, Q, S).
     """
     seen = np.ones(depth.shape)
-    candidates = _may_hide(pixels, depth, parts) & ~own
-    for part in range(own.shape[1]):
-        rows, piece = np.nonzero(candidates[..., part])
-        if len(rows):
-            chosen = parts.pick(part, rows)
-            seen[rows, piece] *= 1.0 - _hidden_share(pixels[rows, piece], depth[rows, piece], chosen)
+    frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)
+    if len(frame):
+        columns, rows = pixels[..., 0][frame, piece], pixels[..., 1][frame, piece]
+        shown = 1.0 - _hidden_share(columns, rows, depth[frame, piece], parts.pick(frame, part))
+        first = np.flatnonzero(np.diff(frame * len(own) + piece, prepend=-1))  # of each piece in each frame
+        seen[frame[first], piece[first]] = np.multiply.reduceat(shown, first, axis=0)
     return seen
 
 
 def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
-    """(F, Q, O) whether a part's bounding circle meets a piece's samples and reaches nearer."""
-    centre = pixels.mean(axis=2)
-    offset = pixels - centre[:, :, None]
-    radius = np.sqrt(np.einsum("fqsi,fqsi->fqs", offset, offset).max(axis=2))
-    middle = 0.5 * (parts.start + parts.end)
-    extent = 0.5 * np.linalg.norm(parts.end - parts.start, axis=-1)
-    extent = extent + np.maximum(parts.half_width, parts.overshoot).max(axis=-1)
-    between = middle[:, None] - centre[:, :, None]  # (F, Q, O, 2)
+    """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
+    columns, rows = pixels[..., 0], pixels[..., 1]
+    left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)
+    radius = 0.5 * np.hypot(right - left, bottom - top)
+    # The nearest place of the part's axis to the circle's centre.
+    across, down = np.moveaxis((parts.end - parts.start)[:, None], -1, 0)  # (F, 1, O)
+    first_x, first_y = np.moveaxis(parts.start[:, None], -1, 0)
+    dx = 0.5 * (left + right)[..., None] - first_x  # (F, Q, O)
+    dy = 0.5 * (top + bottom)[..., None] - first_y
+    share = np.clip((dx * across + dy * down) / np.maximum(across**2 + down**2, 1e-6), 0.0, 1.0)
+    dx, dy = dx - share * across, dy - share * down
+    extent = np.maximum(parts.half_width, parts.overshoot).max(axis=-1)
     reach = radius[:, :, None] + extent[:, None] + NEGLIGIBLE * EDGE_SOFTNESS_PX
-    close = np.einsum("fqoi,fqoi->fqo", between, between) < reach**2
+    close = dx**2 + dy**2 < reach**2
     margin = HIDDEN_DEPTH_M - NEGLIGIBLE * DEPTH_SOFTNESS_M
     return np.asarray(close & (parts.depth.min(-1)[:, None] + margin < depth.max(2)[:, :, None]))
 
 
-def _hidden_share(pixels: Array, depth: Array, part: Covers) -> Array:
+def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Array:
     """How far one part hides samples (R, S) in R chosen frames."""
     axis = part.end - part.start
-    length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
-    along = axis / length[:, None]
-    offset = pixels - part.start[:, None]
-    run = offset[..., 0] * along[:, None, 0] + offset[..., 1] * along[:, None, 1]
-    away = offset[..., 1] * along[:, None, 0] - offset[..., 0] * along[:, None, 1]
-    share = np.clip(run / length[:, None], 0.0, 1.0)
-    past = np.maximum(np.maximum(-run, run - length[:, None]), 0.0)
+    length = np.maximum(np.hypot(axis[:, 0], axis[:, 1]), 1e-6)[:, None]
+    across, down = axis[:, :1] / length, axis[:, 1:] / length
+    x, y = columns - part.start[:, :1], rows - part.start[:, 1:]
+    run = x * across + y * down
+    away = y * across - x * down
+    on_axis = np.clip(run, 0.0, length)
+    share = on_axis / length
+    past = run - on_axis
 
     def at(ends: Array) -> Array:
-        return np.asarray(ends[:, None, 0] + share * (ends[:, 1] - ends[:, 0])[:, None])
+        return np.asarray(ends[:, :1] + share * (ends[:, 1:] - ends[:, :1]))
 
     half = np.maximum(at(part.half_width), 0.5)
-    reach = np.maximum(at(part.overshoot), 0.5)
-    inside = (1.0 - np.sqrt((away / half) ** 2 + (past / reach) ** 2)) * half
+    past *= half / np.maximum(at(part.overshoot), 0.5)
+    inside = half - np.sqrt(away * away + past * past)
     nearer = depth - at(part.depth) - HIDDEN_DEPTH_M
-    edge = np.clip(inside / EDGE_SOFTNESS_PX, -30.0, 30.0)
-    order = np.clip(nearer / DEPTH_SOFTNESS_M, -30.0, 30.0)
-    return np.asarray(1.0 / ((1.0 + np.exp(-edge)) * (1.0 + np.exp(-order))))
+    return _logistic(inside / EDGE_SOFTNESS_PX) * _logistic(nearer / DEPTH_SOFTNESS_M)
+
+
+def _logistic(x: Array) -> Array:
+    """1 / (1 + exp(-x)), by the hyperbolic tangent, which cannot overflow and is several times as fast."""
+    return np.asarray(0.5 + 0.5 * np.tanh(0.5 * x))

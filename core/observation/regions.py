@@ -138,9 +138,9 @@ class RegionModel:
         total = np.maximum(np.where(hidden, whole_area, visible_area), TINY)
         factor = factor / total[:, self._marker_of, None]
         weight = factor * samples.area  # (F, Q, S), one in sum over a marker
-        centroid = self._per_marker(np.einsum("fqs,fqsi->fqi", weight, pixels))
-        centred = pixels - centroid[:, self._marker_of, None]
-        moment = self._per_marker(np.einsum("fqs,fqsi,fqsj->fqij", weight, centred, centred, optimize=True))
+        centroid = self._per_marker((weight[:, :, None] @ pixels)[:, :, 0])
+        centred = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
+        moment = self._per_marker((weight[:, :, None] * centred) @ np.swapaxes(centred, -1, -2))
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
@@ -148,8 +148,11 @@ class RegionModel:
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
-        firsts = np.searchsorted(self._marker_of, np.arange(len(self.placements)))
-        return np.asarray(np.add.reduceat(values, firsts, axis=1))
+        _, first = np.unique(self._marker_of, return_index=True)
+        total = values[:, first]
+        for piece in np.setdiff1d(np.arange(values.shape[1]), first):
+            total[:, self._marker_of[piece]] += values[:, piece]
+        return total
 
     def _derive(
         self,
@@ -164,24 +167,28 @@ class RegionModel:
 
         `factor` (F, Q, S) turns a sample's area into its weight.
         """
-        local = self.camera.project_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 3)
-        # A point p of a body with spatial velocity (v, ω) moves by v - [p]x ω.
-        twist = np.concatenate([local, cross(samples.world[..., None, :], local)], axis=-1)
-        weight = (factor * samples.area)[..., None]
-        first = np.swapaxes(weight, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
-        first = first.reshape(*twist.shape[:2], 2, 6)
-        mixed = np.swapaxes(weight * centred, -1, -2) @ twist.reshape(*twist.shape[:3], 12)
-        mixed = mixed.reshape(*twist.shape[:2], 2, 2, 6)
+        count = samples.area.shape[-1]
+        rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
+        flat = np.moveaxis(rates, 2, -1).reshape(*rates.shape[:2], 12, count)
+        x, y = centred[:, :, 0], centred[:, :, 1]
+        weights = np.stack([np.ones_like(x), x, y], axis=2) * (factor * samples.area)[:, :, None]
+        summed = (weights @ np.swapaxes(flat, -1, -2)).reshape(*weights.shape[:3], 2, 6)
+        mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
+        rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
         # Turning also changes how much of the silhouette each sample stands for.
-        rate = factor[..., None] * samples.area_rate  # (F, Q, S, 3)
-        first[..., 3:] += np.swapaxes(centred, -1, -2) @ rate
-        middle = moment[:, self._marker_of, None]
-        spread = np.stack(
-            [centred[..., a] * centred[..., b] - middle[..., a, b] for a, b in MOMENTS], axis=-1
-        )
-        second[..., 3:] += np.swapaxes(spread, -1, -2) @ rate
-        rows = np.concatenate([first, second], axis=2)  # (F, Q, 5, 6)
+        middle = moment[:, self._marker_of]
+        spread = [centred[:, :, a] * centred[:, :, b] - middle[..., a, b, None] for a, b in MOMENTS]
+        effect = np.stack([x, y, *spread], axis=2) * factor[:, :, None]
+        rows[..., 3:] += effect @ samples.area_rate
         moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
         return {"centroid_jacobian": derived[:, :, :2], "moment_jacobian": derived[:, :, 2:]}
+
+    def _to_world(self, rows: Array, frame: NDArray[np.intp]) -> Array:
+        """Derivatives (F, Q, K, 6) by a motion in the camera's axes as ones by the motion in the world's."""
+        rotation, location = self.camera.pose(frame[:, None])
+        turned = np.swapaxes(rotation, -1, -2)
+        linear, angular = rows[..., :3] @ turned, rows[..., 3:] @ turned
+        # Where a body's origin lies far from the camera, its turning is also a motion.
+        return np.concatenate([linear, angular + cross(location[..., None, :], linear)], axis=-1)

@@ -78,8 +78,10 @@ class ObservedRegions:
         deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
         return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
 
-    def __getitem__(self, index: slice | NDArray[np.intp]) -> "ObservedRegions":
-        """The same markers in some of the frames."""
+    def __getitem__(
+        self, index: slice | NDArray[np.intp] | tuple[slice, NDArray[np.intp]]
+    ) -> "ObservedRegions":
+        """Some of the frames, or of the frames and markers."""
         return ObservedRegions(
             self.centroid[index],
             self.second_moment[index],
