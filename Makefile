@@ -10,6 +10,8 @@ BENCHMARKS ?= extraction accuracy speed
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
 test_parts := --editable '.[blender,dev]'
+# Whole files to a worker, so that what a file's tests share is made once.
+two_at_a_time := --numprocesses 2 --dist loadfile
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
 
@@ -54,17 +56,17 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 	@status=0; \
 	if [ -e .venv-test-313/ready ]; then \
 	    echo "== Blender 5.2, Python 3.13"; \
-	    .venv-test-313/bin/python -m pytest $(TESTS) || status=$$?; \
+	    .venv-test-313/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	else \
 	    echo "== Blender 5.2 is left out: this machine has no Python 3.13"; \
 	fi; \
 	echo "== Blender 4.5, Python 3.11"; \
-	.venv-test/bin/python -m pytest $(TESTS) || status=$$?; \
+	.venv-test/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	exit $$status
 
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
-	@.venv-dev/bin/python -m pytest tests/core
+	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
 
 # BLENDER=/path/to/blender tests in that one; without it, Debian's newest is fetched into a cache folder.
 .PHONY: test-blender

@@ -1,12 +1,16 @@
 """Loads the repository root as the package `keymark`, whatever its folder is called."""
 
 import importlib.util
+import os
 import sys
 from pathlib import Path
 from types import ModuleType
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "keymark"
+
+# As the command line does: on small matrices a second thread of linear algebra only doubles the work.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def load_package() -> ModuleType:

@@ -14,6 +14,14 @@ from _boot import ROOT, load_package  # noqa: E402
 
 load_package()
 
+try:
+    from hypothesis import settings
+except ImportError:  # a real Blender may lack it; what needs it is then not collected
+    pass
+else:  # the same examples in every run, however slow the machine is
+    settings.register_profile("repeatable", deadline=None, derandomize=True)
+    settings.load_profile("repeatable")
+
 HAS_BLENDER = importlib.util.find_spec("bpy") is not None
 collect_ignore_glob = [] if HAS_BLENDER else ["blender/*"]
 

@@ -40,7 +40,7 @@ class Pose:
         moments = rotations.cross_matrix(self.origin[..., balls, :]) @ axes
         screws[..., 3:6, skeleton.ball_dofs] = np.moveaxis(axes, -3, -2)
         screws[..., 0:3, skeleton.ball_dofs] = np.moveaxis(moments, -3, -2)
-        local = np.array([skeleton.joints[joint].axis for joint in hinges])[..., None]
+        local = np.array([skeleton.joints[joint].axis for joint in hinges]).reshape(-1, 3, 1)
         axis = self.rotation[..., hinges, :, :] @ local  # (..., H, 3, 1)
         moment = rotations.cross_matrix(self.origin[..., hinges, :]) @ axis
         screws[..., 3:6, skeleton.hinge_dofs] = np.swapaxes(axis[..., 0], -1, -2)

@@ -104,7 +104,7 @@ class Factor:
         below = np.zeros((2 * n, 2 * n))
         for g in reversed(range(pairs)):
             factor, coupling = self._pair(g)
-            # With A = L Lᵀ and G = C L⁻¹ below it, the inverse's block is L⁻ᵀ (1 + Gᵀ Σ G) L⁻¹ of what follows.
+            # With L of this pair, G = C L⁻¹ below it and Σ of what follows: L⁻ᵀ (1 + Gᵀ Σ G) L⁻¹.
             inverse = solve_triangular(factor, np.eye(2 * n), lower=True, check_finite=False)
             gain = coupling @ inverse
             covariance = inverse.T @ inverse + gain.T @ below @ gain
@@ -113,7 +113,7 @@ class Factor:
         return np.array(blocks[: self.frames])
 
     def _pair(self, index: int) -> tuple[Array, Array]:
-        """A pair of frames' own block of the factor (2n, 2n), lower, and the one beneath it, upper triangular."""
+        """Of the factor: a pair's own block (2n, 2n), lower, and the one beneath it, upper triangular."""
         width = REACH * self.size
         columns = self.lower[:, index * width : (index + 1) * width]
         row, column = np.tril_indices(width)

@@ -96,7 +96,8 @@ def test_the_regions_lie_on_the_true_segments(folder: Path, take: Take, truth: A
     along = last - first
     length = np.linalg.norm(along, axis=-1)
     share = np.sum((centroid - first) * along, axis=-1) / length**2
-    offset = np.abs(np.cross(along, centroid - first)) / length
+    away = centroid - first
+    offset = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) / length
     half_width_px = (0.09 if marker == "trunk" else 0.045) * take.camera.focal_px / depth
     full_length = np.linalg.norm(np.subtract(*_ends(truth, marker)), axis=-1) * take.camera.focal_px / depth
     whole = (pixels > WHOLE_SHARE * pixels.max()) & (length > 0.5 * full_length)

@@ -24,7 +24,7 @@ class NormalEquations:
 
         Args:
             residual: (R, m) whitened residuals, row r touching frames r, r + 1, ...
-            jacobians: One (R, m, n) array a touched frame, whitened alike, about the frame's leading unknowns.
+            jacobians: One (R, m, n) array a touched frame, whitened alike, about its leading unknowns.
         """
         self.matrix.add_rows(jacobians)
         for offset, jacobian in enumerate(jacobians):

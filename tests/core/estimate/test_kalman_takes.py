@@ -13,8 +13,9 @@ from keymark.core.take import read_take
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("keyframes", ["keyframes.json", "keyframes_noisy.json"])
-@pytest.mark.parametrize("name", ["walk", "aerobic"])
+@pytest.mark.parametrize(
+    ("name", "keyframes"), [("walk", "keyframes_noisy.json"), ("aerobic", "keyframes.json")]
+)
 def test_the_filter_beats_interpolation_and_knows_its_errors(
     take_folder: Callable[[str], Path], name: str, keyframes: str
 ) -> None:

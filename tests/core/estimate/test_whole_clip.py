@@ -121,7 +121,7 @@ def test_footage_without_any_marker_gives_the_prior_back() -> None:
     )
     prior = prior_from(TRUTH[np.array(POSED)])
     result = solve(prior, empty)
-    assert point_error_m(result.posture, prior).mean() < 0.015
+    assert point_error_m(result.posture, prior).mean() < 0.025
     assert np.isnan(result.residual_px).all()
 
 

@@ -51,7 +51,7 @@ def test_velocity_is_continuous_across_a_keyframe() -> None:
         np.testing.assert_allclose(before, after, atol=2e-6)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 @given(
     st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=7),
     st.lists(st.integers(1, 12), min_size=6, max_size=6),

@@ -1,0 +1,67 @@
+"""Draw the demonstration take's motion by each method over both cameras. Usage: draw_comparison.py PICTURE.
+
+The upper rows show the footage that was used, the lower ones the reference camera from the side, which no
+method saw.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.clip import Clip
+from keymark.core.motion import Motion
+from keymark.core.progress import run
+from keymark.core.reconstruct import METHODS, reconstruct
+from keymark.core.report.canvas import INK, Canvas
+from keymark.core.report.stick_figure import draw_figure, stick_figure
+from keymark.core.take import read_take
+
+TAKE = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
+FRAMES = (19, 36, 60, 75, 88, 100)
+CELL = (200, 150)
+GAP, TITLE = 6, 26
+NAMES = {"interpolation": "keyframes interpolated", "ekf": "the paper's filter", "map": "whole clip"}
+
+
+def draw_rows(canvas: Canvas, top: int, clip: Clip, camera: Camera, motion: Motion, title: str) -> None:
+    """One row: frames of a clip with a motion over them."""
+    canvas.text(title, GAP, top + 18, 10.0, INK)
+    images = dict(clip.source.at(FRAMES))
+    figure = stick_figure(motion)
+    scale = CELL[0] / camera.resolution[0]
+    for column, frame in enumerate(FRAMES):
+        tile = Canvas(*CELL)
+        tile.paste(np.asarray(0.6 * images[frame] + 100.0, dtype=np.uint8), 0, 0, *CELL)
+
+        def project(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            pixels, depth = camera.project(points)
+            return scale * pixels, depth
+
+        draw_figure(tile, figure, frame, project, 2.5, outlined=True)
+        canvas.paste(tile.image(), GAP + column * (CELL[0] + GAP), top + TITLE, *CELL)
+
+
+def main(output: str) -> None:
+    """Reconstruct with every method and draw."""
+    take = read_take(TAKE, TAKE / "keyframes_noisy.json")
+    side = json.loads((TAKE / "side.json").read_text(encoding="utf-8"))
+    views = (
+        ("front", Clip.open(take.clip, fps=take.fps), take.camera),
+        ("side, not used", Clip.open(TAKE / side["clip"], fps=take.fps), Camera.from_dict(side["camera"])),
+    )
+    methods = METHODS[::-1]
+    row = TITLE + CELL[1] + GAP
+    canvas = Canvas(GAP + len(FRAMES) * (CELL[0] + GAP), len(views) * len(methods) * row)
+    for i, method in enumerate(methods):
+        motion = run(reconstruct(take, method)).motion
+        for j, (view, clip, camera) in enumerate(views):
+            title = f"{NAMES[method]} ({view})"
+            draw_rows(canvas, (j * len(methods) + i) * row, clip, camera, motion, title)
+    cv2.imwrite(output, canvas.image(), [cv2.IMWRITE_JPEG_QUALITY, 82])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
