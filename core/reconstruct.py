@@ -19,7 +19,7 @@ from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
 from .progress import Job, Progress, within
-from .take import Take, check_frame_count, open_clip, rate_note
+from .take import Take, check_frame_count, check_in_front, open_clip, rate_note
 
 Array = NDArray[np.float64]
 
@@ -68,6 +68,7 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
+    check_in_front(take)
     expected = expected_regions(take, clip.frame_count)
     tracks = yield from within(
         "Following the markers", track_markers(clip, take.markers, expected), 0.0, EXTRACTION_SHARE
@@ -177,6 +178,11 @@ def _notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
         seen = int(tracks.visible[:, marker].sum())
         if seen < 0.5 * tracks.frame_count:
             notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+    if tracks.frame_count < clip.frame_count:
+        notes.append(
+            f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
+            "decoded; it may be cut off"
+        )
     if tracks.variable_frame_rate:
         notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
     return tuple(notes)

@@ -138,6 +138,24 @@ def check_frame_count(take: Take, count: int) -> None:
             )
 
 
+def check_in_front(take: Take) -> None:
+    """Hold the keyframes against the camera: what lies behind it can leave nothing in its picture.
+
+    Raises:
+        InputError: A point of a keyframe lies behind the camera.
+    """
+    for keyframe in take.keyframes:
+        points = take.body.points(take.body.pose(keyframe.posture))
+        depth = take.camera.depth(points, keyframe.index)
+        if depth.min() <= 0.0:
+            name = take.body.skeleton.point_names[int(depth.argmin())]
+            raise InputError(
+                f"{take.folder}: keyframe {keyframe.index + take.frame_start} has the point {name} "
+                f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
+                "(along its local -Z) at the performer"
+            )
+
+
 def rate_note(take: Take, clip: Clip) -> str | None:
     """A sentence where the clip's own frame rate is not the take's; None where they agree."""
     if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:

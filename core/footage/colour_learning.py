@@ -22,6 +22,8 @@ Image = NDArray[np.uint8]
 _SATURATION_DEVIATION: Final = 0.15
 _HUE_DEVIATION: Final = 0.10
 _LOG_LUMA_DEVIATION: Final = 0.45
+_LEAST_SATURATION: Final = 0.04
+"""A grey has no hue to be off by: below this the deviations shrink no further."""
 
 _STRONG: Final = 7.8  # squared distances: 95 % and 99.9 % of a chi-squared with 3 degrees of freedom
 _FARTHEST: Final = 16.3
@@ -93,11 +95,12 @@ def learn_colours(
 def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution:
     """Return what one sample (red, green, blue) tells of a surface's colour before looking at the clip."""
     chroma, luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
-    saturation = max(float(np.linalg.norm(chroma)), 1e-6)
-    radial = chroma / saturation
+    saturation = float(np.linalg.norm(chroma))
+    radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
     tangential = np.array([-radial[1], radial[0]])
-    covariance = (_SATURATION_DEVIATION * saturation) ** 2 * np.outer(radial, radial)
-    covariance += (_HUE_DEVIATION * saturation) ** 2 * np.outer(tangential, tangential)
+    extent = max(saturation, _LEAST_SATURATION)
+    covariance = (_SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
+    covariance += (_HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
     return ColourDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -23,8 +22,6 @@ _FRAMES_PER_SEEK = 125
 
 # The decoder reads its verbosity once a process, when it is first used.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-
-logger = logging.getLogger(__name__)
 
 
 class VideoFile:
@@ -67,7 +64,6 @@ class VideoFile:
                 previous = self._stamp(capture, index, previous)
                 yield index, previous, _as_image(image)
                 index += 1
-        self._warn_if_short(index)
 
     def time_stamps(self) -> Iterator[float]:
         """Yield the time in seconds of every frame."""
@@ -111,10 +107,6 @@ class VideoFile:
         if np.isfinite(stamp) and stamp > previous and (index == 0 or stamp > 0.0):
             return stamp
         return index / self.fps if index / self.fps > previous else previous + 1.0 / self.fps
-
-    def _warn_if_short(self, frames: int) -> None:
-        if frames < self.frame_count:
-            logger.warning("%s: %d of %d frames could be decoded", self.path, frames, self.frame_count)
 
     @contextmanager
     def _capture(self) -> Iterator[cv2.VideoCapture]:

@@ -206,6 +206,12 @@ def no_marker(take: Path) -> None:
         cv2.imwrite(str(file), np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8))
 
 
+def turn_camera_away(value: dict[str, Any]) -> None:
+    """Half a turn about the camera's own vertical: it films what is behind it."""
+    for row in value["camera"]["matrix_world"]:
+        row[0], row[2] = -row[0], -row[2]
+
+
 DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
     "no take.json": (lambda take: (take / "take.json").unlink(), "take.json: no such file"),
     "no keyframes": (lambda take: (take / "keyframes.json").unlink(), "keyframes.json: no such file"),
@@ -221,6 +227,10 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
     "one keyframe": (edit("keyframes.json", lambda v: v.update(keyframes=v["keyframes"][:1])), "at least 2"),
     "resolution": (edit("take.json", lambda v: v["camera"].update(resolution=[64, 48])), r"\[64, 48\]"),
     "frame_count": (edit("take.json", lambda v: v.update(frame_count=99)), "frame_count is 99"),
+    "camera turned away": (
+        edit("take.json", turn_camera_away),
+        "keyframe 1 has the point .* behind the camera",
+    ),
     "colours not there": (no_marker, "colour"),
 }
 

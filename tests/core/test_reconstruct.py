@@ -1,12 +1,15 @@
 """The whole way from a take to a motion."""
 
+import json
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
-from _synthetic_take import BODY, true_postures, write_synthetic_take
+from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.progress import Progress, run
@@ -53,6 +56,30 @@ def test_an_unknown_method_and_too_few_keyframes_are_refused_in_a_sentence(take:
         run(reconstruct(take, "magic"))
     with pytest.raises(InputError, match="at least 2"):
         run(reconstruct(replace(take, keyframes=take.keyframes[:1])))
+
+
+def test_a_clip_that_is_cut_off_is_converted_as_far_as_it_goes_and_said_so(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Where take.json claims no number of frames; only the note says so, nothing on standard error."""
+    folder = write_synthetic_take(tmp_path / "take", frames=24, keyframe_every=8)
+    images = [cv2.imread(str(file)) for file in sorted((folder / "frames").iterdir())]
+    writer = cv2.VideoWriter(str(folder / "clip.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 30.0, SIZE)
+    for image in images:
+        writer.write(image)
+    writer.release()
+    os.truncate(folder / "clip.avi", int(0.8 * (folder / "clip.avi").stat().st_size))
+    for name, change in (
+        ("take.json", lambda value: (value.update(clip="clip.avi"), value.pop("frame_count"))),
+        ("keyframes.json", lambda value: value.update(keyframes=value["keyframes"][:2])),
+    ):
+        value = json.loads((folder / name).read_text(encoding="utf-8"))
+        change(value)
+        (folder / name).write_text(json.dumps(value), encoding="utf-8")
+    result = run(reconstruct(read_take(folder)))
+    assert 12 <= result.tracks.frame_count < 24 and np.isfinite(result.motion.points).all()
+    assert any("clip.avi claims 24 frames" in note and "cut off" in note for note in result.notes)
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize("name", ["walk", "reach", "aerobic", "real_balance"])

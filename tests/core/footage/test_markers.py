@@ -246,6 +246,28 @@ def test_one_sample_off_in_light_still_teaches_the_markers_colour() -> None:
     np.testing.assert_allclose(shaded, right, rtol=0.1)
 
 
+@pytest.mark.parametrize("grey", [(128, 128, 128), (12, 12, 12), (235, 235, 235)])
+def test_a_marker_without_a_hue_is_told_from_a_coloured_wall(grey: tuple[int, int, int]) -> None:
+    """Black and white sleeves: a sample whose three channels are equal is learned and followed."""
+    rng = np.random.default_rng(3)
+    images = []
+    for index in range(20):
+        image = np.full((SIZE[1], SIZE[0], 3), (60, 130, 170), dtype=np.uint8)
+        cv2.ellipse(image, (80 + 6 * index, 120), (30, 15), 0.0, 0, 360, grey, -1)
+        images.append(np.clip(image + rng.normal(0, 2.0, image.shape), 0, 255).astype(np.uint8))
+    tracks = finish(track_markers(clip_of(images), (MarkerStyle("grey", "forearm.L", grey),)))
+    truth = np.array([[80.5 + 6.0 * index, 120.5] for index in range(20)])
+    assert tracks.visible.all() and np.abs(tracks.centroid[:, 0] - truth).max() < 1.0
+
+
+def test_a_grey_marker_before_a_grey_wall_is_refused_in_a_sentence() -> None:
+    """Where nothing tells the two apart, no motion is made up."""
+    rng = np.random.default_rng(3)
+    images = [draw([((128, 128, 128), (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
+    with pytest.raises(InputError, match="marker grey .* matches nothing"):
+        finish(track_markers(clip_of(images), (MarkerStyle("grey", "forearm.L", (128, 128, 128)),)))
+
+
 def test_tracks_refuse_shapes_that_disagree() -> None:
     """Every array has one row a frame and one column a marker."""
     good: dict[str, Any] = {
