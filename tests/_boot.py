@@ -32,9 +32,3 @@ def load_package() -> ModuleType:
     sys.modules[PACKAGE] = package
     spec.loader.exec_module(package)
     return package
-
-
-def child_has_blender() -> bool:
-    """Whether a Python process started from here can import Blender: not from inside the program."""
-    found = importlib.util.find_spec("bpy")
-    return found is not None and "site-packages" in str(found.origin)

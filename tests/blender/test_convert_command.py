@@ -8,7 +8,6 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _boot import child_has_blender
 from _synthetic_take import write_synthetic_take
 from keymark.operators.cli import main
 
@@ -62,7 +61,6 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     assert Path(os.path.normpath(bpy.path.abspath(clip.filepath))).is_file()
 
 
-@pytest.mark.skipif(not child_has_blender(), reason="a child process has no Blender to write files with")
 def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: Path) -> None:
     """In a process of its own, Blender's chatter reaches neither standard output nor standard error."""
     links = tmp_path / "links"

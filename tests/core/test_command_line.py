@@ -15,7 +15,6 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from _boot import child_has_blender
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.motion_file import read_motion
@@ -364,7 +363,9 @@ def test_a_process_that_is_asked_to_end_cleans_up(
     """In the middle of its work, on the signal that render farms send, it leaves the output as it was."""
     before = tree(out.parent)
     words = (
-        ("propose", str(take)) if not child_has_blender() else ("convert", str(take), "--output", str(out))
+        ("propose", str(take))
+        if not conversion.importlib.util.find_spec("bpy")
+        else ("convert", str(take), "--output", str(out))
     )
     process = module_process(tmp_path, repository, *words)
     assert process.stdout is not None and process.stderr is not None
