@@ -61,6 +61,10 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     assert Path(os.path.normpath(bpy.path.abspath(clip.filepath))).is_file()
 
 
+@pytest.mark.skipif(
+    bool(bpy.app.binary_path),
+    reason="a Blender program's own Python has no bpy; tests/real_blender converts in it",
+)
 def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: Path) -> None:
     """In a process of its own, Blender's chatter reaches neither standard output nor standard error."""
     links = tmp_path / "links"
