@@ -88,7 +88,7 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     """Where the interpolated keyframes put each marker, with a generous radius."""
     prior = interpolate(take.keyframes, frame_count)
-    placements = tuple(MarkerPlacement(style.segment) for style in take.markers)
+    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
     model = RegionModel(take.body, take.camera, placements)
     centre = np.empty((frame_count, len(placements), 2))
     for frame in _chunks(frame_count):
@@ -104,9 +104,9 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 
 def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
-    segments = tuple(style.segment for style in take.markers)
-    keyframes = tuple(keyframe.index for keyframe in take.keyframes)
-    estimate = estimate_whole_clip(take.body, take.camera, tracks, segments, prior, keyframes)
+    estimate = estimate_whole_clip(
+        take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices
+    )
     result = yield from within("Estimating the motion", estimate, EXTRACTION_SHARE, 1.0)
     diagnostics = {
         "residual_px": result.residual_px,
@@ -117,9 +117,7 @@ def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
-    segments = tuple(style.segment for style in take.markers)
-    keyframes = tuple(keyframe.index for keyframe in take.keyframes)
-    estimate = filter_clip(take.body, take.camera, tracks, segments, prior, keyframes)
+    estimate = filter_clip(take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices)
     result = yield from within("Filtering the motion", estimate, EXTRACTION_SHARE, 1.0)
     diagnostics = {
         "normalized_innovation_squared": result.normalized_innovation_squared,
@@ -152,7 +150,7 @@ def _motion(
         posture,
         points,
         spread,
-        tuple(keyframe.index for keyframe in take.keyframes),
+        take.keyframe_indices,
         method,
         MappingProxyType(diagnostics or {}),
     )

@@ -45,6 +45,16 @@ class Take:
     keyframes: tuple[Keyframe, ...]
 
     @property
+    def marker_segments(self) -> tuple[str, ...]:
+        """The segment each marker is bound to."""
+        return tuple(style.segment for style in self.markers)
+
+    @property
+    def keyframe_indices(self) -> tuple[int, ...]:
+        """Positions of the keyframes in the clip."""
+        return tuple(keyframe.index for keyframe in self.keyframes)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What is usable but looks wrong, one sentence each."""
         return tuple(

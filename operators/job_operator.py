@@ -1,5 +1,6 @@
 """Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Generator
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -30,13 +31,13 @@ class JobOperator:
     _scene_name: str = ""
     _slice_end: float = 0.0
 
+    @abstractmethod
     def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
         """The job; it must leave the scene as it was."""
-        raise NotImplementedError
 
+    @abstractmethod
     def finish(self, scene: bpy.types.Scene, result: Any) -> None:
         """Write the job's result into the scene."""
-        raise NotImplementedError
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.motion import Motion
 from .actions import assign_action, channelbag_for, existing_channelbag
@@ -13,6 +14,28 @@ from .keys import add_generated_keys, copy_keys, ensure_fcurve, remove_generated
 from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
 
 Array = NDArray[np.float64]
+
+
+def posture_columns(
+    armature_object: bpy.types.Object, postures: Posture
+) -> list[tuple[str, int, str, Array]]:
+    """What the F-curves of a batch of F postures hold: data path, array index, bone and (F,) values each.
+
+    Every bone keeps the rotation mode that the animator has chosen.
+
+    Raises:
+        InputError: A bone is missing, or the object is scaled unevenly.
+    """
+    rows = []
+    for channel in bone_channels(armature_object, postures):
+        mode = armature_object.pose.bones[channel.bone].rotation_mode
+        values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
+        if channel.location is not None:
+            values["location"] = channel.location
+        for name, columns in values.items():
+            path = bone_path(channel.bone, name)
+            rows += [(path, index, channel.bone, column) for index, column in enumerate(columns.T)]
+    return rows
 
 
 def bone_path(bone: str, channel: str) -> str:
@@ -53,21 +76,14 @@ def write_motion(
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
     """
-    channels = bone_channels(armature_object, motion.posture)
+    columns = posture_columns(armature_object, motion.posture)
     frames = motion.scene_frames if frames is None else frames
     if action is None:
         action = bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)
     remove_generated_keys(channelbag, moved_paths(armature_object, motion.body.skeleton))
-    for channel in channels:
-        mode = armature_object.pose.bones[channel.bone].rotation_mode
-        values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
-        if channel.location is not None:
-            values["location"] = channel.location
-        for name, columns in values.items():
-            path = bone_path(channel.bone, name)
-            for index, column in enumerate(columns.T):
-                add_generated_keys(channelbag, path, index, channel.bone, frames, column)
+    for path, index, bone, column in columns:
+        add_generated_keys(channelbag, path, index, bone, frames, column)
     if keyframe_action is not None:
         _copy_leaves(armature_object, motion.body.skeleton, keyframe_action, channelbag)
     assign_action(armature_object, action)

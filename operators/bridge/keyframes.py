@@ -13,11 +13,10 @@ from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
-from .bone_channels import bone_channels
-from .fcurves import bone_path, moved_paths
+from .fcurves import bone_path, moved_paths, posture_columns
 from .keys import animator_frames, set_posed_keys
 from .pose import read_posture
-from .rotation_modes import rotation_path, rotation_values
+from .rotation_modes import rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 Array = NDArray[np.float64]
@@ -141,12 +140,5 @@ def write_keyframes(
     frames = clip_frames[[keyframe.index for keyframe in keyframes]]
     channelbag = channelbag_for(action, armature_object)
     postures = Posture.stack([keyframe.posture for keyframe in keyframes])
-    for channel in bone_channels(armature_object, postures):
-        mode = armature_object.pose.bones[channel.bone].rotation_mode
-        values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
-        if channel.location is not None:
-            values["location"] = channel.location
-        for name, columns in values.items():
-            path = bone_path(channel.bone, name)
-            for index, column in enumerate(columns.T):
-                set_posed_keys(channelbag, path, index, channel.bone, frames, column)
+    for path, index, bone, column in posture_columns(armature_object, postures):
+        set_posed_keys(channelbag, path, index, bone, frames, column)
