@@ -54,6 +54,14 @@ def cross_matrix(vector: Array) -> Array:
     return np.stack(rows, axis=-2)
 
 
+def _tangent(rotation_vector: Array) -> tuple[Array, Array, NDArray[np.bool_], Array]:
+    """[v]x, the angle, whether it is too small for closed forms, and an angle that may be divided by."""
+    v = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    small = angle < SMALL_ANGLE
+    return cross_matrix(v), angle, small, np.where(small, 1.0, angle)
+
+
 def right_jacobian(rotation_vector: Array) -> Array:
     """J_r with Exp(v + dv) ≈ Exp(v) Exp(J_r dv): Solà (2018), eq. 143.
 
@@ -63,13 +71,9 @@ def right_jacobian(rotation_vector: Array) -> Array:
     Returns:
         (..., 3, 3).
     """
-    v = np.asarray(rotation_vector, dtype=np.float64)
-    angle = np.linalg.norm(v, axis=-1)[..., None, None]
-    small = angle < SMALL_ANGLE
-    safe = np.where(small, 1.0, angle)
+    K, angle, small, safe = _tangent(rotation_vector)
     first = np.where(small, 0.5 - angle**2 / 24.0, (1.0 - np.cos(safe)) / safe**2)
     second = np.where(small, 1.0 / 6.0 - angle**2 / 120.0, (safe - np.sin(safe)) / safe**3)
-    K = cross_matrix(v)
     return np.asarray(np.eye(3) - first * K + second * (K @ K))
 
 
@@ -82,14 +86,10 @@ def right_jacobian_inverse(rotation_vector: Array) -> Array:
     Returns:
         (..., 3, 3).
     """
-    v = np.asarray(rotation_vector, dtype=np.float64)
-    angle = np.linalg.norm(v, axis=-1)[..., None, None]
-    small = angle < SMALL_ANGLE
-    safe = np.where(small, 1.0, angle)
+    K, angle, small, safe = _tangent(rotation_vector)
     # (1 + cos) / (2 angle sin), written with the half angle so that it stays finite at π.
     closed = 1.0 / safe**2 - 1.0 / (2.0 * safe * np.tan(safe / 2.0))
     factor = np.where(small, 1.0 / 12.0 + angle**2 / 720.0, closed)
-    K = cross_matrix(v)
     return np.asarray(np.eye(3) + 0.5 * K + factor * (K @ K))
 
 

@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 
 ALONG, ACROSS = 8, 4
 RINGS, SPOKES = 2, 5
-SAMPLES = ALONG * ACROSS + 2 * RINGS * SPOKES
 TINY = 1e-9
 
 

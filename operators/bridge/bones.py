@@ -47,10 +47,6 @@ class BoneModel:
         """Whether the bone carries the body's place in the world."""
         return self.parent is None
 
-    def hinge_count(self, skeleton: Skeleton) -> int:
-        """Number of hinges the bone stands for: 0 for balls, 1 or 2 otherwise."""
-        return sum(skeleton.joints[i].kind is JointKind.HINGE for i in self.chain)
-
 
 def bone_models(body: Body) -> tuple[BoneModel, ...]:
     """The body's bones, parents first.
