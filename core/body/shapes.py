@@ -7,6 +7,7 @@ They start the calibration; the footage corrects them.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,8 +117,12 @@ class PieceStack:
         return np.asarray((pose.rotation[:, self.joint] @ direction[..., None])[..., 0])
 
 
+@lru_cache(maxsize=256)
 def segment_piece(body: Body, name: str) -> Piece:
-    """The volume of one of the skeleton's segments; KeyError for a segment without volume."""
+    """The volume of one of the skeleton's segments; KeyError for a segment without volume.
+
+    Kept for the bodies asked for last: calibration cuts markers from the same few volumes again and again.
+    """
     segment = next(s for s in body.skeleton.segments if s.name == name)
     start, end = body.local(segment.start), body.local(segment.end)
     if name == "head":

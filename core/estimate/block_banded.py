@@ -1,16 +1,18 @@
 """Symmetric systems in which each frame meets only its two neighbours on either side.
 
-LAPACK's band Cholesky factorisation solves them. Taken two frames at a time the factor is block-bidiagonal,
-and a backward recursion over its blocks gives the diagonal blocks of the inverse (the Rauch-Tung-Striebel
-smoother in information form; Särkkä 2013, *Bayesian Filtering and Smoothing*, ch. 8; Takahashi, Fagan &
-Chen 1973 for the selected inverse). Time and memory grow linearly with the clip.
+LAPACK's band Cholesky factorisation solves them. A backward recursion over the factor's frames gives the
+diagonal blocks of the inverse (the Rauch-Tung-Striebel smoother in information form; Särkkä 2013, *Bayesian
+Filtering and Smoothing*, ch. 8; Takahashi, Fagan & Chen 1973 for the selected inverse). Time and memory grow
+linearly with the clip.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve_banded, cholesky_banded, solve_triangular
+from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg.lapack import dtrtri
 
 Array = NDArray[np.float64]
 
@@ -67,15 +69,13 @@ class BlockBanded:
     def factorise(self) -> "Factor":
         """The Cholesky factorisation; LinAlgError where the matrix is not positive definite."""
         n = self.size
-        # An even number of frames, the last perhaps not there, makes pairs for the covariance.
-        band = np.zeros((self.frames + self.frames % 2, n, REACH * n + 1))  # (frame, column, row - column)
-        band[self.frames :, :, 0] = 1.0
-        row, column = np.tril_indices(n)
-        band[: self.frames, column, row - column] = self.diagonal[:, row, column]
-        row, column = np.indices((n, n))
-        band[: len(self.next), column, n + row - column] = np.swapaxes(self.next, -1, -2)
-        band[: len(self.after_next), :, REACH * n] = self.after_next
-        lower = band.reshape(-1, REACH * n + 1).T
+        width = REACH * n
+        band = np.zeros((self.frames, n, width + 1))  # (frame, column, row - column)
+        for column in range(n):
+            band[:, column, : n - column] = self.diagonal[:, column, column:]
+            band[: len(self.next), column, n - column : width - column] = self.next[:, column]
+        band[: len(self.after_next), :, width] = self.after_next
+        lower = band.reshape(-1, width + 1).T
         factor = cholesky_banded(lower, overwrite_ab=True, lower=True, check_finite=False)
         return Factor(self.frames, self.size, factor)
 
@@ -87,39 +87,39 @@ class Factor:
     frames: int
     size: int
     lower: Array
-    """(2 size + 1, padded frames * size) the lower factor by diagonals, as LAPACK keeps it."""
+    """(2 size + 1, frames * size) the lower factor by diagonals, as LAPACK keeps it."""
 
     def solve(self, vector: Array) -> Array:
         """The solution (F, size) for a right-hand side (F, size)."""
-        right = np.zeros((self.lower.shape[1] // self.size, self.size))
-        right[: self.frames] = vector
-        solution = cho_solve_banded((self.lower, True), right.ravel(), overwrite_b=True, check_finite=False)
-        return np.array(solution.reshape(-1, self.size)[: self.frames])
+        solution = cho_solve_banded((self.lower, True), vector.ravel(), check_finite=False)
+        return np.asarray(solution.reshape(-1, self.size))
 
     def covariance_blocks(self) -> Array:
         """The diagonal blocks (F, size, size) of the inverse."""
         n = self.size
-        pairs = self.lower.shape[1] // (2 * n)
-        blocks = np.zeros((2 * pairs, n, n))
-        below = np.zeros((2 * n, 2 * n))
-        for g in reversed(range(pairs)):
-            factor, coupling = self._pair(g)
-            # With L of this pair, G = C L⁻¹ below it and Σ of what follows: L⁻ᵀ (1 + Gᵀ Σ G) L⁻¹.
-            inverse = solve_triangular(factor, np.eye(2 * n), lower=True, check_finite=False)
-            gain = coupling @ inverse
-            covariance = inverse.T @ inverse + gain.T @ below @ gain
-            below = 0.5 * (covariance + covariance.T)
-            blocks[2 * g], blocks[2 * g + 1] = below[:n, :n], below[n:, n:]
-        return np.array(blocks[: self.frames])
+        blocks = np.empty((self.frames, n, n))
+        after = np.zeros((REACH * n, REACH * n))
+        for t in reversed(range(self.frames)):
+            own, beneath = self._column(t)
+            # With L this frame's block, G = C L⁻¹ beneath it and Σ of the two frames after it, their joint
+            # covariance has the blocks L⁻ᵀ L⁻¹ + Gᵀ Σ G, -Σ G and Σ.
+            inverse, _ = dtrtri(own, lower=1)
+            gain = beneath @ inverse
+            spread = after @ gain
+            covariance = inverse.T @ inverse + gain.T @ spread
+            blocks[t] = 0.5 * (covariance + covariance.T)
+            across = -spread[:n]
+            after[n:, n:] = after[:n, :n]
+            after[:n, :n], after[:n, n:], after[n:, :n] = blocks[t], across.T, across
+        return blocks
 
-    def _pair(self, index: int) -> tuple[Array, Array]:
-        """Of the factor: a pair's own block (2n, 2n), lower, and the one beneath it, upper triangular."""
-        width = REACH * self.size
-        columns = self.lower[:, index * width : (index + 1) * width]
-        row, column = np.tril_indices(width)
-        own = np.zeros((width, width))
-        own[row, column] = columns[row - column, column]
-        row, column = np.triu_indices(width)
-        beneath = np.zeros((width, width))
-        beneath[row, column] = columns[width + row - column, column]
-        return own, beneath
+    def _column(self, frame: int) -> tuple[Array, Array]:
+        """A frame's own block of the factor (n, n), lower, and the two beneath it (2n, n)."""
+        n = self.size
+        kept = self.lower.T[frame * n : (frame + 1) * n]
+        # Entry (row, column) lies `row - column` after the column's diagonal: a view with slanting columns.
+        step, entry = kept.strides
+        slanting = as_strided(kept, (n, (1 + REACH) * n), (step - entry, entry), writeable=False)
+        below = np.arange((1 + REACH) * n) - np.arange(n)[:, None]
+        rows = np.where((below >= 0) & (below <= REACH * n), slanting, 0.0).T
+        return rows[:n], rows[n:]
