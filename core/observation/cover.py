@@ -22,6 +22,8 @@ HIDDEN_DEPTH_M = 0.01
 """A part must lie this much nearer to hide another: neighbours share their joint's depth."""
 NEGLIGIBLE = 8.0
 """Softness widths after which a part's effect is nothing."""
+BLOCK = 256
+"""So many pieces at a time meet a part that may hide them, that a processor's cache holds their samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +79,17 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
     """
     seen = np.ones(depth.shape)
     frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)
-    if len(frame):
-        columns, rows = pixels[..., 0][frame, piece], pixels[..., 1][frame, piece]
-        shown = 1.0 - _hidden_share(columns, rows, depth[frame, piece], parts.pick(frame, part))
-        first = np.flatnonzero(np.diff(frame * len(own) + piece, prepend=-1))  # of each piece in each frame
-        seen[frame[first], piece[first]] = np.multiply.reduceat(shown, first, axis=0)
+    if not len(frame):
+        return seen
+    columns, rows = pixels[..., 0], pixels[..., 1]
+    shown = np.empty((len(frame), depth.shape[-1]))
+    for start in range(0, len(frame), BLOCK):
+        block = slice(start, start + BLOCK)
+        where = frame[block], piece[block]
+        picked = parts.pick(frame[block], part[block])
+        shown[block] = 1.0 - _hidden_share(columns[where], rows[where], depth[where], picked)
+    first = np.flatnonzero(np.diff(frame * len(own) + piece, prepend=-1))  # of each piece in each frame
+    seen[frame[first], piece[first]] = np.multiply.reduceat(shown, first, axis=0)
     return seen
 
 
@@ -107,25 +115,49 @@ def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
 def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Array:
     """How far one part hides samples (R, S) in R chosen frames."""
     axis = part.end - part.start
-    length = np.maximum(np.hypot(axis[:, 0], axis[:, 1]), 1e-6)[:, None]
-    across, down = axis[:, :1] / length, axis[:, 1:] / length
-    x, y = columns - part.start[:, :1], rows - part.start[:, 1:]
-    run = x * across + y * down
-    away = y * across - x * down
-    on_axis = np.clip(run, 0.0, length)
-    share = on_axis / length
-    past = run - on_axis
+    squared = np.maximum((axis * axis).sum(-1, keepdims=True), 1e-12)
+    along = axis / squared
+    away_from = axis * (0.5 / EDGE_SOFTNESS_PX / np.sqrt(squared))
+    # All places are counted in half softness widths from here on, as the logistic takes them.
+    half = np.maximum(part.half_width, 0.5) * (0.5 / EDGE_SOFTNESS_PX)
+    stretch = half / np.maximum(part.overshoot, 0.5) * np.sqrt(squared)
+    axis_depth = (part.depth + HIDDEN_DEPTH_M) * (0.5 / DEPTH_SOFTNESS_M)
 
-    def at(ends: Array) -> Array:
-        return np.asarray(ends[:, :1] + share * (ends[:, 1:] - ends[:, :1]))
+    share = _affine(columns, rows, along[:, :1], along[:, 1:], part.start)
+    away = _affine(columns, rows, -away_from[:, 1:], away_from[:, :1], part.start)
+    on_axis = np.clip(share, 0.0, 1.0)
+    share -= on_axis  # past either end, where `on_axis` is 0 or 1
+    share *= _between(stretch, on_axis)
+    share *= share
+    away *= away
+    away += share
+    inside = _between(half, on_axis)
+    inside -= np.sqrt(away, out=away)
+    nearer = depth * (0.5 / DEPTH_SOFTNESS_M)
+    nearer -= _between(axis_depth, on_axis)
+    hidden = _logistic_of_half(inside)
+    hidden *= _logistic_of_half(nearer)
+    return hidden
 
-    half = np.maximum(at(part.half_width), 0.5)
-    past *= half / np.maximum(at(part.overshoot), 0.5)
-    inside = half - np.sqrt(away * away + past * past)
-    nearer = depth - at(part.depth) - HIDDEN_DEPTH_M
-    return _logistic(inside / EDGE_SOFTNESS_PX) * _logistic(nearer / DEPTH_SOFTNESS_M)
+
+def _affine(columns: Array, rows: Array, right: Array, down: Array, origin: Array) -> Array:
+    """The function of image places (R, S) with slopes (R, 1) that vanishes at `origin` (R, 2)."""
+    value = columns * right
+    value += rows * down
+    value -= origin[:, :1] * right + origin[:, 1:] * down
+    return value
 
 
-def _logistic(x: Array) -> Array:
-    """1 / (1 + exp(-x)), by the hyperbolic tangent, which cannot overflow and is several times as fast."""
-    return np.asarray(0.5 + 0.5 * np.tanh(0.5 * x))
+def _between(ends: Array, share: Array) -> Array:
+    """The value at a share (R, S) of the way from one end's to the other's (R, 2)."""
+    value = share * (ends[:, 1:] - ends[:, :1])
+    value += ends[:, :1]
+    return value
+
+
+def _logistic_of_half(x: Array) -> Array:
+    """1 / (1 + exp(-2x)) in place, by the hyperbolic tangent, which cannot overflow and is fast."""
+    np.tanh(x, out=x)
+    x += 1.0
+    x *= 0.5
+    return x
