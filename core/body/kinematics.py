@@ -40,8 +40,7 @@ class Pose:
         moments = rotations.cross_matrix(self.origin[..., balls, :]) @ axes
         screws[..., 3:6, skeleton.ball_dofs] = np.moveaxis(axes, -3, -2)
         screws[..., 0:3, skeleton.ball_dofs] = np.moveaxis(moments, -3, -2)
-        local = np.array([skeleton.joints[joint].axis for joint in hinges]).reshape(-1, 3, 1)
-        axis = self.rotation[..., hinges, :, :] @ local  # (..., H, 3, 1)
+        axis = self.rotation[..., hinges, :, :] @ skeleton.hinge_axes[..., None]  # (..., H, 3, 1)
         moment = rotations.cross_matrix(self.origin[..., hinges, :]) @ axis
         screws[..., 3:6, skeleton.hinge_dofs] = np.swapaxes(axis[..., 0], -1, -2)
         screws[..., 0:3, skeleton.hinge_dofs] = np.swapaxes(moment[..., 0], -1, -2)
@@ -57,9 +56,13 @@ class Pose:
 
     def places_jacobian(self, joints: Sequence[int], world: Array) -> Array:
         """The same, (..., N, 3, D), of points `world` (..., N, 3), one fixed in each joint's frame."""
-        screws = self.screws[..., None, :, :]
-        linear = screws[..., 0:3, :] - rotations.cross_matrix(world) @ screws[..., 3:6, :]
-        return np.asarray(linear * self.posture.skeleton.moved_by[list(joints)][:, None, :])
+        # v + ω × p for all points in one product: the rows 1 and -[p]× with all screws.
+        unit = np.broadcast_to(np.eye(3), (*world.shape, 3))
+        rows = np.concatenate([unit, -rotations.cross_matrix(world)], axis=-1)
+        flat = rows.reshape(*world.shape[:-2], -1, 6) @ self.screws
+        jacobian = flat.reshape(*world.shape, -1)
+        jacobian *= self.posture.skeleton.moved_by[list(joints)][:, None, :]
+        return np.asarray(jacobian)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,21 +107,20 @@ class Body:
         return Pose(posture, rotation, origin)
 
     def _joint_rotations(self, posture: Posture) -> list[Array]:
-        turns: list[Array] = [np.eye(3)] * len(self.skeleton.joints)
-        for column, ball in enumerate(self.skeleton.ball_joints):
+        skeleton = self.skeleton
+        turns: list[Array] = [np.eye(3)] * len(skeleton.joints)
+        for column, ball in enumerate(skeleton.ball_joints):
             turns[ball] = posture.rotations[..., column, :, :]
-        for column, joint in enumerate(self.skeleton.hinge_joints):
-            axis = np.asarray(self.skeleton.joints[joint].axis)
-            turns[joint] = rotations.hinge(axis, posture.angles[..., column])
+        hinged = rotations.exponential(posture.angles[..., None] * skeleton.hinge_axes)
+        for column, joint in enumerate(skeleton.hinge_joints):
+            turns[joint] = hinged[..., column, :, :]
         return turns
 
     def points(self, pose: Pose) -> Array:
         """World places (..., P, 3) of the principal points [m]."""
-        places = [
-            pose.place(point.joint, local)
-            for point, local in zip(self.skeleton.points, self.point_places, strict=True)
-        ]
-        return np.stack(places, axis=-2)
+        joints = [point.joint for point in self.skeleton.points]
+        turned = pose.rotation[..., joints, :, :] @ self.point_places[..., None]
+        return np.asarray(pose.origin[..., joints, :] + turned[..., 0])
 
     def points_jacobian(self, pose: Pose) -> Array:
         """d points / d tangent, (..., P, 3, D) [m per m or rad]."""

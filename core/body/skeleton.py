@@ -120,6 +120,11 @@ class Skeleton:
         return np.asarray([self.dof_starts[i] for i in self.hinge_joints], dtype=np.intp)
 
     @cached_property
+    def hinge_axes(self) -> Array:
+        """(H, 3) unit axes of the hinges, the same in parent and child."""
+        return np.array([self.joints[i].axis for i in self.hinge_joints]).reshape(-1, 3)
+
+    @cached_property
     def moved_by(self) -> NDArray[np.bool_]:
         """(J, D) whether each degree of freedom moves each joint's frame."""
         moved = np.zeros((len(self.joints), self.dof_count), dtype=bool)

@@ -181,15 +181,19 @@ class Camera:
             velocity), in pixels per metre and per radian; NaN behind the camera.
         """
         x, y, depth = self._normalised(self.world_to_camera(points, frame))
-        near, zero = 1.0 / np.where(depth > 0.0, depth, np.nan), np.zeros_like(x)
+        near = 1.0 / np.where(depth > 0.0, depth, np.nan)
         # Depth is -Z, so moving along +Z brings the point nearer.
-        across = np.stack([near, zero, x * near, x * y, -1.0 - x * x, -y])
-        up = np.stack([zero, near, y * near, 1.0 + y * y, -x * y, x])
+        rates = np.zeros((2, 6, *x.shape))
+        across, up = rates
+        across[0], across[2], across[3], across[4], across[5] = near, x * near, x * y, -1.0 - x * x, -y
+        up[1], up[2], up[3], up[4], up[5] = near, y * near, 1.0 + y * y, -x * y, x
         if any(self.distortion):
             factor, slope = self._radial_factor(x * x + y * y)
             outward = 2.0 * slope * (x * across + y * up)
             across, up = factor * across + x * outward, factor * up + y * outward
-        return np.moveaxis(self.focal_px * np.stack([across, -up]), (0, 1), (-2, -1))
+            rates = np.stack([across, up])
+        rates *= self.focal_px * np.array([1.0, -1.0]).reshape(2, *[1] * (rates.ndim - 1))
+        return np.moveaxis(rates, (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the line of sight of each pixel.

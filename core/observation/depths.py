@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..body.kinematics import Body, Pose
+from ..body.rotations import cross
 from ..footage.camera import Camera
 
 Array = NDArray[np.float64]
@@ -34,8 +35,11 @@ def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
 
 def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
     """Derivative of the depths by the posture's tangent step, (..., P, D); arguments as `evaluate`."""
-    axis = camera.depth_jacobian(body.points(pose), _per_point(frame))  # (..., P, 3)
-    return np.asarray(np.einsum("...pi,...pid->...pd", axis, body.points_jacobian(pose)))
+    points = body.points(pose)
+    axis = camera.depth_jacobian(points, _per_point(frame))  # (..., P, 3)
+    # axis · (v + ω × p) is axis · v + (p × axis) · ω.
+    rows = np.concatenate([axis, cross(points, axis)], axis=-1) @ pose.screws
+    return np.asarray(rows * body.skeleton.moved_by[[point.joint for point in body.skeleton.points]])
 
 
 def _per_point(frame: ArrayLike | None) -> NDArray[np.intp] | None:

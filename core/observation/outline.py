@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.kinematics import Pose
+from ..body.rotations import cross
 from ..body.shapes import PieceStack
 from ..footage.camera import Camera
 
@@ -59,13 +60,6 @@ class Outline:
 
 def _dot(a: Array, b: Array) -> Array:
     return np.asarray(np.einsum("...i,...i->...", a, b))
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Cross product over the last axis; `numpy.cross` spends most of its time on generality."""
-    x, y, z = a[..., 0], a[..., 1], a[..., 2]
-    u, v, w = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
 def _unit(vector: Array) -> tuple[Array, Array]:

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.kinematics import Body, Pose
+from ..body.rotations import cross
 from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
 from .cover import covers, visible_share
-from .outline import TINY, Outline, cross, outline, view_pieces
+from .outline import TINY, Outline, outline, view_pieces
 
 Array = NDArray[np.float64]
 
@@ -92,6 +93,12 @@ class RegionModel:
         return np.repeat(np.arange(len(counts)), counts)
 
     @cached_property
+    def _first_pieces(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """The first piece of each marker, and all other pieces."""
+        _, first = np.unique(self._marker_of, return_index=True)
+        return first, np.setdiff1d(np.arange(len(self._marker_of)), first)
+
+    @cached_property
     def half_widths_m(self) -> Array:
         """(M,) mean half-width of the limb each marker sits on [m]."""
         return np.array(
@@ -137,20 +144,23 @@ class RegionModel:
         factor = np.where(hidden[:, self._marker_of, None], scale, seen)
         total = np.maximum(np.where(hidden, whole_area, visible_area), TINY)
         factor = factor / total[:, self._marker_of, None]
-        weight = factor * samples.area  # (F, Q, S), one in sum over a marker
-        centroid = self._per_marker((weight[:, :, None] @ pixels)[:, :, 0])
+        # The samples' weights, one in sum over a marker, alone and times their places about the centroid.
+        weighted = np.empty((*factor.shape[:2], 3, factor.shape[2]))
+        np.multiply(factor, samples.area, out=weighted[:, :, 0])
+        centroid = self._per_marker((weighted[:, :, :1] @ pixels)[:, :, 0])
         centred = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
-        moment = self._per_marker((weight[:, :, None] * centred) @ np.swapaxes(centred, -1, -2))
+        np.multiply(weighted[:, :, :1], centred, out=weighted[:, :, 1:])
+        moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centred, -1, -2))
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
-        return replace(prediction, **self._derive(samples, pose, frame, factor, centred, moment))
+        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centred, moment))
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
-        _, first = np.unique(self._marker_of, return_index=True)
+        first, others = self._first_pieces
         total = values[:, first]
-        for piece in np.setdiff1d(np.arange(values.shape[1]), first):
+        for piece in others:
             total[:, self._marker_of[piece]] += values[:, piece]
         return total
 
@@ -160,26 +170,30 @@ class RegionModel:
         pose: Pose,
         frame: NDArray[np.intp],
         factor: Array,
+        weighted: Array,
         centred: Array,
         moment: Array,
     ) -> dict[str, Array]:
         """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
-        `factor` (F, Q, S) turns a sample's area into its weight.
+        `factor` (F, Q, S) turns a sample's area into its weight; `weighted` (F, Q, 3, S) holds the weights,
+        alone and times `centred`.
         """
         count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
         flat = np.moveaxis(rates, 2, -1).reshape(*rates.shape[:2], 12, count)
-        x, y = centred[:, :, 0], centred[:, :, 1]
-        weights = np.stack([np.ones_like(x), x, y], axis=2) * (factor * samples.area)[:, :, None]
-        summed = (weights @ np.swapaxes(flat, -1, -2)).reshape(*weights.shape[:3], 2, 6)
+        summed = (weighted @ np.swapaxes(flat, -1, -2)).reshape(*weighted.shape[:3], 2, 6)
         mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
         rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
         # Turning also changes how much of the silhouette each sample stands for.
         middle = moment[:, self._marker_of]
-        spread = [centred[:, :, a] * centred[:, :, b] - middle[..., a, b, None] for a, b in MOMENTS]
-        effect = np.stack([x, y, *spread], axis=2) * factor[:, :, None]
+        effect = np.empty((*rows.shape[:3], count))
+        effect[:, :, :2] = centred
+        for row, (a, b) in enumerate(MOMENTS, start=2):
+            np.multiply(centred[:, :, a], centred[:, :, b], out=effect[:, :, row])
+            effect[:, :, row] -= middle[..., a, b, None]
+        effect *= factor[:, :, None]
         rows[..., 3:] += effect @ samples.area_rate
         moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
