@@ -1,4 +1,4 @@
-"""Curves over a common x axis as a picture, drawn as the project's own report is."""
+"""Curves over an axis, and pairs of values in rows, as pictures drawn the way the project's report is."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,6 +27,7 @@ from keymark.core.report.canvas import (  # noqa: E402
 Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 1200, 520
+ROW, ROW_NAMES = 24, 330
 COLORS = {"interpolation": GREY, "ekf": RIGHT, "map": LEFT}
 """Of what is compared, the same in all charts."""
 
@@ -52,6 +53,15 @@ class Labels:
     title: str
     x: str
     y: str
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A row of two values."""
+
+    name: str
+    first: float
+    second: float
 
 
 def draw_chart(
@@ -89,6 +99,37 @@ def draw_chart(
         _draw(axes, curve)
     axes.name(labels.title, labels.x, labels.y)
     _legend(axes, [curve for curve in curves if curve.name])
+    _write(name, canvas)
+
+
+def draw_pairs(name: str, title: str, methods: tuple[str, str], pairs: Sequence[Pair]) -> None:
+    """Draw rows of two methods' values into out/bench, with a dashed line where the first row's second is."""
+    upper, right = 54.0, WIDTH - 24.0
+    canvas = Canvas(WIDTH, round(upper) + ROW * len(pairs) + 40)
+    highest = max(max(pair.first, pair.second) for pair in pairs)
+    floor = upper + ROW * len(pairs)
+
+    def across(value: float) -> float:
+        return ROW_NAMES + value / (1.03 * highest) * (right - ROW_NAMES)
+
+    for tick in ticks(0.0, highest, 12):
+        canvas.line([[across(tick), upper], [across(tick), floor]], PALE)
+        canvas.text(f"{tick:g}", across(tick), floor + 18.0, 9.0, INK, "middle")
+    canvas.dashed([across(pairs[0].second), upper], [across(pairs[0].second), floor], ACCENT)
+    for row, pair in enumerate(pairs):
+        y = upper + ROW * (row + 0.5)
+        canvas.text(pair.name, ROW_NAMES - 12.0, y + 4.0, 9.0, INK, "right")
+        canvas.line([[across(pair.first), y], [across(pair.second), y]], GREY)
+        for method, value in zip(methods, (pair.first, pair.second), strict=True):
+            canvas.disc([across(value), y], 5.0, COLORS[method])
+    canvas.text(title, 16.0, 31.0, 12.0, INK)
+    for place, method in zip((right - 220.0, right - 60.0), methods, strict=True):
+        canvas.disc([place - 12.0, 26.5], 5.0, COLORS[method])
+        canvas.text(method, place, 31.0, 9.0, INK)
+    _write(name, canvas)
+
+
+def _write(name: str, canvas: Canvas) -> None:
     OUTPUT.mkdir(parents=True, exist_ok=True)
     write_png(str(OUTPUT / f"{name}.png"), canvas.image())
 

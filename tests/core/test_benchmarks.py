@@ -11,9 +11,18 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 
 from curves import needed_for  # noqa: E402
 from keyframing import exact_postures, hand_posed, keyed, spread_frames  # noqa: E402
+from mistakes import (  # noqa: E402
+    doubled_speed,
+    hidden,
+    mistimed,
+    posed_through_lens,
+    shifted,
+    with_segments,
+)
 from trials import Trial, read_trial  # noqa: E402
 
 FRAMES = 24
+HIPS = slice(7, 9)
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +59,61 @@ def test_the_best_interpolation_is_none_of_the_worse(trial: Trial) -> None:
     """It is the nearest to the truth of those that are tried."""
     every = [trial.score(points).mpjpe for points in trial.interpolated().values()]
     assert len(every) == 3 and trial.best_interpolation().mpjpe == min(every) < max(every)
+
+
+def test_shifted_frames_stay_in_the_clip_and_in_order() -> None:
+    """Each moves as far as it may; neighbours that would meet stay apart."""
+    assert shifted([0, 8, 16, 23], [2, -2, 1, -1], FRAMES).tolist() == [2, 6, 17, 22]
+    assert shifted([0, 8, 16, 23], [-2, 2, 2, 2], FRAMES).tolist() == [0, 10, 18, 23]
+    assert shifted([0, 1, 22, 23], [2, -2, 2, 1], FRAMES).tolist() == [2, 3, 22, 23]
+
+
+def test_mistimed_keyframes_keep_their_postures_and_the_frames_that_are_scored(trial: Trial) -> None:
+    """Only the frames at which the postures stand are other ones."""
+    late = mistimed(trial, [1, 1, 1, 1])
+    assert late.take.keyframe_indices == (1, 9, 17, 23) and late.unscored == (0, 8, 16, 23)
+    for before, after in zip(trial.take.keyframes, late.take.keyframes, strict=True):
+        assert after.posture is before.posture
+    assert late.best_interpolation().mpjpe > 1.1 * trial.best_interpolation().mpjpe
+
+
+def test_keyframes_posed_over_a_wrong_lens_look_the_same_in_the_picture(trial: Trial) -> None:
+    """The hips of keyframes and of the truth are as much deeper as the lens is longer."""
+    other = posed_through_lens(trial, 1.1)
+    index = list(trial.take.keyframe_indices)
+    posed = other.take.body.points(other.take.body.pose(other.take.keyframes[1].posture))
+    assert np.abs(posed - other.truth[index[1]]).max() < 1e-3
+    pixels = [one.take.camera.project(one.truth[:, HIPS].mean(axis=1))[0] for one in (trial, other)]
+    assert pixels[1] == pytest.approx(pixels[0], abs=1e-6)
+    depth = [one.take.camera.depth(one.truth[:, HIPS].mean(axis=1)) for one in (trial, other)]
+    assert depth[1] == pytest.approx(1.1 * depth[0])
+
+
+def test_other_segments_leave_the_posed_points_about_where_they_were(trial: Trial) -> None:
+    """Lengths are scaled, and no point of a keyframe moves further than lengths force it to."""
+    other = with_segments(trial, {"forearm.L": 1.05})
+    lengths = [one.take.body.actor.segments_m for one in (trial, other)]
+    assert lengths[1]["forearm.L"] == pytest.approx(1.05 * lengths[0]["forearm.L"])
+    assert lengths[1]["forearm.R"] == lengths[0]["forearm.R"]
+    points = [
+        one.take.body.points(one.take.body.pose(one.take.keyframes[1].posture)) for one in (trial, other)
+    ]
+    assert 1e-4 < np.abs(points[1] - points[0]).max() < 0.05 * lengths[0]["forearm.L"]
+
+
+def test_a_hidden_marker_is_nowhere_and_the_others_are_where_they_were(trial: Trial) -> None:
+    """For as long as it is hidden."""
+    gone = hidden(trial, 1, slice(4, 9)).tracks
+    assert not gone.visible[4:9, 1].any() and not gone.quality[4:9, 1].any()
+    assert np.array_equal(gone.visible[:4], trial.tracks.visible[:4]) and gone.visible[5, 2]
+
+
+def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> None:
+    """With the true postures of the frames that are left as keyframes."""
+    fast = doubled_speed(trial)
+    assert len(fast.truth) == fast.tracks.frame_count == fast.take.frame_count == FRAMES // 2
+    assert fast.tracks.time_s[-1] == pytest.approx(11 / 30.0)
+    assert fast.take.keyframe_indices == (0, 4, 8, 11)
+    assert doubled_speed(trial, every_keyframe=2).take.keyframe_indices == (0, 8, 11)
+    assert fast.best_interpolation().mpjpe_all < 60.0
+    assert np.isfinite(fast.estimated("map").points).all()
