@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from charts import COLORS, Curve, Labels, draw_chart
-from curves import needed_for
 from keyframing import exact_postures, hand_posed, keyed, spread_frames
 from takes import chosen_takes, write_results
+from threshold import needed_for
 from trials import Trial, read_trial
 
 PER_100_FRAMES = (3, 4, 5, 6, 8, 10, 14)

@@ -1,7 +1,9 @@
 """What the benchmarks compute before they print it."""
 
 import sys
+from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from _boot import ROOT
@@ -9,7 +11,8 @@ from _synthetic_take import write_synthetic_take
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-from curves import needed_for  # noqa: E402
+import charts  # noqa: E402
+from accuracy import measure, point_table  # noqa: E402
 from keyframing import exact_postures, hand_posed, keyed, spread_frames  # noqa: E402
 from mistakes import (  # noqa: E402
     doubled_speed,
@@ -19,6 +22,8 @@ from mistakes import (  # noqa: E402
     shifted,
     with_segments,
 )
+from takes import chosen_takes  # noqa: E402
+from threshold import needed_for  # noqa: E402
 from trials import Trial, read_trial  # noqa: E402
 
 FRAMES = 24
@@ -117,3 +122,35 @@ def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> Non
     assert doubled_speed(trial, every_keyframe=2).take.keyframe_indices == (0, 8, 11)
     assert fast.best_interpolation().mpjpe_all < 60.0
     assert np.isfinite(fast.estimated("map").points).all()
+
+
+def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder with truth is a take; what is neither that nor a known name is refused in a sentence."""
+    folder = str(trial.take.folder)
+    assert chosen_takes([folder]) == {"take": trial.take.folder}
+    with pytest.raises(SystemExit):
+        chosen_takes([folder, "nowhere"])
+    assert "nowhere is neither" in capsys.readouterr().err
+
+
+def test_a_point_is_as_far_off_as_all_points_are_on_average(trial: Trial) -> None:
+    """The errors of the points have the score as their mean, and the table has a row a method."""
+    found = measure(trial)
+    for one in found.values():
+        assert np.mean(list(one.points_mm.values())) == pytest.approx(one.score.mpjpe, abs=1e-3)
+    assert found["map"].score.coverage95 is not None and found["prior"].score.coverage95 is None
+    assert point_table({"take": {"exact": found}}).count("| exact |") == len(found) == 5
+
+
+def test_a_chart_shows_its_curves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The picture has the curve's colour where the values are, on a logarithmic axis."""
+    monkeypatch.setattr(charts, "OUTPUT", tmp_path)
+    x = np.array([2.0, 4.0, 8.0])
+    curve = charts.Curve("map", x, np.array([30.0, 20.0, 10.0]), charts.LEFT, "full")
+    labels = charts.Labels("error", "keyframes", "mm")
+    charts.draw_chart("chart", labels, [curve], level=25.0, x_ticks=(2, 4, 8))
+    image = cv2.imread(str(tmp_path / "chart.png")).astype(int)
+    blue = np.abs(image - charts.LEFT).max(axis=-1) < 30
+    middle = round(0.5 * (72 + 1200 - 24))  # four is halfway from two to eight
+    rows = np.flatnonzero(blue[:, middle])
+    assert len(rows) and 0.3 < rows.mean() / len(blue) < 0.6
