@@ -21,6 +21,8 @@ SHIFTS = (1, 2)
 LENSES = (0.9, 1.1)
 SEGMENTS = (0.95, 1.05)
 HIDDEN_FRAMES = 15
+PART = "-"
+"""What the name of a row begins with whose errors are those of a few frames."""
 MEASURES = ("mpjpe", "rooted")
 METHODS = ("interpolation", "map")
 
@@ -81,8 +83,8 @@ def _markers(trial: Trial) -> Iterator[Row]:
     there = tuple(sorted(outside | set(trial.unscored)))
     short = tuple(hidden(trial, marker, gap) for marker in markers)
     yield Row(f"a marker hidden for {HIDDEN_FRAMES} frames", short)
-    yield Row("- in these frames alone", tuple(replace(one, unscored=there) for one in short))
-    yield Row("- there, with nothing hidden", (replace(trial, unscored=there),))
+    yield Row(f"{PART} in these frames alone", tuple(replace(one, unscored=there) for one in short))
+    yield Row(f"{PART} there, with nothing hidden", (replace(trial, unscored=there),))
     yield Row("a marker hidden in all frames", tuple(hidden(trial, m, slice(None)) for m in markers))
 
 
@@ -129,7 +131,8 @@ def table(mean: dict[str, Errors], takes: dict[str, dict[str, Errors]]) -> str:
     ]
     for row, errors in mean.items():
         values = [*(errors["mpjpe"][method] for method in METHODS)]
-        cells = [row, *(f"{value:.1f}" for value in values), f"{errors['mpjpe']['map'] - first:+.1f}"]
+        more = "" if row.startswith(PART) else f"{errors['mpjpe']['map'] - first:+.1f}"
+        cells = [row, *(f"{value:.1f}" for value in values), more]
         cells += [f"{errors['rooted'][method]:.1f}" for method in METHODS]
         cells += [f"{found[row]['mpjpe']['map']:.1f}" for found in takes.values()]
         lines.append("| " + " | ".join(cells) + " |")
