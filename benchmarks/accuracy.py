@@ -1,73 +1,96 @@
 """Accuracy on every take with truth: what a user could do without the footage beside the project's methods.
 
-Usage: accuracy.py [NAME ...] with names of takes; by default all found. See README.md.
+Usage: accuracy.py [TAKE ...] [--plot] with names or folders of takes; by default all found. See README.md.
 """
 
+import argparse
 import json
+import re
 import sys
-from pathlib import Path
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from charts import COLORS, Curve, Labels, draw_chart
 from numpy.typing import NDArray
-from takes import load_project, take_names, write_results
+from takes import chosen_takes, load_project, write_results
+from trials import INTERPOLATIONS, Trial, read_trial
 
 load_project()
 
-from auto_clamped import interpolate_auto_clamped  # noqa: E402
-from keymark.core.body.posture import Posture  # noqa: E402
-from keymark.core.prior.interpolation import interpolate_linearly  # noqa: E402
-from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import reconstruct  # noqa: E402
-from keymark.core.score import Score, read_truth, score_points  # noqa: E402
-from keymark.core.take import Take, read_take  # noqa: E402
+from keymark.core.body.human import HUMAN  # noqa: E402
+from keymark.core.score import Score  # noqa: E402
 
 Array = NDArray[np.float64]
 
 KEYFRAMES = {"exact": "keyframes.json", "by hand": "keyframes_noisy.json"}
-METHODS = ("linear", "auto-clamped", "prior", "ekf", "map")
+ESTIMATES = ("ekf", "map")
+METHODS = (*INTERPOLATIONS, *ESTIMATES)
 MEASURES = ("mpjpe", "rooted", "depth", "worst_p95", "jitter", "skate", "coverage95")
+DRAWN = {"prior": "interpolation", "ekf": "ekf", "map": "map"}
+"""Methods whose error over time is drawn, and what of the charts' colours each has."""
 
 
-def measure(folder: Path, keyframes: Path) -> dict[str, Score]:
-    """Scores of all methods on one take with one file of keyframes."""
-    take = read_take(folder, keyframes)
-    whole_clip = run(reconstruct(take, "map"))
-    filtered = run(reconstruct(take, "ekf"))
-    count = len(whole_clip.motion.time_s)
-    truth = read_truth(folder / "truth.json", take.frame_start, count)
-    indices = [keyframe.index for keyframe in take.keyframes]
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """How far one method is from the truth of one take."""
 
-    def plain(posture: Posture) -> Score:
-        return score_points(_points(take, posture), truth, indices, take.camera)
+    score: Score
+    distance_mm: Array
+    """(F, 13) from the true points."""
+    points_mm: dict[str, float]
+    """Mean of that over the frames that are scored, by point."""
 
-    def estimated(points: Array, sigma_m: Array | None) -> Score:
-        return score_points(points, truth, indices, take.camera, sigma_m)
-
-    return {
-        "linear": plain(interpolate_linearly(take.keyframes, count)),
-        "auto-clamped": plain(interpolate_auto_clamped(take.keyframes, count)),
-        "prior": plain(whole_clip.interpolation.posture),
-        "ekf": estimated(filtered.motion.points, filtered.motion.sigma_m),
-        "map": estimated(whole_clip.motion.points, whole_clip.motion.sigma_m),
-    }
+    def to_dict(self) -> dict[str, Any]:
+        """The measures by name."""
+        return {**self.score.to_dict(), "points": self.points_mm}
 
 
-def _points(take: Take, posture: Posture) -> Array:
-    return take.body.points(take.body.pose(posture))
+Results = dict[str, dict[str, dict[str, Measured]]]
+"""By take, way of posing, and method."""
 
 
-def table(results: dict[str, dict[str, dict[str, Score]]]) -> str:
+def measure(trial: Trial) -> dict[str, Measured]:
+    """Errors of all methods on one take with one file of keyframes."""
+    found = {name: _held_against(trial, points) for name, points in trial.interpolated().items()}
+    for method in ESTIMATES:
+        motion = trial.estimated(method)
+        found[method] = _held_against(trial, motion.points, motion.sigma_m)
+    return found
+
+
+def _held_against(trial: Trial, points: Array, sigma_m: Array | None = None) -> Measured:
+    distance = 1e3 * np.linalg.norm(points - trial.truth, axis=-1)
+    free = np.delete(distance, trial.unscored, axis=0)
+    by_point = dict(zip(HUMAN.point_names, free.mean(axis=0).round(3).tolist(), strict=True))
+    return Measured(trial.score(points, sigma_m), distance, by_point)
+
+
+def draw(name: str, trial: Trial, found: dict[str, Measured]) -> None:
+    """The error of every frame as a picture, with dashed lines at the keyframes."""
+    frame = trial.take.frame_start + np.arange(len(trial.truth), dtype=np.float64)
+    curves = [
+        Curve(method, frame, found[method].distance_mm.mean(axis=1), COLORS[drawn])
+        for method, drawn in DRAWN.items()
+    ]
+    keyframes = [trial.take.frame_start + index for index in trial.take.keyframe_indices]
+    labels = Labels(f"Error over time: {name}", "scene frame; dashed: keyframes", "mean of 13 points [mm]")
+    file = "accuracy_" + re.sub(r"\W+", "_", name)
+    draw_chart(file, labels, curves, marks=keyframes)
+
+
+def table(results: Results) -> str:
     """All results as one Markdown table, with the mean over takes at its end."""
     lines = [
         "| take | keyframes | method | " + " | ".join(MEASURES) + " |",
         "|---" * 3 + "|---:" * len(MEASURES) + "|",
     ]
     for name, by_keyframes in results.items():
-        for posed, scores in by_keyframes.items():
-            lines += [_line(name, posed, method, score.to_dict()) for method, score in scores.items()]
+        for posed, found in by_keyframes.items():
+            lines += [_line(name, posed, method, one.score.to_dict()) for method, one in found.items()]
     for posed in KEYFRAMES:
         for method in METHODS:
-            scores = [found[posed][method].to_dict() for found in results.values() if posed in found]
+            scores = [found[posed][method].score.to_dict() for found in results.values() if posed in found]
             if scores:
                 lines.append(_line("**mean**", posed, method, {m: _mean(scores, m) for m in MEASURES}))
     return "\n".join(lines)
@@ -87,25 +110,47 @@ def _mean(scores: list[dict[str, float | None]], measure_name: str) -> float | N
     return float(np.mean(known)) if known else None
 
 
+def point_table(results: Results) -> str:
+    """Mean error of each point over all takes as Markdown."""
+    lines = [
+        "Mean error of each point [mm].",
+        "",
+        "| keyframes | method | " + " | ".join(HUMAN.point_names) + " |",
+        "|---" * 2 + "|---:" * len(HUMAN.point_names) + "|",
+    ]
+    for posed in KEYFRAMES:
+        for method in METHODS:
+            rows = [
+                list(found[posed][method].points_mm.values()) for found in results.values() if posed in found
+            ]
+            if rows:
+                means = " | ".join(f"{value:.1f}" for value in np.mean(rows, axis=0))
+                lines.append(f"| {posed} | {method} | {means} |")
+    return "\n".join(lines)
+
+
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
-    takes = take_names()
-    unknown = [name for name in arguments if name not in takes]
-    if unknown:
-        print(f"no take is called {', '.join(unknown)}; there are {', '.join(takes)}", file=sys.stderr)
-        return 2
-    results: dict[str, dict[str, dict[str, Score]]] = {}
-    for name in arguments or takes:
+    """Measure, print, write; draw where asked to."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
+    parser.add_argument("--plot", action="store_true", help="draw each take's error over time")
+    options = parser.parse_args(arguments)
+    results: Results = {}
+    for name, folder in chosen_takes(options.takes).items():
         results[name] = {}
         for posed, file in KEYFRAMES.items():
-            if (takes[name] / file).is_file():
+            if (folder / file).is_file():
                 print(f"{name}, keyframes {posed} ...", file=sys.stderr, flush=True)
-                results[name][posed] = measure(takes[name], takes[name] / file)
+                trial = read_trial(folder, folder / file)
+                results[name][posed] = measure(trial)
+                if options.plot:
+                    draw(f"{name}, {posed}", trial, results[name][posed])
     as_dictionaries = {
-        name: {posed: {m: score.to_dict() for m, score in scores.items()} for posed, scores in found.items()}
-        for name, found in results.items()
+        name: {posed: {m: one.to_dict() for m, one in found.items()} for posed, found in by_keyframes.items()}
+        for name, by_keyframes in results.items()
     }
-    write_results("accuracy", table(results), json.dumps(as_dictionaries, indent=1))
+    tables = f"{table(results)}\n\n{point_table(results)}"
+    write_results("accuracy", tables, json.dumps(as_dictionaries, indent=1))
     return 0
 
 

@@ -6,37 +6,22 @@ and centroids).
 """
 
 import argparse
-import importlib.util
 import json
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import cv2
 import numpy as np
+from clock import least_time
+from takes import ROOT, load_project
 
-ROOT = Path(__file__).resolve().parent.parent
 LARGE = (1280, 720)
 MISSED_PIXELS = 30
-REPEATS = 3
 
 
-def load_package() -> None:
-    """Load the repository's root as the package `keymark`, whatever its folder is called."""
-    if "keymark" in sys.modules:
-        return
-    spec = importlib.util.spec_from_file_location(
-        "keymark", ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-    )
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["keymark"] = module
-    spec.loader.exec_module(module)
-
-
-load_package()
+load_project()
 
 from keymark.core.footage.clip import Clip  # noqa: E402
 from keymark.core.footage.markers import MarkerStyle, learn_model, track_markers  # noqa: E402
@@ -90,16 +75,6 @@ def quality_rows(take: Path) -> list[str]:
             f"{np.mean(tracks.quality[seen, marker]):.2f}"
         )
     return rows
-
-
-def least_time(work: Callable[[], object]) -> float:
-    """The shortest processor time of a few runs in seconds."""
-    times = []
-    for _ in range(REPEATS):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def speed_row(take: Path) -> str:

@@ -1,11 +1,12 @@
 """Where the time and the memory of `keymark convert` go, and how both grow with the clip's length.
 
-Usage: speed.py [NAME] with the name of a take, by default the first found. Each row is a process of its own,
-so that start-up and peak memory are those of a user's call. See README.md beside this file.
+Usage: speed.py [TAKE] [--long] with the name or the folder of a take, by default the first found. Each row
+of the first table is a process of its own, so that start-up and peak memory are those of a user's call. With
+--long, ten minutes are converted instead, without Blender. See README.md beside this file.
 """
 
+import argparse
 import json
-import resource
 import subprocess
 import sys
 import tempfile
@@ -13,7 +14,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from takes import load_project, take_names, write_results
+from clock import least_time, peak_memory_mb
+from takes import chosen_takes, load_project, write_results
 
 REPEATS = (1, 10)
 """The clip's length in the two rows, in lengths of the take, played forwards and backwards in turn."""
@@ -64,50 +66,18 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     clock = StageClock()
     started = time.perf_counter() - began
     result = convert(folder, output, clock)  # type: ignore[arg-type]  # it needs no more of a console
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     frames = len(result.reconstruction.motion.time_s)
-    return {"frames": frames, "peak_mb": peak, "seconds": {**clock.seconds(), "start-up": started}}
-
-
-def lengthened(folder: Path, repeats: int, place: Path) -> Path:
-    """A take that plays `folder`'s clip `repeats` times, forwards and backwards in turn."""
-    load_project()
-    import cv2
-    from keymark.core.prior.keyframes import Keyframe
-    from keymark.core.take import Take, read_take, write_take
-
-    take = read_take(folder)
-    images, capture = [], cv2.VideoCapture(str(take.clip))
-    while True:
-        ok, image = capture.read()
-        if not ok:
-            break
-        images.append(image)
-    count = len(images)
-    place.mkdir()
-    video = cv2.VideoWriter(
-        str(place / "clip.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), take.fps, take.camera.resolution
-    )
-    keyframes = []
-    for turn in range(repeats):
-        backwards = turn % 2 == 1
-        for image in reversed(images) if backwards else images:
-            video.write(image)
-        for keyframe in take.keyframes:
-            index = count - 1 - keyframe.index if backwards else keyframe.index
-            keyframes.append(Keyframe(turn * count + index, keyframe.posture))
-    video.release()
-    keyframes.sort(key=lambda keyframe: keyframe.index)
-    long = Take(
-        place, place / "clip.mp4", take.fps, take.frame_start, count * repeats, take.camera, take.body,
-        take.markers, tuple(keyframes),
-    )  # fmt: skip
-    write_take(long, place)
-    return place
+    return {
+        "frames": frames,
+        "peak_mb": peak_memory_mb(),
+        "seconds": {**clock.seconds(), "start-up": started},
+    }
 
 
 def measure(folder: Path, repeats: int) -> dict[str, Any]:
     """Convert a take of `repeats` times its length in a process of its own."""
+    from long_clip import lengthened
+
     with tempfile.TemporaryDirectory() as temporary:
         place = Path(temporary)
         take = lengthened(folder, repeats, place / "take") if repeats > 1 else folder
@@ -136,18 +106,65 @@ def table(name: str, rows: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def processor_times(folder: Path) -> dict[str, float]:
+    """Processor time [ms a frame] on one core of decoding, of following the markers too, and of estimates."""
+    load_project()
+    import cv2
+    from keymark.core.footage.markers import track_markers
+    from keymark.core.progress import run
+    from keymark.core.reconstruct import expected_regions, reconstruct
+    from keymark.core.take import open_clip, read_take
+
+    cv2.setNumThreads(1)
+    take = read_take(folder)
+    clip = open_clip(take)
+    tracks = run(reconstruct(take, "interpolation")).tracks
+    expected = expected_regions(take, tracks.frame_count)
+    work = {
+        "decode": lambda: [index for index, _, _ in clip.frames()],
+        "extract": lambda: run(track_markers(clip, take.markers, expected)),
+        "map": lambda: run(reconstruct(take, "map", tracks)),
+        "ekf": lambda: run(reconstruct(take, "ekf", tracks)),
+    }
+    return {name: 1e3 * least_time(job) / tracks.frame_count for name, job in work.items()}
+
+
+def times_table(times: dict[str, float]) -> str:
+    """Processor times as Markdown, with what following the markers adds to decoding."""
+    titles = ("decode", "decode and extract", "ratio", "map", "ekf")
+    ratio = times["extract"] / times["decode"]
+    values = (times["decode"], times["extract"], ratio, times["map"], times["ekf"])
+    return "\n".join(
+        [
+            "Processor time on one core [ms a frame], the shortest of three runs; with learning the colours.",
+            "",
+            "| " + " | ".join(titles) + " |",
+            "|---:" * len(titles) + "|",
+            "| " + " | ".join(f"{value:.2f}" for value in values) + " |",
+        ]
+    )
+
+
 def main(arguments: list[str]) -> int:
     """Measure, print, write; with --once, convert once and print the durations."""
     if arguments[:1] == ["--once"]:
         print(json.dumps(convert_once(Path(arguments[1]), Path(arguments[2]))))
         return 0
-    takes = take_names()
-    name = arguments[0] if arguments else next(iter(takes))
-    if name not in takes:
-        print(f"no take is called {name}; there are {', '.join(takes)}", file=sys.stderr)
-        return 2
-    rows = [measure(takes[name], repeats) for repeats in REPEATS]
-    write_results("speed", table(name, rows), json.dumps({"take": name, "rows": rows}, indent=1))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("take", nargs="?", metavar="TAKE", help="name or folder of a take with truth")
+    parser.add_argument("--long", action="store_true", help="convert ten minutes, without Blender's files")
+    options = parser.parse_args(arguments)
+    name, folder = next(iter(chosen_takes([options.take] if options.take else []).items()))
+    if options.long:
+        import long_clip
+
+        row = long_clip.measure_long(folder)
+        write_results("speed_long", long_clip.table(name, row), json.dumps({"take": name, **row}, indent=1))
+        return 0
+    rows = [measure(folder, repeats) for repeats in REPEATS]
+    times = processor_times(folder)
+    results = {"take": name, "rows": rows, "processor_ms": times}
+    write_results("speed", f"{table(name, rows)}\n\n{times_table(times)}", json.dumps(results, indent=1))
     return 0
 
 

@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -30,6 +31,24 @@ def take_names() -> dict[str, Path]:
     if not found:
         raise SystemExit("no take with truth was found, not even the demonstration's")
     return found
+
+
+def chosen_takes(wanted: Sequence[str]) -> dict[str, Path]:
+    """Folders of the takes a person names, by name as in tables or by folder; all that are found if none."""
+    if not wanted:
+        return take_names()
+    chosen: dict[str, Path] = {}
+    for name in wanted:
+        if (Path(name) / "truth.json").is_file():
+            chosen[Path(name).resolve().name] = Path(name)
+        elif name in (known := take_names()):
+            chosen[name] = known[name]
+        else:
+            print(
+                f"{name} is neither a folder with truth.json nor one of {', '.join(known)}", file=sys.stderr
+            )
+            raise SystemExit(2)
+    return chosen
 
 
 def write_results(name: str, markdown: str, json_text: str) -> None:

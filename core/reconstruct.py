@@ -45,12 +45,14 @@ class Reconstruction:
     """What a person should know of the result, one sentence each."""
 
 
-def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
+def reconstruct(take: Take, method: str = "map", tracks: RegionTracks | None = None) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     Args:
         take: A validated take with at least two keyframes.
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
+        tracks: The markers' regions where an earlier reconstruction of the same clip has found them already;
+            the clip is then not opened, and no note speaks of it.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -61,11 +63,32 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
     Raises:
         InputError: The clip cannot be used, a colour matches nothing in it, or the method is unknown.
         ConversionError: No motion could be computed.
+        ValueError: The tracks are those of other markers.
     """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
+    notes, begun = take.notes, 0.0
+    if tracks is None:
+        tracks, of_the_clip = yield from _follow(take)
+        notes, begun = notes + of_the_clip, EXTRACTION_SHARE
+    else:
+        _check_tracks(take, tracks)
+    prior = interpolate(take.keyframes, tracks.frame_count)
+    baseline = _motion(take, tracks, prior, None, "interpolation")
+    motion = baseline
+    if method == "map":
+        motion = yield from _whole_clip(take, tracks, prior, begun)
+    elif method == "ekf":
+        motion = yield from _filtered(take, tracks, prior, begun)
+    yield Progress("Done", 1.0)
+    notes += _notes(tracks)
+    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), notes)
+
+
+def _follow(take: Take) -> Job[tuple[RegionTracks, tuple[str, ...]]]:
+    """The markers' regions in the take's clip, and what a person should know of the clip."""
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
@@ -74,15 +97,16 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
         "Following the markers", track_markers(clip, take.markers, expected), 0.0, EXTRACTION_SHARE
     )
     check_frame_count(take, tracks.frame_count)
-    prior = interpolate(take.keyframes, tracks.frame_count)
-    baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion = baseline
-    if method == "map":
-        motion = yield from _whole_clip(take, tracks, prior)
-    elif method == "ekf":
-        motion = yield from _filtered(take, tracks, prior)
-    yield Progress("Done", 1.0)
-    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), _notes(take, clip, tracks))
+    return tracks, _clip_notes(take, clip, tracks)
+
+
+def _check_tracks(take: Take, tracks: RegionTracks) -> None:
+    """Hold tracks that were found earlier against the take."""
+    names = tuple(style.name for style in take.markers)
+    if tracks.names != names:
+        raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
+    check_frame_count(take, tracks.frame_count)
+    check_in_front(take)
 
 
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
@@ -103,11 +127,11 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
     return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
-def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
+def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
     estimate = estimate_whole_clip(
         take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices
     )
-    result = yield from within("Estimating the motion", estimate, EXTRACTION_SHARE, 1.0)
+    result = yield from within("Estimating the motion", estimate, begun, 1.0)
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -116,9 +140,9 @@ def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]
     return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
 
 
-def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
+def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
     estimate = filter_clip(take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices)
-    result = yield from within("Filtering the motion", estimate, EXTRACTION_SHARE, 1.0)
+    result = yield from within("Filtering the motion", estimate, begun, 1.0)
     diagnostics = {
         "normalized_innovation_squared": result.normalized_innovation_squared,
         "row_count": result.row_count.astype(np.float64),
@@ -166,21 +190,25 @@ def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
     return spread
 
 
-def _notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
-    """Sentences on what may have gone wrong."""
-    notes = list(take.notes)
+def _clip_notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may be wrong with the clip."""
     rate = rate_note(take, clip)
-    if rate is not None:
-        notes.append(rate)
-    for marker, name in enumerate(tracks.names):
-        seen = int(tracks.visible[:, marker].sum())
-        if seen < 0.5 * tracks.frame_count:
-            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+    notes = [] if rate is None else [rate]
     if tracks.frame_count < clip.frame_count:
         notes.append(
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
             "decoded; it may be cut off"
         )
+    return tuple(notes)
+
+
+def _notes(tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may have gone wrong with the markers."""
+    notes = []
+    for marker, name in enumerate(tracks.names):
+        seen = int(tracks.visible[:, marker].sum())
+        if seen < 0.5 * tracks.frame_count:
+            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
     if tracks.variable_frame_rate:
         notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
     return tuple(notes)

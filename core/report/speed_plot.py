@@ -5,12 +5,12 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
-from .canvas import ACCENT, GREY, INK, LEFT, PALE, Canvas, Image, ticks
+from .axes import Axes
+from .canvas import ACCENT, INK, LEFT, Canvas, Image, ticks
 
 Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 1200, 420
-LEFT_EDGE, RIGHT_EDGE, UPPER_EDGE, LOWER_EDGE = 72, 24, 54, 52
 
 
 def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int) -> Image:
@@ -26,31 +26,19 @@ def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int
         (height, width, 3) picture.
     """
     canvas = Canvas(WIDTH, HEIGHT)
-    right, floor = WIDTH - RIGHT_EDGE, HEIGHT - LOWER_EDGE
     known = speed[np.isfinite(speed)]
     levels = ticks(0.0, max(float(known.max(initial=0.0)), 1e-3) * 1.05, 7)
     top = max(float(known.max(initial=0.0)) * 1.08, levels[-1], 1e-3)
-    last = max(len(speed) - 1, 1)
-
-    def place(index: float, value: float) -> tuple[float, float]:
-        share = index / last
-        return LEFT_EDGE + share * (right - LEFT_EDGE), floor - value / top * (floor - UPPER_EDGE)
-
-    for level in levels:
-        y = place(0.0, level)[1]
-        canvas.line([[LEFT_EDGE, y], [right, y]], PALE)
-        canvas.text(f"{level:g}", LEFT_EDGE - 9.0, y + 4.0, 9.0, INK, "right")
-    for frame in ticks(frame_start, frame_start + last, 14):
-        x = place(frame - frame_start, 0.0)[0]
-        canvas.line([[x, floor], [x, floor + 5.0]], GREY)
-        canvas.text(f"{frame:g}", x, floor + 19.0, 9.0, INK, "middle")
-    canvas.line([[LEFT_EDGE, UPPER_EDGE], [LEFT_EDGE, floor], [right, floor]], GREY, 1.2)
-    curve = np.array([place(index, value) for index, value in enumerate(speed)]).reshape(-1, 2)
-    canvas.line(curve, LEFT, 1.6)
+    last = frame_start + max(len(speed) - 1, 1)
+    axes = Axes(canvas, (frame_start, last), top)
+    axes.draw(ticks(frame_start, last, 14), levels)
+    curve = np.array([axes.place(frame_start + index, value) for index, value in enumerate(speed)])
+    canvas.line(curve.reshape(-1, 2), LEFT, 1.6)
     for index in sorted(keyframe_indices):
         value = float(speed[index]) if np.isfinite(speed[index]) else 0.0
-        _mark_keyframe(canvas, place(index, value), floor)
-    _title(canvas, right, floor)
+        _mark_keyframe(canvas, axes.place(frame_start + index, value), axes.floor)
+    axes.name("Speed of the markers over the clip", "scene frame", "sum of speeds [px/frame]")
+    _explain(canvas, axes.right)
     return canvas.image()
 
 
@@ -61,11 +49,8 @@ def _mark_keyframe(canvas: Canvas, at: tuple[float, float], floor: float) -> Non
     canvas.disc(at, 1.8, LEFT)
 
 
-def _title(canvas: Canvas, right: float, floor: float) -> None:
-    canvas.text("Speed of the markers over the clip", 16.0, 31.0, 12.0, INK)
+def _explain(canvas: Canvas, right: float) -> None:
     canvas.text("keyframe", right, 31.0, 9.0, INK, "right")
     at = right - canvas.text_width("keyframe") - 14.0
     canvas.ring([at, 26.5], 6.0, ACCENT, 1.8)
     canvas.disc([at, 26.5], 1.8, LEFT)
-    canvas.text("scene frame", 0.5 * (LEFT_EDGE + right), floor + 40.0, 9.0, INK, "middle")
-    canvas.vertical_text("sum of speeds [px/frame]", 26.0, 0.5 * (UPPER_EDGE + floor), 9.0, INK)

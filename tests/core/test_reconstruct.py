@@ -39,6 +39,20 @@ def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str
     assert error.mean() < 0.04
 
 
+def test_tracks_found_before_give_the_same_motion_without_the_clip(take: Take, tmp_path: Path) -> None:
+    """What one method has followed serves the others; tracks of other markers are refused."""
+    found = run(reconstruct(take, "interpolation")).tracks
+    seen: list[Progress] = []
+    again = run(reconstruct(replace(take, clip=tmp_path / "gone"), "map", found), seen.append)
+    assert again.tracks is found
+    assert np.array_equal(again.motion.points, run(reconstruct(take, "map")).motion.points)
+    assert [step.fraction for step in seen] == sorted(step.fraction for step in seen)
+    with pytest.raises(ValueError, match="not of the take's markers"):
+        run(reconstruct(replace(take, markers=take.markers[:2]), "map", found))
+    with pytest.raises(InputError, match="frame_count"):
+        run(reconstruct(replace(take, frame_count=25), "map", found))
+
+
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
     """A cancelled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))

@@ -1,0 +1,140 @@
+"""Long clips, made of a take's own: what ten minutes cost, and whether windows leave a seam."""
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from clock import peak_memory_mb
+from takes import load_project
+
+load_project()
+
+from keymark.core.estimate.whole_clip import WholeClipOptions, estimate_whole_clip  # noqa: E402
+from keymark.core.motion_file import write_motion  # noqa: E402
+from keymark.core.prior.interpolation import interpolate  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.progress import run  # noqa: E402
+from keymark.core.reconstruct import reconstruct  # noqa: E402
+from keymark.core.take import Take, open_clip, read_take, write_take  # noqa: E402
+
+LONG_FRAMES = 18_000
+"""Ten minutes at 30 frames a second."""
+SEAM_S = 60.0
+"""Length of the clip that is solved in windows and at once: three windows, and memory for one."""
+
+
+def lengthened(folder: Path, repeats: int, place: Path) -> Path:
+    """A take that plays `folder`'s clip `repeats` times, forwards and backwards in turn."""
+    take = read_take(folder)
+    images, capture = [], cv2.VideoCapture(str(take.clip))
+    while True:
+        ok, image = capture.read()
+        if not ok:
+            break
+        images.append(image)
+    count = len(images)
+    place.mkdir()
+    video = cv2.VideoWriter(
+        str(place / "clip.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), take.fps, take.camera.resolution
+    )
+    keyframes = []
+    for turn in range(repeats):
+        backwards = turn % 2 == 1
+        for image in reversed(images) if backwards else images:
+            video.write(image)
+        for keyframe in take.keyframes:
+            index = count - 1 - keyframe.index if backwards else keyframe.index
+            keyframes.append(Keyframe(turn * count + index, keyframe.posture))
+    video.release()
+    keyframes.sort(key=lambda keyframe: keyframe.index)
+    long = Take(
+        place, place / "clip.mp4", take.fps, take.frame_start, count * repeats, take.camera, take.body,
+        take.markers, tuple(keyframes),
+    )  # fmt: skip
+    write_take(long, place)
+    return place
+
+
+def measure_long(folder: Path) -> dict[str, Any]:
+    """Convert ten minutes, without Blender's files, in a process of its own; and look for a seam in one."""
+    short = read_take(folder)
+    frames, fps = len(open_clip(short).time_stamps()), short.fps
+    with tempfile.TemporaryDirectory() as temporary:
+        place = Path(temporary)
+        take = lengthened(folder, math.ceil(LONG_FRAMES / frames), place / "long")
+        command = [sys.executable, __file__, str(take), str(place / "motion.json")]
+        done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        if done.returncode:
+            raise SystemExit(done.stderr)
+        row: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+        minute = lengthened(folder, math.ceil(SEAM_S * fps / frames), place / "minute")
+        return {**row, **measure_seam(minute)}
+
+
+def measure_seam(folder: Path) -> dict[str, float]:
+    """How far [mm] any point of a motion solved in windows is from the same solved at once."""
+    take = read_take(folder)
+    tracks = run(reconstruct(take, "interpolation")).tracks
+    prior = interpolate(take.keyframes, tracks.frame_count)
+
+    def points(options: WholeClipOptions) -> np.ndarray:
+        job = estimate_whole_clip(
+            take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices, options
+        )
+        return take.body.points(take.body.pose(run(job).posture))
+
+    at_once = points(WholeClipOptions(window_s=2.0 * tracks.frame_count / take.fps))
+    apart = np.linalg.norm(points(WholeClipOptions()) - at_once, axis=-1)
+    return {
+        "seam_frames": tracks.frame_count,
+        "seam_largest_mm": 1e3 * float(apart.max()),
+        "seam_at_frame": int(apart.max(axis=-1).argmax()),
+    }
+
+
+def convert_long(folder: Path, output: Path) -> dict[str, Any]:
+    """Reconstruct and write the motion in this process; by stage, processor time [s] and peak memory [MB]."""
+    seconds: dict[str, float] = {}
+    peak_mb: dict[str, float] = {}
+    began = time.process_time()
+
+    def ended(stage: str) -> None:
+        seconds[stage] = time.process_time() - began - sum(seconds.values())
+        peak_mb[stage] = peak_memory_mb()
+
+    take = read_take(folder)
+    tracks = run(reconstruct(take, "interpolation")).tracks
+    ended("extract")
+    motion = run(reconstruct(take, "map", tracks)).motion
+    ended("estimate")
+    write_motion(motion, output)
+    ended("write")
+    return {"frames": len(motion.time_s), "seconds": seconds, "peak_mb": peak_mb}
+
+
+def table(name: str, row: dict[str, Any]) -> str:
+    """A long clip's costs as Markdown."""
+    stages, frames = list(row["seconds"]), row["frames"]
+    cells = [str(frames), *(f"{1e3 * row['seconds'][stage] / frames:.2f}" for stage in stages)]
+    cells += [*(f"{row['peak_mb'][stage]:.0f}" for stage in stages), f"{row['seam_largest_mm']:.3f}"]
+    titles = ["frames", *stages, *(f"peak by {stage}" for stage in stages), "seam"]
+    return "\n".join(
+        [
+            f"Take {name} over and over; processor time [ms a frame], most memory so far [MB], seam [mm].",
+            "",
+            "| " + " | ".join(titles) + " |",
+            "|---:" * len(titles) + "|",
+            "| " + " | ".join(cells) + " |",
+        ]
+    )
+
+
+if __name__ == "__main__":
+    print(json.dumps(convert_long(Path(sys.argv[1]), Path(sys.argv[2]))))

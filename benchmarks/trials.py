@@ -1,0 +1,69 @@
+"""One take to try methods on: its markers are followed once, and what is tried is held against its truth."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from takes import load_project
+
+load_project()
+
+from auto_clamped import interpolate_auto_clamped  # noqa: E402
+from keymark.core.footage.tracks import RegionTracks  # noqa: E402
+from keymark.core.motion import Motion  # noqa: E402
+from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
+from keymark.core.progress import run  # noqa: E402
+from keymark.core.reconstruct import reconstruct  # noqa: E402
+from keymark.core.score import Score, read_truth, score_points  # noqa: E402
+from keymark.core.take import Take, read_take  # noqa: E402
+
+Array = NDArray[np.float64]
+
+INTERPOLATIONS = {
+    "linear": interpolate_linearly,
+    "auto-clamped": interpolate_auto_clamped,
+    "prior": interpolate,
+}
+"""What a user could do without the footage; README.md says what each is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A take as a method is given it, and the truth, which the method is not given."""
+
+    take: Take
+    tracks: RegionTracks
+    truth: Array
+    """(F, 13, 3) true points [m]."""
+    unscored: tuple[int, ...]
+    """Frames, from 0, that count in no mean, as those given as keyframes."""
+
+    def interpolated(self) -> dict[str, Array]:
+        """Points (F, 13, 3) [m] of every interpolation of the keyframes."""
+        body, keyframes, count = self.take.body, self.take.keyframes, len(self.truth)
+        return {
+            name: body.points(body.pose(interpolation(keyframes, count)))
+            for name, interpolation in INTERPOLATIONS.items()
+        }
+
+    def estimated(self, method: str) -> Motion:
+        """The motion by `map` or `ekf`."""
+        return run(reconstruct(self.take, method, self.tracks)).motion
+
+    def score(self, points: Array, sigma_m: Array | None = None) -> Score:
+        """How far points (F, 13, 3) are from the truth."""
+        return score_points(points, self.truth, self.unscored, self.take.camera, sigma_m)
+
+    def best_interpolation(self) -> Score:
+        """The score of the interpolation that happens to be nearest to the truth."""
+        scores = [self.score(points) for points in self.interpolated().values()]
+        return min(scores, key=lambda score: score.mpjpe)
+
+
+def read_trial(folder: Path, keyframes: Path | None = None) -> Trial:
+    """A take with its own keyframes, or with those of a file, after following its markers."""
+    take = read_take(folder, keyframes)
+    tracks = run(reconstruct(take, "interpolation")).tracks
+    truth = read_truth(folder / "truth.json", take.frame_start, tracks.frame_count)
+    return Trial(take, tracks, truth, take.keyframe_indices)
