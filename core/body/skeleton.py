@@ -135,6 +135,27 @@ class Skeleton:
         return moved
 
     @cached_property
+    def limbs(self) -> tuple[NDArray[np.intp], ...]:
+        """Degrees of freedom by part of the body: first the trunk, then each chain of joints that leaves it.
+
+        The trunk are the joints that others branch from.
+        """
+        children = np.bincount([joint.parent for joint in self.joints[1:]], minlength=len(self.joints))
+        part: list[int] = []
+        parts = 1
+        for joint in self.joints:
+            below_trunk = joint.parent >= 0 and part[joint.parent] > 0
+            if below_trunk:
+                part.append(part[joint.parent])
+            elif joint.parent < 0 or children[len(part)] > 1:
+                part.append(0)
+            else:
+                part.append(parts)
+                parts += 1
+        owner = np.repeat(part, [joint.dof_count for joint in self.joints])
+        return tuple(np.flatnonzero(owner == index) for index in range(parts))
+
+    @cached_property
     def limits(self) -> Array:
         """(D, 2) lower and upper bound of each component of the posture vector [m, rad]."""
         bounds = np.full((self.dof_count, 2), [-np.inf, np.inf])

@@ -57,6 +57,29 @@ class BlockBanded:
         for left, right in zip(turned, jacobians[1:], strict=False):
             self.next[:rows, :n, :n] += left @ right
 
+    def add_combination(self, columns: slice, coefficients: tuple[Array | float, ...], information: Array) -> None:
+        """Add independent rows, each a combination of one unknown over consecutive frames: Σ_k c_k x[t + k].
+
+        Args:
+            columns: The n unknowns, one row for each in every frame.
+            coefficients: c_k for the K + 1 frames of a row, at most three, each a number or (R, 1) or (R, n).
+            information: Inverse variance of the rows, broadcastable to (R, n), R = F - K.
+        """
+        index = np.arange(self.size)[columns]
+        rows = self.frames - len(coefficients) + 1
+        if rows <= 0:
+            return
+        shape = (rows, len(index))
+        weight = np.broadcast_to(information, shape)
+        parts = [np.broadcast_to(c, shape) for c in coefficients]
+        for first, left in enumerate(parts):
+            touched = slice(first, first + rows)
+            self.diagonal[touched, index, index] += weight * left**2
+            if first + 1 < len(parts):
+                self.next[touched, index, index] += weight * left * parts[first + 1]
+            if first + REACH < len(parts):
+                self.after_next[touched, columns] += weight * left * parts[first + REACH]
+
     def multiply(self, vector: Array) -> Array:
         """The product with a vector (F, size)."""
         result = (self.diagonal @ vector[..., None])[..., 0]

@@ -1,6 +1,6 @@
 """The unknowns of a whole clip: each frame's deviation from the prior and the slow biases of its features."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,8 +16,9 @@ Array = NDArray[np.float64]
 class ClipState:
     """A point of the whole clip's estimation problem, with N = D + B unknowns a frame.
 
-    The first D unknowns are the deviation δ from the prior, `posture = prior.plus(deviation)`; the
-    others are biases of image features.
+    The first D unknowns z describe the deviation δ = L z from the prior, `posture = prior.plus(deviation)`;
+    the factor L makes their accelerations independent and of unit size. The others are biases of image
+    features.
     """
 
     body: Body
@@ -25,20 +26,27 @@ class ClipState:
     """A batch of F postures."""
     frame: NDArray[np.intp]
     """(F,) their places in the clip, by which a moving camera knows its pose."""
-    deviation: Array
-    """(F, D) [m, rad]."""
+    factor: Array
+    """(D, D) the matrix L [m, rad]."""
+    variation: Array
+    """(F, D) the unknowns z."""
     bias: Array
     """(F, B) [px]."""
 
     @property
     def frames(self) -> int:
         """Number of frames F."""
-        return len(self.deviation)
+        return len(self.variation)
 
     @property
     def unknowns(self) -> Array:
-        """(F, N) deviation and bias side by side."""
-        return np.concatenate([self.deviation, self.bias], axis=1)
+        """(F, N) variation and bias side by side."""
+        return np.concatenate([self.variation, self.bias], axis=1)
+
+    @cached_property
+    def deviation(self) -> Array:
+        """(F, D) deviation δ from the prior [m, rad]."""
+        return self.variation @ self.factor.T
 
     @cached_property
     def posture(self) -> Posture:
@@ -52,11 +60,19 @@ class ClipState:
 
     @cached_property
     def chain(self) -> Array:
-        """(F, D, D) takes Jacobians by a posture's own tangent to Jacobians by its deviation."""
-        return self.prior.plus_jacobian(self.deviation)
+        """(F, D, D) takes Jacobians by a posture's own tangent to Jacobians by the unknowns z."""
+        return np.asarray(self.prior.plus_jacobian(self.deviation) @ self.factor)
 
-    def stepped(self, step: Array) -> "ClipState":
-        """The state a step (F, N) away."""
-        count = self.deviation.shape[1]
-        deviation, bias = self.deviation + step[:, :count], self.bias + step[:, count:]
-        return ClipState(self.body, self.prior, self.frame, deviation, bias)
+    def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
+        """The state a step (F, N) away, and how far its postures moved.
+
+        Args:
+            step: Step of all unknowns.
+            largest: A frame whose deviation would change by more in any component is held back to it.
+        """
+        count = self.variation.shape[1]
+        moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)
+        held = np.minimum(1.0, largest / np.maximum(moved, 1e-12))
+        variation = self.variation + step[:, :count] * held[:, None]
+        bias = self.bias + step[:, count:]
+        return replace(self, variation=variation, bias=bias), float((moved * held).max())

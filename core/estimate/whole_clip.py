@@ -1,10 +1,10 @@
 """Method `map`: the most probable postures of the whole clip at once (maximum a posteriori).
 
 Gauss-Newton over all frames, which is the iterated Kalman smoother (Bell 1994, *The iterated Kalman
-smoother as a Gauss-Newton method*). The unknown is the deviation δ from the prior: smooth over time, of
-natural size, near zero at keyframes by as much as they are trusted; the regions, the prior's depths, feet
-at rest and the hinges' ranges pull on it. Image noise is annealed, so that early steps do not lock on to
-a wrong visibility.
+smoother as a Gauss-Newton method*). The unknown is the deviation δ from the prior: smooth over time but for
+bursts, as large as the keyframes' own differences suggest, near zero at keyframes by as much as they are
+trusted; the regions, the prior's depths, feet at rest and the hinges' ranges pull on it. Image noise is
+annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from collections.abc import Generator
@@ -19,41 +19,34 @@ from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
 from ..observation.regions import MarkerPlacement, RegionModel
+from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
+from .terms.smoothness import SmoothnessTerm
 from .terms.stillness import StillnessTerm
 from .terms.term import NormalEquations, Term
 from .windows import Window, windows
 
 Array = NDArray[np.float64]
 
-TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
 LARGEST_STEP = 0.5
 """No unknown of the posture moves further in one step [m, rad]."""
-SETTLED = 1e-3
+SETTLED = 3e-3
+"""The estimate has settled once no unknown of any posture moves further in a step [m, rad]."""
 FOOT_POINTS = ("ankle.L", "ankle.R")
-REFERENCE_STEP_S = 1.0 / 30.0
-
-
-@dataclass(frozen=True)
-class MotionModel:
-    """How the deviation from the prior behaves over time, in shares of its natural size."""
-
-    acceleration_share: float = 0.25
-    """Standard deviation of the second difference at 30 frames a second."""
-    size_share: float = 4.0
-    """Standard deviation of the deviation itself: weak, for what nothing else determines."""
+LARGEST_VARIATION = 20.0
+"""Usual size of the deviation itself, in usual accelerations: weak, for what nothing else determines."""
 
 
 @dataclass(frozen=True)
 class WholeClipOptions:
     """What the whole-clip estimate believes, and how long a stretch it solves at once."""
 
-    motion: MotionModel = field(default_factory=MotionModel)
     regions: RegionNoise = field(default_factory=RegionNoise)
     window_s: float = 20.0
     """Longer clips are solved in windows of about this length [s] ..."""
@@ -110,6 +103,7 @@ def estimate_whole_clip(
     width_px = limb_widths(model, prior.translation, frame)
     index = np.array(keyframe_indices, dtype=np.intp)
     evidence = read_keyframes(model, options.regions, observed[index], width_px[index], prior[index], index)
+    factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     pace = float(np.median(step_s)) if len(step_s) else REFERENCE_STEP_S
     parts: list[tuple[Posture, Array, Array]] = []
@@ -119,6 +113,7 @@ def estimate_whole_clip(
             body,
             camera,
             evidence,
+            factor,
             prior[window.frames],
             frame[window.frames],
             observed[window.frames],
@@ -148,6 +143,8 @@ class _Problem:
     body: Body
     camera: Camera
     evidence: KeyframeEvidence
+    factor: Array
+    """(D, D) of the deviation's accelerations."""
     prior: Posture
     frame: NDArray[np.intp]
     observed: ObservedRegions
@@ -161,39 +158,40 @@ class _Problem:
 
     def __post_init__(self) -> None:
         skeleton = self.body.skeleton
-        frames, unknowns = len(self.frame), self.observed.quality.shape[1] * FEATURES
+        frames, biases = len(self.frame), self.observed.quality.shape[1] * FEATURES
         self.state = ClipState(
             self.body,
             self.prior,
             self.frame,
+            self.factor,
             np.zeros((frames, skeleton.dof_count)),
-            np.zeros((frames, unknowns)),
+            np.zeros((frames, biases)),
         )
+        pace = float(np.median(self.step_s)) / REFERENCE_STEP_S if len(self.step_s) else 1.0
         prior_depth = depths.evaluate(self.body, self.camera, self.body.pose(self.prior), self.frame)
         feet = tuple(skeleton.point_names.index(name) for name in FOOT_POINTS)
         self.terms: list[Term] = [
             self._quadratic(),
+            SmoothnessTerm(pace**1.5),
             RegionTerm(self.evidence.model, self.observed, self.options.regions, self.width_px),
             DepthTerm(self.camera, prior_depth),
             LimitTerm(),
-            StillnessTerm(feet, self.step_s),
+            StillnessTerm(self.camera, feet, self.step_s),
         ]
 
     def solve(self) -> Generator[float, None, None]:
         """Gauss-Newton with annealed image noise; yields the fraction done."""
-        dofs = self.state.deviation.shape[1]
         for i, temperature in enumerate(TEMPERATURES):
             equations = self._equations(temperature)
             step = equations.matrix.factorise().solve(-equations.gradient)
-            step[:, :dofs] = np.clip(step[:, :dofs], -LARGEST_STEP, LARGEST_STEP)
-            self.state = self.state.stepped(step)
+            self.state, moved = self.state.stepped(step, LARGEST_STEP)
             yield (i + 1) / len(TEMPERATURES)
-            if temperature == 1.0 and np.abs(step[:, :dofs]).max() < SETTLED:
+            if temperature == 1.0 and moved < SETTLED:
                 break
 
     def kept(self, window: Window) -> tuple[Posture, Array, Array]:
         """Postures, their covariance and the centroids' residuals of the frames a window keeps."""
-        state, dofs = self.state, self.state.deviation.shape[1]
+        state, dofs = self.state, self.state.variation.shape[1]
         blocks = self._equations(1.0).matrix.factorise().covariance_blocks()[window.kept, :dofs, :dofs]
         chain = state.chain[window.kept]
         covariance = np.asarray(chain @ blocks @ np.swapaxes(chain, -1, -2), dtype=np.float64)
@@ -211,17 +209,15 @@ class _Problem:
         return equations
 
     def _quadratic(self) -> QuadraticTerm:
-        """Smoothness of the deviation, trust in keyframes, and the biases' slow drift."""
-        skeleton, motion, noise = self.body.skeleton, self.options.motion, self.options.regions
-        dofs, frames = skeleton.dof_count, len(self.frame)
+        """The deviation's size, trust in keyframes, and the biases' slow drift."""
+        noise = self.options.regions
+        dofs, frames = self.body.skeleton.dof_count, len(self.frame)
         size = noise.bias_std(self.width_px).reshape(frames, -1)
         builder = QuadraticBuilder(frames, dofs + size.shape[1])
         posture, bias = slice(0, dofs), slice(dofs, None)
-        natural = skeleton.deviations
-        pace = np.median(self.step_s) / REFERENCE_STEP_S if len(self.step_s) else 1.0
-        builder.add(posture, (1.0, -2.0, 1.0), motion.acceleration_share * natural * pace**1.5)
-        builder.add(posture, (1.0,), motion.size_share * natural)
-        builder.add_blocks(self.keyframe_frames, self.evidence.information[self.keyframes])
+        builder.add(posture, (1.0,), LARGEST_VARIATION)
+        information = self.factor.T @ self.evidence.information[self.keyframes] @ self.factor
+        builder.add_blocks(self.keyframe_frames, information)
         kept = np.exp(-self.step_s / noise.bias_time_s)[:, None]
         builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))
         first = np.full_like(size, np.inf)

@@ -21,6 +21,5 @@ class LimitTerm:
         lower, upper = skeleton.limits[hinges].T
         angles = state.posture.angles
         excess = (angles - np.clip(angles, lower, upper)) / self.std_rad
-        jacobian = np.zeros((state.frames, len(hinges), skeleton.dof_count))
-        jacobian[:, np.arange(len(hinges)), hinges] = (excess != 0.0) / self.std_rad
-        equations.add_rows(excess, jacobian)
+        past = (excess != 0.0) / self.std_rad
+        equations.add_rows(excess, state.chain[:, hinges] * past[..., None])

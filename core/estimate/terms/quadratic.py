@@ -1,11 +1,11 @@
-"""Terms that are quadratic in the unknowns, hence built once: smoothness, posed keyframes, biases."""
+"""Terms that are quadratic in the unknowns, hence built once: posed keyframes, biases, weak priors."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..block_banded import REACH, BlockBanded
+from ..block_banded import BlockBanded
 from ..clip_state import ClipState
 from .term import NormalEquations
 
@@ -30,28 +30,15 @@ class QuadraticBuilder:
         """No rows yet."""
         self.matrix = BlockBanded(frames, size)
 
-    def add(self, columns: slice, coefficients: tuple[Array | float, ...], std: Array) -> None:
-        """Add one row a frame and unknown: (Σ_k c_k x[t + k]) / std.
+    def add(self, columns: slice, coefficients: tuple[Array | float, ...], std: Array | float) -> None:
+        """Add one row a frame and unknown, as `BlockBanded.add_combination` does.
 
         Args:
             columns: The unknowns.
-            coefficients: c_k for the K + 1 frames of a row, at most three, each a number or (R, 1) or (R, n).
-            std: Standard deviation, broadcastable to (R, n), R = F - K; infinite switches a row off.
+            coefficients: Of the consecutive frames.
+            std: Standard deviation; infinite switches a row off.
         """
-        index = np.arange(self.matrix.size)[columns]
-        rows = self.matrix.frames - len(coefficients) + 1
-        if rows <= 0:
-            return
-        shape = (rows, len(index))
-        information = np.broadcast_to(std, shape) ** -2.0
-        parts = [np.broadcast_to(c, shape) for c in coefficients]
-        for first, left in enumerate(parts):
-            touched = slice(first, first + rows)
-            self.matrix.diagonal[touched, index, index] += information * left**2
-            if first + 1 < len(parts):
-                self.matrix.next[touched, index, index] += information * left * parts[first + 1]
-            if first + REACH < len(parts):
-                self.matrix.after_next[touched, columns] += information * left * parts[first + REACH]
+        self.matrix.add_combination(columns, coefficients, np.asarray(std, dtype=np.float64) ** -2.0)
 
     def add_blocks(self, frames: NDArray[np.intp], information: Array) -> None:
         """Add full information matrices (K, n, n) about the leading n unknowns of K different frames."""

@@ -1,8 +1,9 @@
-"""Feet that stand, stand still: a heavy-tailed prior on the ankles' velocity.
+"""Feet that stand, stand still: a heavy-tailed prior on the lower ankle's velocity.
 
-A point that hardly moves is pulled to rest, one that moves is left alone, and no floor is assumed: a foot
-that slides (a treadmill, a dance) moves, and is released. This is the Geman-McClure kernel on velocity,
-c² v² / (c² + v²), whose weight falls to nothing for speeds well past c.
+A foot that hardly moves in the image, and is not the higher one, stands: it is pulled to rest, along the line
+of sight too, where the image sees no motion. One that moves in the image is left alone, and no floor is
+assumed: a foot that slides (a treadmill, a dance) moves, and is released. This is the Geman-McClure kernel on
+the velocity, c² v² / (c² + v²), whose weight falls to nothing for speeds well past c.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...footage.camera import Camera
 from ..clip_state import ClipState
 from .term import NormalEquations
 
@@ -20,13 +22,18 @@ Array = NDArray[np.float64]
 class StillnessTerm:
     """Slow named points stand still from frame to frame."""
 
+    camera: Camera
     points: tuple[int, ...]
     """Indices of the principal points it is about."""
     step_s: Array
     """(F - 1,) time between frames [s]."""
-    release_speed_m_s: float = 0.3
-    """Speed at which a point is half released."""
-    std_m: float = 0.002
+    release_speed_m_s: float = 0.25
+    """Speed across the line of sight at which a point is half released."""
+    depth_share: float = 0.1
+    """How much motion along the line of sight counts to that speed."""
+    release_height_m: float = 0.04
+    """Height above the lowest of the points at which a point is half released."""
+    std_m: float = 0.003
     """How far a standing ankle wanders from frame to frame [m]."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -37,9 +44,8 @@ class StillnessTerm:
         places = state.body.points(state.pose)[:, chosen]
         jacobian = state.body.points_jacobian(state.pose)[:, chosen] @ state.chain[:, None]
         travel = np.diff(places, axis=0)
-        speed = np.linalg.norm(travel, axis=-1) / self.step_s[:, None]
-        release = self.release_speed_m_s**2 / (self.release_speed_m_s**2 + speed**2)
-        weight = (release**2 / self.std_m)[..., None]
+        middle = 0.5 * (places[1:] + places[:-1])
+        weight = self._standing(travel, middle, state.frame[1:])[..., None] / self.std_m
         rows = len(chosen) * 3
         shape = (state.frames - 1, rows, -1)
         equations.add_rows(
@@ -47,3 +53,19 @@ class StillnessTerm:
             (-jacobian[:-1] * weight[..., None]).reshape(shape),
             (jacobian[1:] * weight[..., None]).reshape(shape),
         )
+
+    def _standing(self, travel: Array, middle: Array, frame: NDArray[np.intp]) -> Array:
+        """(F - 1, points) how far each point is taken to stand, 0 to 1."""
+        _, location = self.camera.pose(frame)
+        sight = middle - np.asarray(location).reshape(-1, 1, 3)
+        sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
+        along = np.sum(travel * sight, axis=-1, keepdims=True) * sight
+        counted = travel - (1.0 - self.depth_share) * along
+        speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]
+        height = middle[..., 2] - middle[..., 2].min(axis=1, keepdims=True)
+        return np.asarray(_kernel(speed / self.release_speed_m_s) * _kernel(height / self.release_height_m))
+
+
+def _kernel(x: Array) -> Array:
+    """Weight of the Geman-McClure kernel, a quarter at 1."""
+    return np.asarray((1.0 + x**2) ** -2.0)

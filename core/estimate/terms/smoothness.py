@@ -1,0 +1,43 @@
+"""The motion departs smoothly from the prior, with bursts: heavy-tailed second differences, limb by limb.
+
+A kick or a sudden stop is an acceleration far beyond the usual in one limb for a few frames. Student's t
+distribution allows for it without loosening the rest of the clip (Lange, Little & Taylor 1989).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..clip_state import ClipState
+from .term import NormalEquations
+
+Array = NDArray[np.float64]
+
+SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothnessTerm:
+    """Second differences of the unknowns z, whose usual size is one at 30 frames a second."""
+
+    std: float
+    """Usual size at the clip's own pace."""
+    degrees: float = 4.0
+    """Degrees of freedom of a limb's acceleration; fewer allow more bursts."""
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each unknown and inner frame."""
+        if state.frames < 3:
+            return
+        second = np.diff(state.variation, n=2, axis=0) / self.std
+        information = np.empty_like(second)
+        for limb in state.prior.skeleton.limbs:
+            squared = (second[:, limb] ** 2).sum(axis=1, keepdims=True)
+            information[:, limb] = self.degrees / (self.degrees + squared)
+        information /= self.std**2
+        columns = slice(0, second.shape[1])
+        equations.matrix.add_combination(columns, SECOND_DIFFERENCE, information)
+        pull = information * second * self.std
+        for offset, coefficient in enumerate(SECOND_DIFFERENCE):
+            equations.gradient[offset : offset + len(pull), columns] += coefficient * pull
