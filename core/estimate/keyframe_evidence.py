@@ -1,4 +1,11 @@
-"""What the footage at the keyframes tells: where the markers sit, and how well the keyframes were posed."""
+"""What the footage at the keyframes tells: where the markers sit, and how well the keyframes were posed.
+
+Both are read from the same differences between the regions seen and those predicted, so they are found
+together: the size of the posing error and of its timing are those that make what is seen most likely
+whatever the markers' placements (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and
+the placements are the most probable ones given those sizes. Regions that fit no placement count for less
+(Student's t), and a marker that never fits is distrusted in all frames.
+"""
 
 from dataclasses import dataclass
 
@@ -7,25 +14,76 @@ from numpy.typing import NDArray
 
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
-from .calibration import KnownFrames, calibrate
-from .posing_error import KeyframeInnovation, estimate_posing_scale, posing_covariance
-from .terms.regions import ObservedRegions, RegionNoise, feature_rows
+from .calibration import (
+    LARGEST,
+    PRIOR_STD,
+    SMALLEST,
+    KnownFrames,
+    placement_slopes,
+    placement_values,
+    placements_from,
+)
+from .posing_error import posing_covariance, velocities
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows
+from .terms.term import student_weight
 
 Array = NDArray[np.float64]
 
-LEAST_TRUSTED = 0.5
+LEAST_TRUSTED = 0.3
 """Regions hidden or doubted further than this do not judge a keyframe."""
+MOST_JUDGED = 60
+"""Of more keyframes, this many, evenly spread, are judged: enough for a few numbers."""
+ITERATIONS = 4
+DEGREES = 4.0
+SCALES = np.geomspace(0.1, 2.5, 17)
+"""Sizes of the posing error tried, relative to a person's usual one."""
+SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2
+"""A log-normal belief in the size before the footage is seen."""
+TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
+"""Standard deviations of the timing error tried [frames]."""
+TIMING_MEAN = 0.7
+"""An exponential belief in it [frames]."""
+UNUSED = 1e6
+"""Variance that takes a row out [px²]."""
+MOST_DISTRUST = 10.0
 
 
 @dataclass(frozen=True, eq=False)
 class KeyframeEvidence:
-    """The calibrated model and the trust that the K keyframes deserve."""
+    """The calibrated model and the trust that keyframes and markers deserve."""
 
     model: RegionModel
     posing_scale: float
     """Size of the posing error relative to a person's usual one."""
+    timing_frames: float
+    """Standard deviation of the keyframes' timing error [frames]."""
+    distrust: Array
+    """(M,) factor, at least one, by which each marker's regions err more than expected."""
     information: Array
     """(K, D, D) inverse covariance of each keyframe's posing error."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Differences:
+    """What is seen at J judged keyframes against the prediction, R = M * 5 rows each."""
+
+    residual: Array
+    """(J, R) predicted minus seen, at the average placements."""
+    slopes: Array
+    """(J, R, M * P) by all placements' parameters."""
+    variance: Array
+    """(J, R) of the rows at a perfectly posed keyframe."""
+    posing: Array
+    """(J, R, R) covariance that a person's usual posing error adds."""
+    moved: Array
+    """(J, R) change of the rows from one frame to the next."""
+
+    def noise(self, weight: Array, scale: float, timing: float) -> Array:
+        """(J, R, R) covariance of the rows but for what the placements add."""
+        total = scale**2 * self.posing + timing**2 * self.moved[:, :, None] * self.moved[:, None, :]
+        rows = np.arange(total.shape[-1])
+        total[:, rows, rows] += self.variance / weight
+        return total
 
 
 def read_keyframes(
@@ -46,34 +104,110 @@ def read_keyframes(
         posture: The K posed postures.
         frame: (K,) their places in the clip.
     """
-    spread = noise.surface_std(width_px) ** 2 + noise.bias_std(width_px) ** 2
-    variance = noise.pixel_std_px**2 + spread  # (K, M, 5), slow biases included
-    known = KnownFrames(model.body.pose(posture), frame, observed, np.sqrt(variance))
-    placements = calibrate(model.body, model.camera, model.placements, known)
-    calibrated = RegionModel(model.body, model.camera, placements)
-    posing = posing_covariance(model.body, known.pose)
-    scale = estimate_posing_scale(_innovations(calibrated, known, variance, posing))
-    return KeyframeEvidence(calibrated, scale, np.linalg.inv(posing * scale**2))
+    posing = posing_covariance(model.body, model.body.pose(posture))
+    velocity = velocities(posture, frame)
+    judged = np.unique(np.linspace(0, len(frame) - 1, min(len(frame), MOST_JUDGED)).round().astype(np.intp))
+    known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
+    # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
+    variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
+    average = placement_values(model.placements)
+    calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
+    distrust = np.ones(len(average))
+    scale, timing = SCALE_MEDIAN, 0.0
+    for _ in range(ITERATIONS):
+        seen = _differences(calibrated, average, known, variance, posing[judged], velocity[judged])
+        scale, timing = _most_likely_sizes(seen, weight)
+        values, squared = _calibrate(seen, weight, scale, timing)
+        values = np.clip(average + values, SMALLEST, LARGEST)
+        calibrated = RegionModel(model.body, model.camera, placements_from(model.placements, values))
+        weight = np.repeat(student_weight(squared, DEGREES, FEATURES), FEATURES, axis=1)
+        distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
+    total = scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :]
+    return KeyframeEvidence(calibrated, scale, timing, distrust, np.linalg.inv(total))
 
 
-def _innovations(
-    model: RegionModel, known: KnownFrames, variance: Array, posing: Array
-) -> list[KeyframeInnovation]:
+def _differences(
+    model: RegionModel, average: Array, known: KnownFrames, variance: Array, posing: Array, velocity: Array
+) -> _Differences:
     predicted = model.evaluate(known.pose, known.frame, jacobian=True)
     residual, jacobian = feature_rows(known.observed, predicted)
     assert jacobian is not None
+    slopes = placement_slopes(model.body, model.camera, known, model)
+    change = average - placement_values(model.placements)
+    residual = residual + (slopes @ change[..., None])[..., 0]
     usable = (
         np.isfinite(residual).all(-1)
         & (predicted.visible > LEAST_TRUSTED)
         & (known.observed.quality > LEAST_TRUSTED)
     )
-    return [
-        KeyframeInnovation(
-            residual[k][usable[k]].ravel(),
-            jacobian[k][usable[k]].reshape(-1, jacobian.shape[-1]),
-            variance[k][usable[k]].ravel(),
-            posing[k],
-        )
-        for k in range(len(residual))
-        if usable[k].any()
-    ]
+    judged, markers = usable.shape
+    rows = (judged, markers * FEATURES)
+    own = np.zeros((judged, markers, FEATURES, markers, slopes.shape[-1]))
+    index = np.arange(markers)
+    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], slopes, 0.0), 1, 0)
+    jacobian = np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, -1)
+    return _Differences(
+        np.where(usable[..., None], residual, 0.0).reshape(rows),
+        own.reshape(*rows, -1),
+        np.where(usable[..., None], variance, UNUSED).reshape(rows),
+        jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
+        (jacobian @ velocity[..., None])[..., 0],
+    )
+
+
+def _most_likely_sizes(seen: _Differences, weight: Array) -> tuple[float, float]:
+    """Means over the posterior of the posing error's size and of the timing error."""
+    logarithm = np.empty((len(SCALES), len(TIMINGS)))
+    for i, scale in enumerate(SCALES):
+        for j, timing in enumerate(TIMINGS):
+            belief = -0.5 * (np.log(scale / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 - timing / TIMING_MEAN
+            logarithm[i, j] = belief + _log_likelihood(seen, seen.noise(weight, scale, timing))
+    probability = np.exp(logarithm - logarithm.max())
+    probability /= probability.sum()
+    scale = np.exp(probability.sum(axis=1) @ np.log(SCALES))
+    return float(scale), float(probability.sum(axis=0) @ TIMINGS)
+
+
+def _log_likelihood(seen: _Differences, noise: Array) -> float:
+    """Of all rows, whatever the placements are: Woodbury's identity spares the dense matrix of all rows."""
+    inverse, information, right = _gather(seen, noise)
+    _, determinants = np.linalg.slogdet(noise)
+    _, determinant = np.linalg.slogdet(information)
+    misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
+    misfit -= right @ np.linalg.solve(information, right)
+    return float(-0.5 * (misfit + determinants.sum() + determinant))
+
+
+def _gather(seen: _Differences, noise: Array) -> tuple[Array, Array, Array]:
+    """The noise's inverse, the placements' information (X, X), prior included, and their right side (X,)."""
+    inverse = np.linalg.inv(noise)
+    weighted = np.swapaxes(seen.slopes, -1, -2) @ inverse
+    prior = np.tile(PRIOR_STD**-2, seen.slopes.shape[-1] // len(PRIOR_STD))
+    information = (weighted @ seen.slopes).sum(axis=0) + np.diag(prior)
+    return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
+
+
+def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
+    """Most probable change (M, P) of the placements, and squared residuals (J, M) in their standard deviations."""
+    noise = seen.noise(weight, scale, timing)
+    _, information, right = _gather(seen, noise)
+    change = -np.linalg.solve(information, right)
+    left = seen.residual + seen.slopes @ change
+    expected = seen.noise(np.ones_like(weight), scale, timing)
+    judged, rows = left.shape
+    by_marker = left.reshape(judged, -1, FEATURES)
+    index = np.arange(rows).reshape(-1, FEATURES)
+    own = expected[:, index[:, :, None], index[:, None, :]]  # (J, M, 5, 5)
+    squared = by_marker[..., None, :] @ np.linalg.solve(own, by_marker[..., None])
+    return change.reshape(-1, len(PRIOR_STD)), np.asarray(squared[..., 0, 0])
+
+
+def _distrust(squared: Array, usable: NDArray[np.bool_]) -> Array:
+    """(M,) factors: the median marker-frame's misfit against what it should be, where it is seen at all."""
+    distrust = np.ones(squared.shape[1])
+    for marker, (values, used) in enumerate(zip(squared.T, usable.T, strict=True)):
+        if used.any():
+            # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
+            usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
+            distrust[marker] = np.clip(np.sqrt(np.median(values[used]) / usual), 1.0, MOST_DISTRUST)
+    return distrust

@@ -173,7 +173,13 @@ class _Problem:
         self.terms: list[Term] = [
             self._quadratic(),
             SmoothnessTerm(pace**1.5),
-            RegionTerm(self.evidence.model, self.observed, self.options.regions, self.width_px),
+            RegionTerm(
+                self.evidence.model,
+                self.observed,
+                self.options.regions,
+                self.width_px,
+                self.evidence.distrust,
+            ),
             DepthTerm(self.camera, prior_depth),
             LimitTerm(),
             StillnessTerm(self.camera, feet, self.step_s),

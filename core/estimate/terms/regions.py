@@ -140,6 +140,8 @@ class RegionTerm:
     noise: RegionNoise
     width_px: Array
     """(F, M) mean half-width of each marker's limb in the image [px]."""
+    distrust: Array
+    """(M,) factor by which each marker's regions err more than the noise says."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
@@ -161,6 +163,7 @@ class RegionTerm:
         usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
+        variance = variance * self.distrust[:, None] ** 2
         information = np.where(usable, trust, 0.0)[..., None] / (variance * temperature)
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in (slice(0, 2), slice(2, FEATURES)):
