@@ -26,6 +26,10 @@ class Pose:
     origin: Array
     """(..., J, 3) world place of each joint's frame [m]."""
 
+    def __getitem__(self, index: slice) -> "Pose":
+        """The poses of some postures along the first batch axis."""
+        return Pose(self.posture[index], self.rotation[index], self.origin[index])
+
     @cached_property
     def screws(self) -> Array:
         """(..., 6, D) spatial velocity per unit tangent step: rows 0:3 linear (at the origin), 3:6 angular.

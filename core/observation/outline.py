@@ -83,40 +83,35 @@ def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: NDArray[n
 
 def outline(pieces: PieceStack, view: View) -> Outline:
     """Samples of the pieces' silhouettes."""
-    parts = [_wall(pieces.half_widths, view)]
-    for centre, widths, sign in (
-        (view.start, pieces.half_widths[:, 0], -1.0),
-        (view.end, pieces.half_widths[:, 1], 1.0),
-    ):
-        parts.append(_cap(centre, widths, sign, view))
-    world, area, rate = (np.concatenate(rows, axis=2) for rows in zip(*parts, strict=True))
-    return Outline(world, area, rate)
+    parts = [_wall(pieces.half_widths, view), *(_cap(pieces.half_widths, end, view) for end in (0, 1))]
+    places, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
+    axes = np.stack([view.start, view.end - view.start, view.lateral, view.sagittal], axis=-1)
+    return Outline(np.swapaxes(axes @ places, -1, -2), area, np.swapaxes(rate, -1, -2))
 
 
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
-    """Samples between the contour lines (F, Q, ALONG * ACROSS, 3), their areas and area rates."""
-    u = ((np.arange(ALONG) + 0.5) / ALONG)[:, None]
+    """Samples between the contour lines: places (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
+
+    A place is four coordinates: one, the share of the axis, and metres along the cross-section's axes.
+    """
+    u = (np.arange(ALONG) + 0.5) / ALONG
     v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
-    widths = half_widths[:, None, 0] + u * (half_widths[:, None, 1] - half_widths[:, None, 0])  # (Q, U, 2)
-    reach = view.reach(view.across)[:, :, None]  # (F, Q, 1, 2)
-    stretched = widths * reach
-    half = np.maximum(np.hypot(stretched[..., 0], stretched[..., 1]), TINY)  # (F, Q, U)
-    touch = widths * stretched / half[..., None]  # (F, Q, U, 2)
-    contour = touch[..., :1] * view.lateral[:, :, None] + touch[..., 1:] * view.sagittal[:, :, None]
+    widths = half_widths[:, 0, :, None] + u * (half_widths[:, 1] - half_widths[:, 0])[..., None]  # (Q, 2, U)
+    stretched = widths * view.reach(view.across)[..., None]  # (F, Q, 2, U)
+    half = np.maximum(np.hypot(stretched[:, :, 0], stretched[:, :, 1]), TINY)[:, :, None]  # (F, Q, 1, U)
+    touch = widths * stretched / half
     axis = view.end - view.start
-    centre = view.start[:, :, None] + u * axis[:, :, None]
-    world = centre[..., None, :] + v[:, None] * contour[..., None, :]  # (F, Q, U, V, 3)
     cell = 2.0 / (ALONG * ACROSS)
-    length = view.apparent_length[..., None]
+    length = view.apparent_length[..., None, None]
     # d half = touch · d reach; d length = ω · (axis × along).
-    half_rate = touch @ _reach_rate(view, axis)  # (F, Q, U, 3)
-    length_rate = cross(axis, view.along)[:, :, None]
-    rate = cell * (length_rate * half[..., None] + length[..., None] * half_rate)
-    return (
-        world.reshape(*world.shape[:2], -1, 3),
-        np.repeat(cell * length * half, ACROSS, axis=2),
-        np.repeat(rate, ACROSS, axis=2),
-    )
+    half_rate = np.swapaxes(_reach_rate(view, axis), -1, -2) @ touch  # (F, Q, 3, U)
+    rate = cell * (cross(axis, view.along)[..., None] * half + length * half_rate)
+    # A product with a constant matrix makes a row's samples of each of its U places.
+    alike, spread = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), v)  # (U, S)
+    places = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
+    places[:, :, 0], places[:, :, 1] = 1.0, u @ alike
+    np.matmul(touch, spread, out=places[:, :, 2:])
+    return places, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
 
 
 def _reach_rate(view: View, axis: Array) -> Array:
@@ -132,29 +127,26 @@ def _reach_rate(view: View, axis: Array) -> Array:
     return np.stack(rows, axis=2)
 
 
-def _cap(centre: Array, widths: Array, sign: float, view: View) -> tuple[Array, Array, Array]:
-    """Samples of the half of an elliptical end that shows beyond the contour lines, areas and rates."""
-    pole, length = _unit(sign * widths * view.reach(view.along))
+def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]:
+    """The same of the half of the first or last elliptical end that shows beyond the contour lines."""
+    widths = half_widths[:, end]
+    pole, length = _unit((1.0 if end else -1.0) * widths * view.reach(view.along))
     pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
     side = np.stack([-pole[..., 1], pole[..., 0]], axis=-1)
     radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
     angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
-    disc = (radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)).reshape(-1, 2)
-    flat = disc[:, :1] * side[:, :, None] + disc[:, 1:] * pole[:, :, None]  # (F, Q, C, 2)
-    flat = flat * widths[:, None]
-    world = (
-        centre[:, :, None]
-        + flat[..., :1] * view.lateral[:, :, None]
-        + flat[..., 1:] * view.sagittal[:, :, None]
-    )
+    disc = (radius[:, None] * np.stack([np.cos(angle), np.sin(angle)])[:, None]).reshape(2, -1)
+    places = np.empty((*pole.shape[:2], 4, disc.shape[1]))
+    places[:, :, 0], places[:, :, 1] = 1.0, end
+    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=places[:, :, 2:])
     # The end's plane shows by the cosine between its normal and the view.
     normal = cross(view.lateral, view.sagittal)
     cosine = _dot(normal, view.toward)[..., None]
-    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / len(disc)  # (Q, 1)
+    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / disc.shape[1]  # (Q, 1)
     rate = full * np.sign(cosine) * cross(normal, view.toward)
-    shape = world.shape[:-1]
+    shape = (*pole.shape[:2], 3, disc.shape[1])
     return (
-        world,
-        np.broadcast_to(full * np.abs(cosine), shape),
-        np.broadcast_to(rate[:, :, None], (*shape, 3)),
+        places,
+        np.broadcast_to(full * np.abs(cosine), (*shape[:2], shape[3])),
+        np.broadcast_to(rate[..., None], shape),
     )

@@ -5,7 +5,7 @@ body parts hide samples; centroid and second moments are those of what stays vis
 predicted instead of measured). Derivatives hold the samples' weights fixed.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
 """Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
+PIECES_AT_ONCE = 600
+"""So many pieces, counted over frames, are worked on together that a cache holds their samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,13 @@ class RegionPrediction:
     """(F, M, 2, D) [px per m or rad]."""
     moment_jacobian: Array | None = None
     """(F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]."""
+
+    @classmethod
+    def concatenate(cls, stretches: list["RegionPrediction"]) -> "RegionPrediction":
+        """One prediction of several stretches of frames, all with Jacobians or all without."""
+        columns = {field.name: [getattr(one, field.name) for one in stretches] for field in fields(cls)}
+        known = {name: parts for name, parts in columns.items() if parts[0] is not None}
+        return cls(**{name: np.concatenate(parts) for name, parts in known.items()})
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +139,13 @@ class RegionModel:
         Returns:
             The prediction; markers that are wholly hidden keep the moments of their whole silhouette.
         """
+        count = max(1, round(len(frame) * len(self._marker_of) / PIECES_AT_ONCE))
+        edges = [len(frame) * i // count for i in range(count + 1)]
+        stretches = [slice(*pair) for pair in zip(edges[:-1], edges[1:], strict=True)]
+        return RegionPrediction.concatenate([self._stretch(pose[s], frame[s], jacobian) for s in stretches])
+
+    def _stretch(self, pose: Pose, frame: NDArray[np.intp], jacobian: bool) -> RegionPrediction:
+        """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
         samples = outline(self._pieces, view)
         pixels, depth = self.camera.project(samples.world, frame[:, None, None])

@@ -1,5 +1,7 @@
 """What the body predicts of the markers' regions."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
@@ -89,6 +91,16 @@ def test_every_second_moment_is_positive_definite_over_a_whole_exercise() -> Non
     seen = predict(exercise(45))
     assert np.linalg.eigvalsh(seen.second_moment).min() > 0.05
     assert ((seen.visible >= 0.0) & (seen.visible <= 1.0 + 1e-12)).all()
+
+
+def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames are worked on in stretches, which nothing must show."""
+    posture = exercise(9)
+    whole = predict(posture, jacobian=True)
+    monkeypatch.setattr(regions, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
+    stretched = predict(posture, jacobian=True)
+    for field in fields(whole):
+        np.testing.assert_allclose(getattr(stretched, field.name), getattr(whole, field.name), atol=1e-8)
 
 
 def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
