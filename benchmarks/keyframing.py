@@ -11,7 +11,8 @@ from takes import ROOT, load_project
 from trials import Trial
 
 load_project()
-sys.path.append(str(ROOT / "tools" / "demo_take"))
+# Whichever folder of tools/ films takes is the one that knows how people err.
+sys.path += [str(file.parent) for file in ROOT.glob("tools/*/posing.py")]
 
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
