@@ -24,7 +24,7 @@ from .calibration import (
     placements_from,
 )
 from .posing_error import posing_covariance, velocities
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import student_weight
 
 Array = NDArray[np.float64]
@@ -59,6 +59,8 @@ class KeyframeEvidence:
     """Standard deviation of the keyframes' timing error [frames]."""
     distrust: Array
     """(M,) factor, at least one, by which each marker's regions err more than expected."""
+    whole: Array
+    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
     information: Array
     """(K, D, D) inverse covariance of each keyframe's posing error."""
 
@@ -77,6 +79,8 @@ class _Differences:
     """(J, R, R) covariance that a person's usual posing error adds."""
     moved: Array
     """(J, R) change of the rows from one frame to the next."""
+    whole: Array
+    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
 
     def noise(self, weight: Array, scale: float, timing: float) -> Array:
         """(J, R, R) covariance of the rows but for what the placements add."""
@@ -123,7 +127,7 @@ def read_keyframes(
         weight = np.repeat(student_weight(squared, DEGREES, FEATURES), FEATURES, axis=1)
         distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
     total = scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :]
-    return KeyframeEvidence(calibrated, scale, timing, distrust, np.linalg.inv(total))
+    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, np.linalg.inv(total))
 
 
 def _differences(
@@ -140,6 +144,8 @@ def _differences(
         & (predicted.visible > LEAST_TRUSTED)
         & (known.observed.quality > LEAST_TRUSTED)
     )
+    whole = _whole_areas(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
+    variance = variance + missing_variance(known.observed.area, whole, predicted)
     judged, markers = usable.shape
     rows = (judged, markers * FEATURES)
     own = np.zeros((judged, markers, FEATURES, markers, slopes.shape[-1]))
@@ -152,7 +158,14 @@ def _differences(
         np.where(usable[..., None], variance, UNUSED).reshape(rows),
         jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
         (jacobian @ velocity[..., None])[..., 0],
+        whole,
     )
+
+
+def _whole_areas(ratio: Array) -> Array:
+    """(M,) the upper quartile of (J, M) seen areas relative to predicted ones; 1 for what is never seen."""
+    filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
+    return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
 def _most_likely_sizes(seen: _Differences, weight: Array) -> tuple[float, float]:

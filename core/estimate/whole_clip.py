@@ -179,6 +179,7 @@ class _Problem:
                 self.options.regions,
                 self.width_px,
                 self.evidence.distrust,
+                self.evidence.whole,
             ),
             DepthTerm(self.camera, prior_depth),
             LimitTerm(),

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
 SMALLEST_DEVIATION_PX = 0.6
+AREA_TOLERANCE = 0.15
+"""Share of an area that may be missing for other reasons than that something is before it."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,8 @@ class ObservedRegions:
     """(F, M, 2, 2) columns are the observed axes."""
     deviation: Array
     """(F, M, 2) standard deviation of the region along them [px]."""
+    area: Array
+    """(F, M) [px], NaN where hidden."""
     quality: Array
     """(F, M)."""
 
@@ -76,7 +80,8 @@ class ObservedRegions:
         moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
         values, axes = np.linalg.eigh(moments)
         deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
-        return cls(tracks.centroid, moments, axes, deviation, np.where(seen, tracks.quality, 0.0))
+        quality = np.where(seen, tracks.quality, 0.0)
+        return cls(tracks.centroid, moments, axes, deviation, tracks.area, quality)
 
     def __getitem__(
         self, index: slice | NDArray[np.intp] | tuple[slice, NDArray[np.intp]]
@@ -87,6 +92,7 @@ class ObservedRegions:
             self.second_moment[index],
             self.axes[index],
             self.deviation[index],
+            self.area[index],
             self.quality[index],
         )
 
@@ -131,6 +137,24 @@ def limb_widths(model: RegionModel, places: Array, frame: NDArray[np.intp]) -> A
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 
+def missing_variance(area: Array, whole: Array, predicted: RegionPrediction) -> Array:
+    """(F, M, 5) variance [px²] of the features for what of a region is missing, nobody knows where.
+
+    A table or a door may hide a part of a marker, of which the body's model knows nothing. A share f that is
+    cut off a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+
+    Args:
+        area: (F, M) area of the regions seen [px].
+        whole: (M,) or a number: area seen of an unhidden region, relative to the predicted one.
+        predicted: The regions' prediction, from which the body's own hiding is gone already.
+    """
+    expected = np.maximum(predicted.area * whole, 1.0)
+    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
+    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
+    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
+    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)
+
+
 @dataclass(frozen=True, eq=False)
 class RegionTerm:
     """Compares every visible marker with its prediction."""
@@ -142,6 +166,8 @@ class RegionTerm:
     """(F, M) mean half-width of each marker's limb in the image [px]."""
     distrust: Array
     """(M,) factor by which each marker's regions err more than the noise says."""
+    whole: Array
+    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
@@ -164,6 +190,7 @@ class RegionTerm:
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
+        variance = variance + missing_variance(self.observed.area, self.whole, predicted)
         information = np.where(usable, trust, 0.0)[..., None] / (variance * temperature)
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in (slice(0, 2), slice(2, FEATURES)):
