@@ -26,11 +26,13 @@ JOG = Described(
     perform=performed(jog.plan, actor(1.88, trunk=0.97, thigh=1.03, forearm=1.05), 100, -8.0),
     camera=look_from(38.0, 3.6, 1.75, (0.0, -0.05, 0.98), 40.0, SMALL, tilt_deg=-3.0),
     look=Look(
-        colours={"trunk": (214, 96, 30), "forearm.L": (40, 150, 190), "forearm.R": (190, 40, 96), "shin.L": (60, 150, 60),
+        colours={"trunk": (214, 96, 30), "forearm.L": (40, 150, 190), "forearm.R": (190, 40, 96),
+                 "shin.L": (60, 150, 60),
                  "shin.R": (96, 70, 190), "skin": (122, 84, 62), "hair": (22, 18, 16)},
         girths={"thigh": 0.93, "shin": 0.94, "upper_arm": 0.9, "forearm": 0.92, "trunk": 0.95},
     ),
-    room=Room(wall=(0.42, 0.50, 0.55), planks=((0.16, 0.16, 0.17), (0.14, 0.14, 0.15), (0.1, 0.1, 0.1)), furnished=False,
+    room=Room(wall=(0.42, 0.50, 0.55), planks=((0.16, 0.16, 0.17), (0.14, 0.14, 0.15), (0.1, 0.1, 0.1)),
+              furnished=False,
               things=(Thing((0.85, 1.9, 0.04), (0.05, 0.05, 0.055), {0: (0.0, 0.0, -0.018)}),)),
     seed=101,
 )  # fmt: skip
@@ -41,7 +43,9 @@ KICK = Described(
     camera=look_from(58.0, 4.8, 1.1, (0.05, -0.25, 0.98), 55.0, SMALL, tilt_deg=2.0),
     look=Look(
         colours={"trunk": (28, 130, 120), "forearm.L": (220, 170, 30), "forearm.R": (200, 60, 160),
-                 "shin.L": (60, 90, 210), "shin.R": (200, 60, 40), "cloth": (196, 192, 184), "skin": (226, 180, 150)},
+                 "shin.L": (60, 90, 210), "shin.R": (200, 60, 40), "cloth": (196, 192, 184), "skin": (226,
+                                                                                                      180,
+    150)},
         girths={"thigh": 1.12, "trunk": 1.08, "upper_arm": 1.1, "forearm": 1.08},
         cloth_m={"trunk": 0.012, "forearm": 0.008, "shin": 0.010}, folds=0.7,
     ),
@@ -53,12 +57,14 @@ BOX = Described(
     perform=performed(box.plan, actor(1.80, forearm=1.04, shoulder_width=1.08), 108, 4.0),
     camera=look_from(24.0, 4.2, 1.45, (0.0, -0.05, 0.98), 50.0, SMALL),
     look=Look(
-        colours={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50), "shin.L": (60, 160, 90),
+        colours={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50),
+                 "shin.L": (60, 160, 90),
                  "shin.R": (150, 60, 180), "skin": (170, 120, 92)},
         girths={"upper_arm": 1.15, "forearm": 1.1, "trunk": 1.04},
     ),
     room=Room(
-        lamps=(Lamp((-2.3, -1.9, 2.4), 0.35, 95.0, (1.0, 0.86, 0.68)), Lamp((2.6, -3.0, 1.4), 1.2, 7.0, (0.75, 0.85, 1.0))),
+        lamps=(Lamp((-2.3, -1.9, 2.4), 0.35, 95.0, (1.0, 0.86, 0.68)), Lamp((2.6, -3.0, 1.4), 1.2, 7.0,
+                                                                            (0.75, 0.85, 1.0))),
         sky=(0.7, 0.8, 1.0, 0.05), wall=(0.30, 0.27, 0.25),
     ),
     noise=3.0, seed=103, shadow_per_height=HARD_SHADOW,
@@ -69,7 +75,8 @@ JUMP = Described(
     perform=performed(jump.plan, actor(1.62, trunk=1.04, thigh=0.97), 92, -14.0),
     camera=look_from(-12.0, 3.3, 0.8, (0.0, 0.0, 1.19), 30.0, SMALL, tilt_deg=1.5),
     look=Look(
-        colours={"trunk": (120, 60, 170), "forearm.L": (60, 170, 70), "forearm.R": (220, 110, 30), "shin.L": (200, 40, 70),
+        colours={"trunk": (120, 60, 170), "forearm.L": (60, 170, 70), "forearm.R": (220, 110, 30),
+                 "shin.L": (200, 40, 70),
                  "shin.R": (50, 130, 200), "skin": (214, 160, 134), "hair": (120, 84, 40)},
         girths={"thigh": 1.06, "shin": 1.05, "trunk": 0.93, "upper_arm": 0.92, "forearm": 0.92},
     ),
@@ -196,7 +203,7 @@ STROLL = Described(
 
 THROW = Described(
     name="throw",
-    perform=performed(throw.plan, actor(1.86, forearm=1.03, upper_arm=1.02), 60, -25.0),
+    perform=performed(throw.plan, actor(1.86, forearm=1.03, upper_arm=1.02), 66, -25.0, tempo=0.9),
     camera=look_from(20.0, 4.8, 1.6, (0.0, -0.05, 0.98), 42.0, WIDE),
     look=Look(
         colours={

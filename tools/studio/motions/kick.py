@@ -37,7 +37,8 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     legs = {"R": _front_leg(times), "L": _side_leg(times)}
     ring = shock(times, [off["R"][1], off["L"][1]])
     drop = {-0.1: 0.07, 0.35: 0.10, front - 0.2: 0.03, front: 0.035, front + 0.25: 0.06, front + 0.55: 0.13,
-            side - 0.55: 0.11, side - 0.2: 0.05, side: 0.04, side + 0.3: 0.07, side + 0.6: 0.15, 3.4: 0.08}  # fmt: skip
+            side - 0.55: 0.11, side - 0.2: 0.05, side: 0.04, side + 0.3: 0.07, side + 0.6: 0.15,
+    3.4: 0.08}  # fmt: skip
     pelvis = {
         "x": driven(
             {

@@ -18,9 +18,11 @@ PUSHED = {"elevation": 108, "forward": 86, "rotation": 18, "flexion": 28, "prona
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     """Compose it."""
-    stoop = driven({0.25: 0, 0.62: 0.62, 0.92: 1.0, GRASP_S + 0.1: 1.0, 1.28: 0.62, UP_S: 0.05, 1.8: -0.04, 2.3: 0.08,
+    stoop = driven({0.25: 0, 0.62: 0.62, 0.92: 1.0, GRASP_S + 0.1: 1.0, 1.28: 0.62, UP_S: 0.05, 1.8: -0.04,
+                    2.3: 0.08,
                     PUT_S: -0.02, 3.7: 0.02}, times, 3.6, 0.7)  # fmt: skip
-    squat = driven({0.3: 0.05, 0.66: 0.6, 0.95: 1.0, GRASP_S + 0.06: 1.02, 1.2: 0.62, 1.5: 0.14, UP_S: 0.10, 1.95: 0.2,
+    squat = driven({0.3: 0.05, 0.66: 0.6, 0.95: 1.0, GRASP_S + 0.06: 1.02, 1.2: 0.62, 1.5: 0.14,
+                    UP_S: 0.10, 1.95: 0.2,
                     PUT_S - 0.2: 0.28, PUT_S: 0.02, 3.1: 0.1}, times, 3.8, 0.7)  # fmt: skip
     turn = driven({1.6: 0, 1.86: -20, 2.2: -58, 2.4: -70, 3.05: -68, 3.3: -46, 3.7: -34}, times, 3.5, 0.75)
     jerk = burst(times, GRASP_S + 0.04, GRASP_S + 0.16, GRASP_S + 0.4)

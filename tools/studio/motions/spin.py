@@ -50,7 +50,8 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
         "neck_pitch": -4.0 - 6.0 * stumble,
     }
     wound = keyed({0.15: 0, 0.46: 1, 0.66: 0}, times)
-    flung = driven({0.5: 0, 0.72: 1, 0.86: 0.85, 1.02: 0.1, 1.14: 0.1, END_S + 0.06: 1, 1.75: 0.2, 2.0: 0, 2.2: 0.7,
+    flung = driven({0.5: 0, 0.72: 1, 0.86: 0.85, 1.02: 0.1, 1.14: 0.1, END_S + 0.06: 1, 1.75: 0.2, 2.0: 0,
+                    2.2: 0.7,
                     BACK_S[1] + 0.1: 0.9, 2.95: 0.1}, times, 4.5, 0.55)  # fmt: skip
     tight = driven({0.78: 0, 1.0: 1, 1.14: 1, END_S: 0}, times)
     arms = {
@@ -68,7 +69,8 @@ def _legs(times: Array, stumble: Array) -> dict[str, object]:
     always = np.ones(len(times))
     standing = free(times, always, {"outward": 0, "ankle": 0})
     wind = driven({0.15: 0, 0.46: 1, 0.66: 0}, times)
-    bend = driven({0.1: 0.3, 0.46: 1.15, 0.66: 0.25, 1.1: 0.12, END_S + 0.1: 1.35, 1.7: 0.35, 1.94: 0.9, 2.15: 0.2,
+    bend = driven({0.1: 0.3, 0.46: 1.15, 0.66: 0.25, 1.1: 0.12, END_S + 0.1: 1.35, 1.7: 0.35, 1.94: 0.9,
+                   2.15: 0.2,
                    BACK_S[1] + 0.08: 1.0, 2.9: 0.3}, times)  # fmt: skip
     standing.flexion[:] = 24.0 * bend
     standing.knee[:] = 46.0 * bend

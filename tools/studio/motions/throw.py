@@ -25,17 +25,22 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     ring = shock(times, [0.34, 0.66, plant], 6.0, 0.08)
     pelvis = {
         "x": driven({0.0: 0.02, 0.7: -0.04, plant: 0.0, 1.4: 0.06, 1.9: 0.05}, times, 3.0),
-        "y": driven({0.0: 0.62, 0.34: 0.42, 0.66: 0.20, plant: -0.06, release: -0.20, 1.4: -0.40, 1.6: -0.46, 1.9: -0.42}, times, 4.0, 0.8),
-        "z": tall_m(body) - driven({0.0: 0.05, 0.3: 0.09, 0.5: 0.05, 0.72: 0.10, plant: 0.13, release + 0.05: 0.06,
+        "y": driven({0.0: 0.62, 0.34: 0.42, 0.66: 0.20, plant: -0.06, release: -0.20, 1.4: -0.40,
+                     1.6: -0.46, 1.9: -0.42}, times, 4.0, 0.8),
+        "z": tall_m(body) - driven({0.0: 0.05, 0.3: 0.09, 0.5: 0.05, 0.72: 0.10, plant: 0.13,
+                                    release + 0.05: 0.06,
                                     1.4: 0.10, 1.6: 0.14, 2.0: 0.07}, times, 5.0, 0.7) - 0.01 * ring,
-        "yaw": driven({0.0: -14, 0.4: -42, 0.72: -68, 0.90: -52, 1.04: 4, release + 0.03: 26, 1.4: 40, 2.0: 24}, times, 6.0, 0.65),
+        "yaw": driven({0.0: -14, 0.4: -42, 0.72: -68, 0.90: -52, 1.04: 4, release + 0.03: 26, 1.4: 40,
+                       2.0: 24}, times, 6.0, 0.65),
         "pitch": driven({0.0: 4, 0.75: -6, plant: -7, release + 0.05: 14, 1.4: 28, 1.7: 20, 2.0: 8}, times),
         "roll": driven({0.5: 0, 0.85: 7, release: -6, 1.5: -3, 1.9: 0}, times),
     }  # fmt: skip
     trunk = {
-        "pitch": driven({0.0: 5, 0.8: -10, plant: -12, release: 12, 1.36: 34, 1.7: 22, 2.0: 8}, times, 5.5, 0.6) + 2 * ring,
+        "pitch": driven({0.0: 5, 0.8: -10, plant: -12, release: 12, 1.36: 34, 1.7: 22, 2.0: 8}, times, 5.5,
+                        0.6) + 2 * ring,
         "roll": driven({0.6: 0, 0.9: -6, release: 16, 1.3: 12, 1.7: 0}, times),
-        "yaw": driven({0.2: 0, 0.7: -26, plant: -36, 1.06: -10, release + 0.04: 28, 1.36: 40, 1.8: 14}, times, 6.5, 0.6),
+        "yaw": driven({0.2: 0, 0.7: -26, plant: -36, 1.06: -10, release + 0.04: 28, 1.36: 40, 1.8: 14},
+                      times, 6.5, 0.6),
         "neck_yaw": driven({0.1: 12, 0.7: 66, plant: 60, release: -10, 1.4: -34, 1.9: -16}, times, 5.0, 0.8),
         "neck_pitch": driven({0.6: 0, release: -10, 1.4: -30, 1.9: -10}, times),
     }  # fmt: skip
