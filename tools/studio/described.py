@@ -20,7 +20,7 @@ KEYFRAME_EVERY = 10.0
 HANDS_TO_BOX_M = 0.13
 BOX_M = (0.34, 0.24, 0.20)
 CARDBOARD, PAINTED = (0.34, 0.24, 0.13), (0.26, 0.26, 0.28)
-KEYFRAME_LATENESS = 0.33
+KEYFRAME_LATENESS = 0.38
 """How far a keyframe lies from an even spacing, at most, as a share of it."""
 
 
@@ -77,7 +77,7 @@ class Described:
 
 
 def posed_frames(frame_count: int, random: np.random.Generator) -> tuple[int, ...]:
-    """About ten frames of a hundred, spread as people spread them: evenly but for a third of the distance."""
+    """About ten frames of a hundred, spread as people spread them: evenly but for some of the distance."""
     gaps = max(round((frame_count - 1) / KEYFRAME_EVERY), 1)
     distance = (frame_count - 1) / gaps
     lateness = KEYFRAME_LATENESS * distance * random.uniform(-1.0, 1.0, gaps - 1)
