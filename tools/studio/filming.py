@@ -96,11 +96,10 @@ def film(
             its height.
     """
     place_camera(camera)
-    moving = [thing for thing, how in zip(room.things, room.room.things, strict=True) if len(how.path) > 1]
-    for thing in (performer.thing, *moving):
+    for thing in (performer.thing, *room.moving):
         thing.hide_render = True
     empty = render(ROOM_SAMPLES)
-    for thing in (performer.thing, *moving):
+    for thing in (performer.thing, *room.moving):
         thing.hide_render = False
     offsets = SHUTTER_FRAMES * ((np.arange(moments) + 0.5) / moments - 0.5)
     images = []

@@ -29,6 +29,13 @@ class BuiltRoom:
     things: tuple[bpy.types.Object, ...]
     room: Room
 
+    @property
+    def moving(self) -> list[bpy.types.Object]:
+        """Blender's objects for those that do not stand still."""
+        return [
+            thing for thing, described in zip(self.things, self.room.things, strict=True) if described.moves
+        ]
+
     def move(self, frame: float) -> None:
         """Put all things where they are at a frame."""
         for thing, described in zip(self.things, self.room.things, strict=True):
@@ -37,7 +44,7 @@ class BuiltRoom:
     def moving_places(self, frame: float) -> Array:
         """(N, 3) corners of all that moves [m]."""
         corners = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        moving = [thing for thing in self.room.things if len(thing.path) > 1]
+        moving = [thing for thing in self.room.things if thing.moves]
         return np.concatenate(
             [np.zeros((0, 3)), *(thing.place(frame) + corners * thing.size for thing in moving)]
         )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .curves import sway
 from .limbs import FreeLeg, foot_clearance, turned
-from .performance import SIDES, Channels, Choreography
+from .performance import FPS, SIDES, Channels, Choreography
 
 Array = NDArray[np.float64]
 Pose = Mapping[str, float]
@@ -93,11 +93,11 @@ def choreography(
     trunk: Channels,
     arms: dict[str, Channels],
     feet: dict[str, tuple[Array, Array]] | None = None,
-    free: dict[str, FreeLeg] | None = None,
+    free_legs: dict[str, FreeLeg] | None = None,
     grounded: Array | None = None,
 ) -> Choreography:
     """A plan with the channels left out at zero and the restlessness of a living body on all of them."""
-    frames = times * 30.0
+    frames = FPS * times
     zero = np.zeros(len(times))
 
     def restless(channels: Channels, names: Sequence[str], factor: float) -> Channels:
@@ -115,6 +115,6 @@ def choreography(
         restless(trunk, TRUNK, 1.0),
         {side: restless(arms[side], moved, 2.0) for side in SIDES},
         feet or {},
-        free or {},
+        free_legs or {},
         grounded,
     )

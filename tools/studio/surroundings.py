@@ -43,6 +43,11 @@ class Thing:
     path: Mapping[float, Triple]
     round: bool = False
 
+    @property
+    def moves(self) -> bool:
+        """Whether it does not stand still."""
+        return len(self.path) > 1
+
     def place(self, frame: float) -> Array:
         """(3,) where its middle is at a frame [m]."""
         frames, places = np.array(list(self.path)), np.array(list(self.path.values()))

@@ -5,20 +5,14 @@ from keymark.core.body.kinematics import Body
 from numpy.typing import NDArray
 
 from ..curves import burst, driven, sprung, sway, uneven_phases
-from ..performance import Choreography
+from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, stepped, tall_m
 
 Array = NDArray[np.float64]
 
-JAB_S, CROSS_S, HOOK_S, SLIP_S, UPPERCUT_S, LAST_JAB_S, LAST_CROSS_S = (
-    0.46,
-    0.78,
-    1.22,
-    1.70,
-    2.12,
-    2.86,
-    3.12,
-)
+JAB_S, CROSS_S, HOOK_S = 0.46, 0.78, 1.22
+SLIP_S, UPPERCUT_S = 1.70, 2.12
+LAST_JAB_S, LAST_CROSS_S = 2.86, 3.12
 GUARD = {"elevation": 30, "forward": 56, "rotation": 26, "flexion": 128, "pronation": 15, "girdle": 4}
 STRAIGHT = {"elevation": 86, "forward": 82, "rotation": 42, "flexion": 9, "pronation": 72, "girdle": 12}
 HOOK = {"elevation": 84, "forward": 52, "rotation": 78, "flexion": 88, "pronation": 40, "girdle": 10}
@@ -31,10 +25,8 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     hops = np.sin(2.0 * np.pi * uneven_phases(times, 0.42, 0.12, random))
     jab, cross = _punch(times, JAB_S), _punch(times, CROSS_S)
     last_jab, last_cross = _punch(times, LAST_JAB_S), _punch(times, LAST_CROSS_S)
-    hook, slip = (
-        burst(times, HOOK_S - 0.15, HOOK_S, HOOK_S + 0.27),
-        burst(times, SLIP_S - 0.2, SLIP_S, SLIP_S + 0.3),
-    )
+    hook = burst(times, HOOK_S - 0.15, HOOK_S, HOOK_S + 0.27)
+    slip = burst(times, SLIP_S - 0.2, SLIP_S, SLIP_S + 0.3)
     load = burst(times, UPPERCUT_S - 0.36, UPPERCUT_S - 0.13, UPPERCUT_S + 0.02)
     uppercut = burst(times, UPPERCUT_S - 0.12, UPPERCUT_S, UPPERCUT_S + 0.3)
     left = arm(times, GUARD, (jab + last_jab, STRAIGHT), (hook, HOOK), (0.5 * cross, LOADED))
@@ -114,7 +106,7 @@ def _feet(times: Array, random: np.random.Generator) -> dict[str, tuple[Array, A
         ("R", (-0.13, 0.24), -56.0, 38 * cross),
     ):
         places, lifted = stepped(times, start, steps[side])
-        slide = 0.008 * np.stack([sway(30.0 * times, random, (8.0, 20.0)) for _ in "xy"], axis=-1)
+        slide = 0.008 * np.stack([sway(FPS * times, random, (8.0, 20.0)) for _ in "xy"], axis=-1)
         heel = 20.0 if side == "R" else 5.0
         pitch = heel + 0.45 * np.abs(turn) + 12.0 * lifted
         feet[side] = foot(places + slide, yaw + sprung(turn, times, 6.0, 0.7), pitch, 0.03 * lifted)

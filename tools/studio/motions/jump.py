@@ -65,8 +65,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
             0.7,
         )
         up = driven({0.56: 0, 0.94 + late: 1, 1.08: 0.9, on: 0.35, on + 0.2: 0.05, 1.80: 0,
-                     2.12 + late: 0.8, 2.36: 0.4,
-                     on_again + 0.15: 0.1}, times, 4.0, 0.65)  # fmt: skip
+                     2.12 + late: 0.8, 2.36: 0.4, on_again + 0.15: 0.1}, times, 4.0, 0.65)  # fmt: skip
         wide = burst(times, on - 0.1, on + 0.08 + late, on + 0.4) + burst(
             times, 2.3, on_again + 0.05, 3.0 + late
         )
@@ -79,8 +78,8 @@ def _feet(times: Array, height: Array) -> dict[str, tuple[Array, Array]]:
     feet = {}
     for side, out, late in (("L", 1.0, 0.0), ("R", -1.0, 0.03)):
         toes = keyed({0.55: 0, 0.7: 8, off: 52, on - 0.12: 44, on + late: 24, on + late + 0.07: 0, 1.9: 0,
-                      off_again: 50,
-                      2.35: 30, on_again - late: 26, on_again + 0.07 - late: 0}, times)  # fmt: skip
+                      off_again: 50, 2.35: 30, on_again - late: 26,
+                      on_again + 0.07 - late: 0}, times)  # fmt: skip
         tuck = 0.03 * burst(times, off, 1.15, on + late) + 0.24 * burst(
             times, off_again + 0.02, 2.34, on_again - late
         )

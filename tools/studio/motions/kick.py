@@ -36,87 +36,34 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
         feet[name] = foot(places, yaws[name], 14.0 * lifted, 0.05 * lifted)
     legs = {"R": _front_leg(times), "L": _side_leg(times)}
     ring = shock(times, [off["R"][1], off["L"][1]])
-    drop = {-0.1: 0.07, 0.35: 0.10, front - 0.2: 0.03, front: 0.035, front + 0.25: 0.06, front + 0.55: 0.13,
-            side - 0.55: 0.11, side - 0.2: 0.05, side: 0.04, side + 0.3: 0.07, side + 0.6: 0.15,
-    3.4: 0.08}  # fmt: skip
+    drop = driven(
+        {-0.1: 0.07, 0.35: 0.10, front - 0.2: 0.03, front: 0.035, front + 0.25: 0.06, front + 0.55: 0.13,
+         side - 0.55: 0.11, side - 0.2: 0.05, side: 0.04, side + 0.3: 0.07, side + 0.6: 0.15, 3.4: 0.08},
+        times, 4.0, 0.7)  # fmt: skip
     pelvis = {
-        "x": driven(
-            {
-                0.0: 0.0,
-                front - 0.4: 0.07,
-                front: 0.09,
-                front + 0.5: 0.0,
-                side - 0.4: -0.10,
-                side: -0.09,
-                side + 0.6: 0.04,
-                3.4: 0.02,
-            },
-            times,
-            3.0,
-            0.8,
-        ),
-        "y": driven(
-            {
-                0.0: 0.03,
-                front - 0.35: -0.05,
-                front: -0.26,
-                front + 0.3: -0.18,
-                front + 0.6: -0.24,
-                side - 0.3: -0.26,
-                side: -0.34,
-                side + 0.3: -0.27,
-                3.4: -0.30,
-            },
-            times,
-            3.5,
-            0.7,
-        ),
-        "z": tall_m(body) - driven(drop, times, 4.0, 0.7) - 0.015 * ring,
-        "yaw": driven(
-            {
-                0.0: -32,
-                front - 0.35: -20,
-                front: 18,
-                front + 0.3: 10,
-                front + 0.65: 22,
-                side - 0.6: 4,
-                side - 0.15: -72,
-                side: -92,
-                side + 0.25: -80,
-                side + 0.7: -30,
-            },
-            times,
-        ),
-        "pitch": driven(
-            {0.0: 4, front - 0.2: -3, front: -16, front + 0.25: -5, front + 0.6: 9, 3.4: 4}, times
-        ),
-        "roll": driven(
-            {side - 0.5: 0, side - 0.15: -22, side: -33, side + 0.25: -24, side + 0.6: 4, 3.4: 0}, times
-        ),
-    }
+        "x": driven({0.0: 0.0, front - 0.4: 0.07, front: 0.09, front + 0.5: 0.0, side - 0.4: -0.10,
+                     side: -0.09, side + 0.6: 0.04, 3.4: 0.02}, times, 3.0, 0.8),
+        "y": driven({0.0: 0.03, front - 0.35: -0.05, front: -0.26, front + 0.3: -0.18, front + 0.6: -0.24,
+                     side - 0.3: -0.26, side: -0.34, side + 0.3: -0.27, 3.4: -0.30}, times, 3.5, 0.7),
+        "z": tall_m(body) - drop - 0.015 * ring,
+        "yaw": driven({0.0: -32, front - 0.35: -20, front: 18, front + 0.3: 10, front + 0.65: 22,
+                       side - 0.6: 4, side - 0.15: -72, side: -92, side + 0.25: -80, side + 0.7: -30}, times),
+        "pitch": driven({0.0: 4, front - 0.2: -3, front: -16, front + 0.25: -5, front + 0.6: 9,
+                         3.4: 4}, times),
+        "roll": driven({side - 0.5: 0, side - 0.15: -22, side: -33, side + 0.25: -24, side + 0.6: 4,
+                        3.4: 0}, times),
+    }  # fmt: skip
     trunk = {
         "pitch": driven({0.0: 8, front - 0.15: 14, front: 4, front + 0.3: 12, side: 8, 3.4: 9}, times)
-        + 3 * ring,
+                 + 3 * ring,
         "roll": driven({side - 0.4: 0, side - 0.1: -12, side: -20, side + 0.3: -12, side + 0.7: 2}, times),
-        "yaw": driven(
-            {
-                0.0: -6,
-                front - 0.25: -22,
-                front: 14,
-                front + 0.4: -6,
-                side - 0.3: -16,
-                side: 22,
-                side + 0.4: 6,
-                3.4: -4,
-            },
-            times,
-        ),
-        "neck_yaw": driven(
-            {0.0: 30, front: -20, front + 0.6: -12, side - 0.2: 58, side + 0.2: 60, 3.4: 34}, times
-        ),
+        "yaw": driven({0.0: -6, front - 0.25: -22, front: 14, front + 0.4: -6, side - 0.3: -16, side: 22,
+                       side + 0.4: 6, 3.4: -4}, times),
+        "neck_yaw": driven({0.0: 30, front: -20, front + 0.6: -12, side - 0.2: 58, side + 0.2: 60,
+                            3.4: 34}, times),
         "neck_pitch": driven({0.0: -6, front: 14, front + 0.5: -8, side: 6, 3.4: -4}, times),
         "neck_roll": driven({side - 0.4: 0, side: 22, side + 0.6: 0}, times),
-    }
+    }  # fmt: skip
     throw = burst(times, front - 0.32, front + 0.02, front + 0.42)
     guard = burst(times, side - 0.45, side - 0.02, side + 0.55)
     arms = {

@@ -5,6 +5,7 @@ from keymark.core.body.kinematics import Body
 from numpy.typing import NDArray
 
 from ..curves import burst, driven, keyed, shock
+from ..limbs import FreeLeg
 from ..performance import Choreography
 from ..standing import arm, choreography, free
 
@@ -61,11 +62,11 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
         ),
     }
     return choreography(
-        times, random, pelvis, trunk, arms, free=_legs(times, stumble), grounded=np.zeros(len(times))
+        times, random, pelvis, trunk, arms, free_legs=_legs(times, stumble), grounded=np.zeros(len(times))
     )
 
 
-def _legs(times: Array, stumble: Array) -> dict[str, object]:
+def _legs(times: Array, stumble: Array) -> dict[str, FreeLeg]:
     always = np.ones(len(times))
     standing = free(times, always, {"outward": 0, "ankle": 0})
     wind = driven({0.15: 0, 0.46: 1, 0.66: 0}, times)

@@ -5,7 +5,7 @@ from keymark.core.body.kinematics import Body
 from numpy.typing import NDArray
 
 from ..curves import cyclic, flight, shock, sprung, sway, uneven_phases
-from ..performance import Choreography
+from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, tall_m
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ ELBOW = {0.0: 14, 0.16: 48, 0.30: 34, 0.46: 16, 0.60: 42, 0.74: 58, 0.9: 20}
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     """Compose it."""
     phases = uneven_phases(times, PERIOD_S, UNEVENNESS, random)
-    vigour = 1.0 + 0.09 * sway(30.0 * times, random, (20.0, 60.0))
+    vigour = 1.0 + 0.09 * sway(FPS * times, random, (20.0, 60.0))
     height, landings = np.zeros(len(times)), []
     for cycle in np.arange(np.floor(phases[0]), np.ceil(phases[-1])):
         for off, on in FLIGHTS:
@@ -45,32 +45,32 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
                 landings.append(end)
     ring = shock(times, landings)
     turn = 2.0 * np.pi * phases
-    wander = 0.03 * sway(30.0 * times, random, (40.0, 90.0))
+    wander = 0.03 * sway(FPS * times, random, (40.0, 90.0))
     pelvis = {
         "x": wander,
-        "y": 0.02 * np.sin(turn) + 0.03 * sway(30.0 * times, random, (40.0, 90.0)),
+        "y": 0.02 * np.sin(turn) + 0.03 * sway(FPS * times, random, (40.0, 90.0)),
         "z": tall_m(body) - 0.02 + height - cyclic(phases, DROP_M) - 0.012 * ring,
-        "yaw": 7.0 * sway(30.0 * times, random, (30.0, 70.0)),
+        "yaw": 7.0 * sway(FPS * times, random, (30.0, 70.0)),
         "pitch": 5.0 + 5.0 * np.cos(2.0 * turn - 0.8) + 2.0 * ring,
         "roll": 2.0 * np.sin(turn) + 2.0 * ring * np.sin(0.5 * turn),
     }
     trunk = {
         "pitch": 4.0 + 6.0 * np.cos(2.0 * turn - 1.2) - 3.0 * np.cos(turn),
         "roll": -4.0 * np.sin(turn + 1.0),
-        "yaw": 6.0 * sway(30.0 * times, random, (20.0, 50.0)),
+        "yaw": 6.0 * sway(FPS * times, random, (20.0, 50.0)),
         "neck_pitch": -5.0 + 4.0 * ring,
-        "neck_yaw": 14.0 * sway(30.0 * times, random, (30.0, 60.0)),
+        "neck_yaw": 14.0 * sway(FPS * times, random, (30.0, 60.0)),
     }
     arms, feet = {}, {}
     for side, out, late in (("L", 1.0, 0.0), ("R", -1.0, 0.025)):
-        own = phases - late + 0.012 * sway(30.0 * times, random, (12.0, 40.0))
+        own = phases - late + 0.012 * sway(FPS * times, random, (12.0, 40.0))
         channels = arm(times, {"forward": 16.0, "rotation": 10.0, "pronation": 10.0})
         channels["elevation"] = sprung(vigour.clip(None, 1.03) * cyclic(own, ELEVATION), times, 6.0, 0.7)
         channels["flexion"] = sprung(vigour * cyclic(own, ELBOW), times, 6.0, 0.7)
         channels["girdle"] = 0.15 * channels["elevation"]
-        channels["forward"] = channels["forward"] + 10.0 * sway(30.0 * times, random, (15.0, 40.0))
+        channels["forward"] = channels["forward"] + 10.0 * sway(FPS * times, random, (15.0, 40.0))
         arms[side] = channels
         place = np.stack([wander + out * (0.085 + 0.27 * vigour * cyclic(own, APART)), 0.0 * times], axis=-1)
-        place[:, 1] += 0.03 * sway(30.0 * times, random, (14.0, 30.0))
+        place[:, 1] += 0.03 * sway(FPS * times, random, (14.0, 30.0))
         feet[side] = foot(place, out * 10.0 + pelvis["yaw"], cyclic(phases, ON_TOES_DEG), 0.92 * height)
     return choreography(times, random, pelvis, trunk, arms, feet)

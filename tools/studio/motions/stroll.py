@@ -9,7 +9,7 @@ from keymark.core.body.kinematics import Body
 from numpy.typing import NDArray
 
 from ..curves import cyclic, driven, shock, sprung, sway, uneven_phases
-from ..performance import Choreography
+from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, tall_m
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     ring = shock(times, strikes, 6.0, 0.08)
     pelvis = {
         "x": -(walked + 0.10 + 0.018 * np.sin(2.0 * turn + 0.6)),
-        "y": 0.022 * np.sin(turn + 0.5) + 0.01 * sway(30.0 * times, random),
+        "y": 0.022 * np.sin(turn + 0.5) + 0.01 * sway(FPS * times, random),
         "z": tall_m(body) - 0.042 - 0.020 * np.cos(2.0 * turn - 0.5) - 0.004 * ring,
         "yaw": TURNED_DEG + 6.0 * np.cos(turn + 0.2),
         "pitch": 5.0 + 1.5 * np.sin(2.0 * turn),
