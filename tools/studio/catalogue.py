@@ -111,11 +111,15 @@ SPIN = Described(
         things=(Thing((0.9, 0.3, 0.75), (0.10, 0.09, 0.08), {0: (-0.55, -0.95, 0.375)}),),
     ),
     seed=105,
+    keyframes=(0, 10, 19, 26, 32, 38, 47, 55, 64, 72, 80, 95),
     samples=1,
     noise=2.0,
     shadow_per_height=(0.8, 0.9, 0.0),
 )
-"""Warm light from one side, blue from the other, wide sleeves, and a counter before the feet."""
+"""Warm light from one side, blue from the other, wide sleeves, and a counter before the feet.
+
+Keyframes half a turn apart would leave open which way the turn goes; an animator poses more while it lasts.
+"""
 
 LIFT = Described(
     name="lift",
