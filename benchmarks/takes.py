@@ -1,12 +1,14 @@
-"""The takes that benchmarks measure: those beside the repository, and the demonstration."""
+"""The takes that benchmarks measure: those beside the repository, made ones, and the demonstration."""
 
 import importlib.util
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PLACES = (ROOT.parent / "shared" / "takes", ROOT / "presets" / "demo")
+NAMED_PLACES = "KEYMARK_TAKES"
+"""Environment variable of further folders of takes, apart as in PATH."""
 OUTPUT = ROOT / "out" / "bench"
 
 
@@ -23,8 +25,14 @@ def load_project() -> None:
 
 def take_names() -> dict[str, Path]:
     """Folders of takes with truth by the name in tables; the demonstration's begins with `demo`."""
+    named = [Path(place) for place in os.environ.get(NAMED_PLACES, "").split(os.pathsep) if place]
     found: dict[str, Path] = {}
-    for place in PLACES:
+    for place in (
+        ROOT.parent / "shared" / "takes",
+        ROOT / "out" / "takes",
+        *named,
+        ROOT / "presets" / "demo",
+    ):
         for truth in sorted(place.glob("*/truth.json")):
             name = truth.parent.name
             found[f"demo/{name}" if place.name == "demo" else name] = truth.parent

@@ -8,40 +8,23 @@ from pathlib import Path
 import bpy
 import cv2
 import numpy as np
-from choreography import FRAME_COUNT, Performance
 from keymark.core.footage.camera import Camera
 from mathutils import Matrix
 from numpy.typing import NDArray
-from performer import MARKERS, Performer
+
+from .look import MARKERS
+from .performance import FPS, Performance
+from .performer import Performer
+from .room import BuiltRoom
 
 Array = NDArray[np.float64]
 
-FPS = 30
 SHUTTER_FRAMES = 0.5
 ROOM_SAMPLES = 24
 MARGIN_PX = 16
-SHADOW_PER_HEIGHT = np.array([0.08, 0.30, 0.0])
-"""How far the shadow of a point falls beside it on the floor, for each metre of its height."""
 SIXTEEN_BITS = 65535.0
 GAMMA = 2.2
 """Exposures add up in linear light; near enough to the sRGB curve for blur and noise."""
-
-
-def look_at(
-    place: tuple[float, float, float],
-    target: tuple[float, float, float],
-    lens_mm: float,
-    size: tuple[int, int],
-) -> Camera:
-    """A camera with a horizontal horizon that looks from `place` at `target` [m]."""
-    backwards = np.array(place) - np.array(target)
-    backwards /= np.linalg.norm(backwards)
-    right = np.cross([0.0, 0.0, 1.0], backwards)
-    right /= np.linalg.norm(right)
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.stack([right, np.cross(backwards, right), backwards], axis=-1)
-    matrix[:3, 3] = place
-    return Camera(lens_mm, 36.0, size, np.round(matrix, 9))
 
 
 def place_camera(camera: Camera) -> None:
@@ -57,9 +40,11 @@ def place_camera(camera: Camera) -> None:
     scene.render.resolution_percentage = 100
 
 
-def prepare_cycles(seed: int) -> None:
-    """Render by path tracing on the processor, the same on every machine."""
+def prepare_cycles(seed: int, threads: int | None = None) -> None:
+    """Render by path tracing on the processor, the same on every machine, with so many threads or all."""
     scene = bpy.context.scene
+    if threads is not None:
+        scene.render.threads_mode, scene.render.threads = "FIXED", threads
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.seed = seed
@@ -87,37 +72,51 @@ def render(samples: int) -> Array:
 
 
 def film(
-    performer: Performer, performance: Performance, camera: Camera, moments: int, samples: int
+    performer: Performer,
+    performance: Performance,
+    room: BuiltRoom,
+    camera: Camera,
+    moments: int,
+    samples: int,
+    shadow_per_height: Array,
 ) -> list[Array]:
     """All frames of the performance as one camera sees them, without sensor noise.
 
-    The empty room is rendered once; each frame renders only where the performer and the shadow are, and the
-    seam is blended.
+    The empty room is rendered once; each frame renders only where the performer, the shadow and whatever
+    moves are, and the seam is blended.
 
     Args:
         performer: Who is filmed.
         performance: The motion.
+        room: Where.
         camera: The scene's camera is made this one.
         moments: Renders while the shutter is open, whose mean is the frame.
         samples: Light paths a pixel of each render.
+        shadow_per_height: (3,) how far the shadow of a point falls beside it on the floor, for each metre of
+            its height.
     """
     place_camera(camera)
-    performer.thing.hide_render = True
-    room = render(ROOM_SAMPLES)
-    performer.thing.hide_render = False
+    for thing in (performer.thing, *room.moving):
+        thing.hide_render = True
+    empty = render(ROOM_SAMPLES)
+    for thing in (performer.thing, *room.moving):
+        thing.hide_render = False
     offsets = SHUTTER_FRAMES * ((np.arange(moments) + 0.5) / moments - 0.5)
     images = []
-    for frame in range(FRAME_COUNT):
+    for frame in range(performance.frame_count):
         indices = performance.at(frame + offsets)
         performer.bend(performance, int(indices[moments // 2]))
-        left, top, right, bottom = _neighbourhood(performer.world_places(), camera)
+        places = np.concatenate([performer.world_places(), room.moving_places(frame)])
+        shadow = places * [1.0, 1.0, 0.0] + places[:, 2:] * shadow_per_height
+        left, top, right, bottom = _neighbourhood(np.concatenate([places, shadow]), camera)
         with _border(camera, left, top, right, bottom):
             light = np.zeros((bottom - top, right - left, 3))
-            for index in indices:
+            for index, offset in zip(indices, offsets, strict=True):
                 performer.bend(performance, int(index))
+                room.move(frame + offset)
                 light += render(samples) ** GAMMA / moments
         share = _seam(light.shape[:2], (left, top, right, bottom), camera.resolution)[..., None]
-        image = room.copy()
+        image = empty.copy()
         image[top:bottom, left:right] *= 1.0 - share
         image[top:bottom, left:right] += share * light ** (1.0 / GAMMA)
         images.append(image)
@@ -125,12 +124,12 @@ def film(
 
 
 def _neighbourhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom pixel bounds of the performer and the darkest part of the shadow."""
-    shadow = places * [1.0, 1.0, 0.0] + places[:, 2:] * SHADOW_PER_HEIGHT
-    pixels, _ = camera.project(np.concatenate([places, shadow]))
+    """Left, top, right and bottom pixel bounds of places (N, 3) before the camera, and a margin."""
+    pixels, depth = camera.project(places)
+    pixels = pixels[depth > 0.0]
     width, height = camera.resolution
-    first = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - MARGIN_PX, 0)
-    last = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + MARGIN_PX, [width, height])
+    first = np.clip(np.floor(pixels.min(axis=0)).astype(int) - MARGIN_PX, 0, [width - 1, height - 1])
+    last = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + MARGIN_PX, first + 1, [width, height])
     return int(first[0]), int(first[1]), int(last[0]), int(last[1])
 
 
@@ -201,15 +200,20 @@ def encode(images: list[NDArray[np.uint8]], path: Path, quality: str) -> None:
 
 
 @contextmanager
-def only_markers(performer: bpy.types.Object) -> Iterator[list[int]]:
+def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[int]]:
     """While open, renders are flat: each marker in a grey of its own, all else black; yields those greys."""
     scene = bpy.context.scene
-    mesh = performer.data
-    painted = list(mesh.materials)
-    others = [thing for thing in scene.objects if thing.type in ("MESH", "LIGHT") and thing is not performer]
+    kept_visible = (performer, *room.things)
+    others = [
+        thing for thing in scene.objects if thing.type in ("MESH", "LIGHT") and thing not in kept_visible
+    ]
     greys = [40 * (number + 1) for number in range(len(MARKERS))]
-    for slot in range(len(painted)):
-        mesh.materials[slot] = _flat(greys[slot] / 255.0 if slot < len(MARKERS) else 0.0)
+    painted = {thing: list(thing.data.materials) for thing in kept_visible}
+    black = _flat(0.0)
+    for thing, materials in painted.items():
+        for slot in range(len(materials)):
+            shown = thing is performer and slot < len(MARKERS)
+            thing.data.materials[slot] = _flat(greys[slot] / 255.0) if shown else black
     kept = (scene.cycles.use_denoising, scene.cycles.filter_width, scene.world)
     scene.cycles.use_denoising, scene.cycles.filter_width = False, 0.01
     scene.view_settings.view_transform, scene.world = "Raw", None
@@ -218,8 +222,9 @@ def only_markers(performer: bpy.types.Object) -> Iterator[list[int]]:
     try:
         yield greys
     finally:
-        for slot, material in enumerate(painted):
-            mesh.materials[slot] = material
+        for thing, materials in painted.items():
+            for slot, material in enumerate(materials):
+                thing.data.materials[slot] = material
         scene.cycles.use_denoising, scene.cycles.filter_width, scene.world = kept
         scene.view_settings.view_transform = "Standard"
         for thing in others:

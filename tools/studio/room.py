@@ -1,55 +1,98 @@
-"""An exercise room: a wooden floor, two walls, wall bars, pictures, a bench, a ball, and soft light."""
+"""A room: a wooden floor, two walls, some furniture, lamps, and what else stands or moves in it."""
+
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from mathutils import Vector
+from numpy.typing import NDArray
+
+from .surroundings import Lamp, Room, Thing, Triple
 
 WALL_BEHIND_Y, WALL_RIGHT_X = 1.75, -2.75
-WARM_WHITE = (0.72, 0.69, 0.63)
 SKIRTING = (0.80, 0.79, 0.76)
 WOOD = (0.30, 0.20, 0.12)
 GREY = (0.24, 0.25, 0.27)
 DARK = (0.07, 0.07, 0.08)
-Triple = tuple[float, float, float]
+Array = NDArray[np.float64]
 
 
-def build_room() -> None:
+@dataclass(frozen=True, eq=False)
+class BuiltRoom:
+    """A room in Blender's scene.
+
+    Attributes:
+        things: Blender's objects for the room's things.
+        room: What they were made from.
+    """
+
+    things: tuple[bpy.types.Object, ...]
+    room: Room
+
+    @property
+    def moving(self) -> list[bpy.types.Object]:
+        """Blender's objects for those that do not stand still."""
+        return [
+            thing for thing, described in zip(self.things, self.room.things, strict=True) if described.moves
+        ]
+
+    def move(self, frame: float) -> None:
+        """Put all things where they are at a frame."""
+        for thing, described in zip(self.things, self.room.things, strict=True):
+            thing.location = described.place(frame)
+
+    def moving_places(self, frame: float) -> Array:
+        """(N, 3) corners of all that moves [m]."""
+        corners = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        moving = [thing for thing in self.room.things if thing.moves]
+        return np.concatenate(
+            [np.zeros((0, 3)), *(thing.place(frame) + corners * thing.size for thing in moving)]
+        )
+
+
+def build_room(room: Room) -> BuiltRoom:
     """Add the room to the scene; the performer has about 3 m by 3 m."""
-    _floor()
-    wall = _matt("Wall", WARM_WHITE, uneven=0.06)
+    _floor(room.planks)
+    wall = _matt("Wall", room.wall, uneven=0.06)
     _box("Wall behind", (0.0, WALL_BEHIND_Y + 0.05, 1.5), (9.0, 0.1, 3.6), wall)
     _box("Wall right", (WALL_RIGHT_X - 0.05, -1.5, 1.5), (0.1, 8.0, 3.6), wall)
     skirting = _matt("Skirting", SKIRTING)
     _box("Skirting behind", (0.0, WALL_BEHIND_Y - 0.01, 0.06), (9.0, 0.03, 0.12), skirting)
     _box("Skirting right", (WALL_RIGHT_X + 0.01, -1.5, 0.06), (0.03, 8.0, 0.12), skirting)
-    _wall_bars(-1.55, WALL_BEHIND_Y - 0.09)
-    _pictures()
-    _bench(2.0, WALL_BEHIND_Y - 0.38)
-    _ball((-2.25, 1.05, 0.30), 0.30)
-    _light((-0.6, -4.0, 3.3), 2.4, 215.0, (1.0, 0.96, 0.90))
-    _light((3.4, -2.2, 2.6), 1.8, 80.0, (0.92, 0.96, 1.0))
+    if room.furnished:
+        _wall_bars(-1.55, WALL_BEHIND_Y - 0.09)
+        _pictures()
+        _bench(2.0, WALL_BEHIND_Y - 0.38)
+        _ball((-2.25, 1.05, 0.30), 0.30, _matt("Ball", (0.32, 0.34, 0.36)))
+    for lamp in room.lamps:
+        _light(lamp)
     world = bpy.data.worlds.new("Room light")
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.95, 0.97, 1.0, 1.0)
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.42
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (*room.sky[:3], 1.0)
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = room.sky[3]
     bpy.context.scene.world = world
+    return BuiltRoom(tuple(_thing(thing) for thing in room.things), room)
 
 
-def _floor() -> None:
+def _thing(thing: Thing) -> bpy.types.Object:
+    place = tuple(float(value) for value in thing.place(0.0))
+    material = _matt("Thing", thing.colour, uneven=0.1, scale=4.0)
+    if thing.round:
+        return _ball(place, 0.5 * thing.size[0], material)
+    return _box("Thing", place, thing.size, material)
+
+
+def _floor(planks: tuple[Triple, Triple, Triple]) -> None:
     floor = _box("Floor", (0.0, -1.5, -0.05), (9.0, 8.0, 0.1), _matt("Floor", WOOD))
     material = floor.data.materials[0]
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    planks, place = nodes.new("ShaderNodeTexBrick"), nodes.new("ShaderNodeTexCoord")
-    for name, colour in (
-        ("Color1", (0.36, 0.27, 0.19)),
-        ("Color2", (0.31, 0.23, 0.16)),
-        ("Mortar", (0.2, 0.15, 0.1)),
-    ):
-        planks.inputs[name].default_value = (*colour, 1.0)
+    bricks, place = nodes.new("ShaderNodeTexBrick"), nodes.new("ShaderNodeTexCoord")
+    for name, colour in zip(("Color1", "Color2", "Mortar"), planks, strict=True):
+        bricks.inputs[name].default_value = (*colour, 1.0)
     for name, value in (("Scale", 1.0), ("Brick Width", 1.6), ("Row Height", 0.16), ("Mortar Size", 0.004)):
-        planks.inputs[name].default_value = value
-    links.new(place.outputs["Object"], planks.inputs["Vector"])
-    links.new(planks.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+        bricks.inputs[name].default_value = value
+    links.new(place.outputs["Object"], bricks.inputs["Vector"])
+    links.new(bricks.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
     nodes["Principled BSDF"].inputs["Roughness"].default_value = 0.5
 
 
@@ -74,11 +117,12 @@ def _bench(x: float, y: float) -> None:
         _box("Bench leg", (x + side, y, 0.2), (0.07, 0.28, 0.4), _matt("Leg", DARK))
 
 
-def _ball(place: Triple, radius: float) -> None:
+def _ball(place: Triple, radius: float, material: bpy.types.Material) -> bpy.types.Object:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=radius, location=place)
     ball = bpy.context.object
-    ball.data.materials.append(_matt("Ball", (0.32, 0.34, 0.36)))
+    ball.data.materials.append(material)
     bpy.ops.object.shade_smooth()
+    return ball
 
 
 def _box(name: str, place: Triple, size: Triple, material: bpy.types.Material) -> bpy.types.Object:
@@ -111,10 +155,11 @@ def _matt(name: str, colour: Triple, uneven: float = 0.0, scale: float = 1.5) ->
     return material
 
 
-def _light(place: Triple, size: float, power: float, colour: Triple) -> None:
+def _light(lamp: Lamp) -> None:
     light = bpy.data.lights.new("Window", "AREA")
-    light.size, light.energy, light.color = size, power, colour
+    light.size, light.energy, light.color = lamp.size, lamp.power, lamp.colour
     thing = bpy.data.objects.new("Window", light)
-    thing.location = place
-    thing.rotation_euler = (Vector((0.2, 0.0, 1.0)) - Vector(place)).to_track_quat("-Z", "Y").to_euler()
+    thing.location = lamp.place
+    towards = Vector((0.2, 0.0, 1.0)) - Vector(lamp.place)
+    thing.rotation_euler = towards.to_track_quat("-Z", "Y").to_euler()
     bpy.context.scene.collection.objects.link(thing)

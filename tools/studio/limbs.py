@@ -1,8 +1,10 @@
 """From the angles and places that describe an exercise to the skeleton's joint rotations."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from keymark.core.body.kinematics import Body
-from keymark.core.body.rotations import hinge
+from keymark.core.body.rotations import exponential, hinge, logarithm
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -12,6 +14,31 @@ MIRROR = np.diag([-1.0, 1.0, 1.0])
 """Takes left to right, the sagittal plane being x = 0."""
 STRAIGHTEST = 0.9985
 """Share of a leg's length it may reach: a leg stretched to the last has no knee direction."""
+STRETCHING = 0.975
+"""Share of its length from which on a leg resists being stretched."""
+SOLE = np.array([[0.0, 0.065, -0.082], [0.0, -0.145, -0.082], [0.0, -0.19, -0.078]])
+"""Heel, ball and tip of a foot, from its ankle [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeLeg:
+    """A leg that swings by angles instead of reaching for a place; all (T,), degrees but for `share`.
+
+    Attributes:
+        flexion: Of the hip, forward.
+        outward: Angle of the plane of flexion beside straight ahead; at 90 flexion lifts the leg sideways.
+        twist: Of the thigh, toes outward.
+        knee: Flexion.
+        ankle: Toes downward.
+        share: How much of the leg is free, from 0 to 1.
+    """
+
+    flexion: Array
+    outward: Array
+    twist: Array
+    knee: Array
+    ankle: Array
+    share: Array
 
 
 def turned(yaw: Array, pitch: Array, roll: Array) -> Array:
@@ -71,3 +98,36 @@ def leg_rotations(
     axis = -(down * np.cos(at_hip) + ahead * np.sin(at_hip))
     frame = np.stack([across, np.cross(axis, across), axis], axis=-1)
     return np.swapaxes(pelvis_rotation, -1, -2) @ frame, np.pi - at_knee
+
+
+def free_leg(side: str, swing: FreeLeg, pelvis_rotation: Array) -> tuple[Array, Array, Array]:
+    """Hip rotation (T, 3, 3), knee flexion (T,) [rad] and the foot's world rotation (T, 3, 3)."""
+    outward, twist = np.radians(swing.outward), np.radians(swing.twist)
+    left = hinge(Z, outward) @ hinge(X, -np.radians(swing.flexion)) @ hinge(Z, twist - outward)
+    hip = left if side == "L" else MIRROR @ left @ MIRROR
+    knee = np.radians(swing.knee)
+    foot = pelvis_rotation @ hip @ hinge(X, knee + np.radians(swing.ankle))
+    return hip, knee, foot
+
+
+def within_reach(body: Body, side: str, pelvis: Array, pelvis_rotation: Array, ankle: Array) -> Array:
+    """(T, 3) ankles drawn towards the hip where the leg is too short: the heel leaves the floor."""
+    lengths = body.actor.segments_m
+    longest = lengths[f"thigh.{side}"] + lengths[f"shin.{side}"]
+    hip = pelvis + pelvis_rotation @ (0.5 * lengths["hip_width"] * (X if side == "L" else -X))
+    reach = ankle - hip
+    share = np.linalg.norm(reach, axis=-1) / longest
+    room = STRAIGHTEST - STRETCHING
+    excess = np.clip(share - STRETCHING, 0.0, None)
+    soft = np.where(excess > 0.0, STRETCHING + room * (1.0 - np.exp(-excess / room)), share)
+    return np.asarray(hip + reach * (np.minimum(soft, 0.9999 * STRAIGHTEST) / share)[:, None])
+
+
+def foot_clearance(foot: Array) -> Array:
+    """(T,) how high an ankle is over the lowest place of its sole [m], for foot rotations (T, 3, 3)."""
+    return -np.asarray((foot[:, 2, None, :] * SOLE).sum(axis=-1).min(axis=-1))
+
+
+def blended(first: Array, second: Array, share: Array) -> Array:
+    """Rotations (T, 3, 3) on the shortest way from `first` to `second`, by shares (T,)."""
+    return np.asarray(first @ exponential(share[:, None] * logarithm(np.swapaxes(first, -1, -2) @ second)))

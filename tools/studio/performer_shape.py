@@ -5,6 +5,7 @@ cloth stands off, the trunk is one curved form. Sizes are metres. Each part move
 parts meet the skin blends.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,15 +113,17 @@ class Part:
     rings: Array
 
 
-def body_parts(body: Body) -> list[Part]:
-    """All parts in their joints' frames."""
-    parts = [*_trunk_parts(body), *_head_parts(body)]
+def body_parts(body: Body, girths: Mapping[str, float]) -> list[Part]:
+    """All parts in their joints' frames; `girths` are factors of thickness by kind, 1 where not given."""
+    parts = [*_trunk_parts(body, girths.get("trunk", 1.0)), *_head_parts(body)]
     for segment in body.skeleton.segments:
         kind = segment.name.split(".")[0]
         if kind in LIMBS:
             start, end = body.local(segment.start), body.local(segment.end)
             joint = body.skeleton.joints[segment.joint].name
-            parts.append(Part(segment.name, joint, _stack(start, end - start, LIMBS[kind])))
+            parts.append(
+                Part(segment.name, joint, _stack(start, end - start, LIMBS[kind], girths.get(kind, 1.0)))
+            )
             if kind == "hand":
                 parts.append(Part(segment.name, joint, _thumb(start, end)))
     for side in ("L", "R"):
@@ -162,13 +165,17 @@ def _ring(centre: Array, sideways: Array, backwards: Array) -> Array:
     return np.asarray(centre + np.cos(angle) * sideways + np.sin(angle) * backwards)
 
 
-def _stack(start: Array, along: Array, rings: list[Ring]) -> Array:
-    """Rings across a segment; its frame's x, or for arms y, is sideways."""
+def _stack(start: Array, along: Array, rings: list[Ring], girth: float = 1.0) -> Array:
+    """Rings across a segment, `girth` times as thick; its frame's x, or for arms y, is sideways."""
     arm = abs(along[0]) > abs(along[2])
     sideways, backwards = (np.eye(3)[1], np.eye(3)[2]) if arm else (np.eye(3)[0], np.eye(3)[1])
     return np.stack(
         [
-            _ring(start + share * along + shift * backwards, wide * sideways, deep * backwards)
+            _ring(
+                start + share * along + shift * backwards,
+                girth * wide * sideways,
+                girth * deep * backwards,
+            )
             for share, wide, deep, shift in _denser(rings)
         ]
     )
@@ -182,15 +189,15 @@ def _denser(rings: list[Ring]) -> Array:
     return np.stack([share, *columns], axis=-1)
 
 
-def _trunk_parts(body: Body) -> list[Part]:
+def _trunk_parts(body: Body, girth: float) -> list[Part]:
     length = body.actor.segments_m["trunk"]
     up = np.array([0.0, 0.0, length])
     waist = body.offsets[body.skeleton.joint_index("waist")]
     lower = [ring for ring in TRUNK if ring[0] <= WAIST_SHARE + 0.05]
     upper = [ring for ring in TRUNK if ring[0] >= WAIST_SHARE - 0.12]
     return [
-        Part("pelvis", "pelvis", _stack(np.zeros(3), up, lower)),
-        Part("chest", "waist", _stack(-waist, up, upper)),
+        Part("pelvis", "pelvis", _stack(np.zeros(3), up, lower, girth)),
+        Part("chest", "waist", _stack(-waist, up, upper, girth)),
     ]
 
 

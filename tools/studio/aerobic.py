@@ -1,29 +1,25 @@
-"""The performance: four seconds of aerobic exercise, composed from keyed channels.
+"""The demonstration: four seconds of aerobic exercise, composed from keyed channels.
 
 Side step left, knee lift right, side step right with both arms up, knee lift left, back to standing. The feet
-are keyed in the world and the legs reach for them, so a planted foot stands exactly still; pelvis, trunk and
-arms are keyed in the angles that a coach would name. Frames count from 0 and may be fractional; angles are
-degrees here.
+are keyed in the world and the legs reach for them, so a planted foot stands exactly still. Frames count from
+0 and may be fractional; angles are degrees here.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
-from keymark.core.body.posture import Posture
-from limbs import arm_rotations, leg_rotations, turned
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import gaussian_filter1d
 
+from .curves import Keys, keyed, sway
+from .limbs import turned
+from .performance import SIDES, STEPS_PER_FRAME, Choreography, Performance, compose, stored_times
+
 Array = NDArray[np.float64]
-Keys = dict[float, float]
 Step = tuple[float, float, tuple[float, float], float]
 """Frames of lifting and landing, where it lands (x, y) [m], how high it rises on the way [m]."""
 
 FRAME_COUNT = 118
-STEPS_PER_FRAME = 8
 SMOOTHING_FRAMES = 1.6
 ANKLE_HEIGHT_M = 0.082
 TOES_OUT_DEG = {"L": 9.0, "R": -6.0}
@@ -135,76 +131,26 @@ ARMS: dict[str, dict[str, Keys]] = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Performance:
-    """The motion at any time.
-
-    Attributes:
-        body: The performer.
-        times: (T,) frames, from 0, an even fraction of a frame apart.
-        postures: A batch of T postures.
-        feet: The world rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with
-            the shins, a person's are not.
-    """
-
-    body: Body
-    times: Array
-    postures: Posture
-    feet: dict[str, Array]
-
-    def at(self, times: Array) -> NDArray[np.intp]:
-        """Indices of the stored times nearest to `times` [frames]."""
-        step = self.times[1] - self.times[0]
-        return np.clip(np.rint((times - self.times[0]) / step), 0, len(self.times) - 1).astype(np.intp)
-
-
 def perform(seed: int) -> Performance:
     """Compose the performance; `seed` chooses the small sway that no living person is without."""
-    body = Body(ACTOR)
-    times = np.arange(-STEPS_PER_FRAME, (FRAME_COUNT + 1) * STEPS_PER_FRAME) / STEPS_PER_FRAME
+    times = stored_times(FRAME_COUNT)
     random = np.random.default_rng(seed)
     pelvis = {name: _curve(keys, times) for name, keys in PELVIS.items()}
     for name, values in pelvis.items():
-        values += _sway(times, random) * (SWAY_M if name in "xyz" else SWAY_DEG)
-    trunk = {n: _curve(keys, times) + SWAY_DEG * _sway(times, random) for n, keys in TRUNK.items()}
-    posture = Posture.rest(body.skeleton, times.shape)
-    balls = {body.skeleton.joints[i].name: column for column, i in enumerate(body.skeleton.ball_joints)}
-    hinges = {body.skeleton.joints[i].name: column for column, i in enumerate(body.skeleton.hinge_joints)}
-    rotation, angle = posture.rotations.copy(), posture.angles.copy()
-    rotation[:, balls["pelvis"]] = turned(pelvis["yaw"], pelvis["pitch"], pelvis["roll"])
-    rotation[:, balls["waist"]] = turned(trunk["yaw"], trunk["pitch"], trunk["roll"])
-    rotation[:, balls["neck"]] = turned(trunk["neck_yaw"], trunk["neck_pitch"], trunk["neck_roll"])
-    for side, channels in ARMS.items():
-        arm = {n: _curve(keys, times) + 2.0 * SWAY_DEG * _sway(times, random) for n, keys in channels.items()}
-        rotation[:, balls[f"shoulder.{side}"]] = arm_rotations(
-            side, arm["elevation"], arm["forward"], arm["twist"]
-        )
-        angle[:, hinges[f"elbow.{side}"]] = np.radians(arm["flexion"])
-        angle[:, hinges[f"forearm.{side}"]] = np.radians(arm["pronation"])
-        angle[:, hinges[f"girdle.{side}"]] = np.radians(arm["girdle"])
-    place = np.stack([pelvis["x"], pelvis["y"], pelvis["z"]], axis=-1)
-    feet = {}
-    for side in ("L", "R"):
-        ankle, foot = _foot(side, times)
-        upper, knee = leg_rotations(body, side, place, rotation[:, balls["pelvis"]], ankle, foot)
-        rotation[:, balls[f"hip.{side}"]] = upper
-        angle[:, hinges[f"knee.{side}"]] = knee
-        feet[side] = foot
-    return Performance(body, times, Posture(body.skeleton, place, rotation, angle), feet)
+        values += sway(times, random) * (SWAY_M if name in "xyz" else SWAY_DEG)
+    trunk = {n: _curve(keys, times) + SWAY_DEG * sway(times, random) for n, keys in TRUNK.items()}
+    arms = {
+        side: {n: _curve(keys, times) + 2.0 * SWAY_DEG * sway(times, random) for n, keys in channels.items()}
+        for side, channels in ARMS.items()
+    }
+    feet = {side: _foot(side, times) for side in SIDES}
+    return compose(Body(ACTOR), times, Choreography(pelvis, trunk, arms, feet, exact_reach=True))
 
 
 def _curve(keys: Keys, times: Array) -> Array:
     """A smooth curve through keys that does not overshoot them."""
-    curve = PchipInterpolator(list(keys), list(keys.values()), extrapolate=False)
-    values = curve(np.clip(times, 0.0, FRAME_COUNT - 1.0))
+    values = keyed(keys, np.clip(times, 0.0, FRAME_COUNT - 1.0))
     return np.asarray(gaussian_filter1d(values, SMOOTHING_FRAMES * STEPS_PER_FRAME, mode="nearest"))
-
-
-def _sway(times: Array, random: np.random.Generator) -> Array:
-    """Slow irregular motion of unit size: three waves of unrelated periods."""
-    periods = random.uniform(19.0, 61.0, 3)
-    phases = random.uniform(0.0, 2.0 * np.pi, 3)
-    return np.asarray(np.sin(2.0 * np.pi * times[:, None] / periods + phases).sum(axis=1) / np.sqrt(3.0))
 
 
 def _foot(side: str, times: Array) -> tuple[Array, Array]:
@@ -228,8 +174,3 @@ def _foot(side: str, times: Array) -> tuple[Array, Array]:
         here = there
     outward = np.full(len(times), TOES_OUT_DEG[side])
     return ankle, turned(outward, pitch, np.zeros(len(times)))
-
-
-def principal_points(performance: Performance, indices: NDArray[np.intp]) -> Array:
-    """The true principal points (N, 13, 3) [m] at stored times."""
-    return performance.body.points(performance.body.pose(performance.postures[indices]))

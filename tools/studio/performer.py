@@ -4,15 +4,17 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from choreography import Performance
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
-from limbs import arm_rotations
 from numpy.typing import NDArray
-from performer_shape import body_parts, movers, part_mesh
 from scipy.sparse import coo_matrix
 from scipy.spatial import cKDTree
+
+from .limbs import arm_rotations
+from .look import Colour, Look
+from .performance import Performance
+from .performer_shape import body_parts, movers, part_mesh
 
 Array = NDArray[np.float64]
 
@@ -21,25 +23,10 @@ SMOOTHING_PASSES = 5
 BLEND_M = 0.016
 """How far one part's hold on the skin reaches beyond its own surface."""
 WEIGHT_PASSES = 10
-CLOTH_M = {"trunk": 0.005, "forearm": 0.003, "shin": 0.006}
-"""How far each garment stands off."""
+FOLD_M = 0.035
+"""From one fold of a garment to the next."""
 NECKLINE_M = 0.075
 ARMS_OUT_DEG, LEGS_APART_DEG = 52.0, 14.0
-
-MATERIALS: dict[str, tuple[int, int, int]] = {
-    "trunk": (44, 92, 200),
-    "forearm.L": (214, 44, 52),
-    "forearm.R": (52, 166, 78),
-    "shin.L": (232, 190, 44),
-    "shin.R": (178, 52, 156),
-    "skin": (206, 154, 126),
-    "cloth": (52, 53, 58),
-    "hair": (58, 42, 34),
-    "shoe": (206, 206, 202),
-    "eye": (40, 30, 28),
-}
-"""Colours as painted (sRGB); light and camera change them."""
-MARKERS = tuple(MATERIALS)[:5]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,11 +65,11 @@ class Performer:
         return _read(self.thing.data.vertices, "co")
 
 
-def build_performer(body: Body) -> Performer:
+def build_performer(body: Body, look: Look) -> Performer:
     """Model the performer with arms and legs apart, find out what moves each vertex, and paint it."""
     pose = body.pose(_modelling_posture(body))
     placed = movers(body, pose, {side: np.eye(3)[None] for side in ("L", "R")})
-    parts = body_parts(body)
+    parts = body_parts(body, look.girths)
     meshes = [part_mesh(part, placed[part.mover][0][0], placed[part.mover][1][0]) for part in parts]
     thing = _one_surface(meshes)
     mesh = thing.data
@@ -93,13 +80,20 @@ def build_performer(body: Body) -> Performer:
         for name in names
     }
     weights = _weights(mesh, places, [samples[name] for name in names])
-    dressed = _paint(mesh, body, places, weights, names, placed)
-    for garment, thickness in CLOTH_M.items():
-        worn = np.array([name.split(".")[0] == garment for name in dressed])
-        places = places + thickness * worn[:, None] * normals
+    dressed = _paint(mesh, body, look.painted, places, weights, names, placed)
+    thickness = np.array([look.cloth_m.get(name.split(".")[0], 0.0) for name in dressed])
+    places = places + (thickness * (1.0 + look.folds * _folds(places)))[:, None] * normals
     rotation = np.stack([placed[name][0][0] for name in names])
     origin = np.stack([placed[name][1][0] for name in names])
     return Performer(thing, places, weights, names, (rotation, origin))
+
+
+def _folds(places: Array) -> Array:
+    """Irregular waves (V,) between -1 and 1 over the surface."""
+    x, y, z = (2.0 * np.pi / FOLD_M * places).T
+    return np.asarray(
+        np.sin(0.9 * z + 0.7 * np.sin(0.31 * x + 0.4 * y)) * np.sin(0.45 * x - 0.35 * y + 0.2 * z)
+    )
 
 
 def _modelling_posture(body: Body) -> Posture:
@@ -159,6 +153,7 @@ def _weights(mesh: bpy.types.Mesh, places: Array, samples: list[Array]) -> Array
 def _paint(
     mesh: bpy.types.Mesh,
     body: Body,
+    colours: dict[str, Colour],
     places: Array,
     weights: Array,
     names: tuple[str, ...],
@@ -171,8 +166,8 @@ def _paint(
         rotation, origin = placed[name][0][0], placed[name][1][0]
         here = holder == name
         dressed[here] = _dress(name, body, (places[here] - origin) @ rotation)
-    order = list(MATERIALS)
-    for material, colour in MATERIALS.items():
+    order = list(colours)
+    for material, colour in colours.items():
         mesh.materials.append(_material(material, colour))
     corners = np.empty(4 * len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("vertices", corners)
@@ -212,7 +207,7 @@ def _dress(name: str, body: Body, local: Array) -> NDArray[np.str_]:
     return worn
 
 
-def _material(name: str, colour: tuple[int, int, int]) -> bpy.types.Material:
+def _material(name: str, colour: Colour) -> bpy.types.Material:
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links

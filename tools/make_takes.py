@@ -1,0 +1,181 @@
+"""Make takes with truth: compose a performance, film it, and write down everything about it.
+
+Usage: make_takes.py [--output FOLDER] [--threads N] [NAME ...], with the Python of a virtual environment that
+has `bpy`; by default all takes of studio/catalogue.py into out/takes. The one called `aerobic` is the
+demonstration of presets/demo. A take needs some minutes. Equal seeds give equal motion, keyframes and, in one
+version of Blender, equal pictures.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import bpy
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "tests"), str(Path(__file__).resolve().parent)]
+from _boot import load_package  # noqa: E402
+
+load_package()
+
+from keymark.core.footage.markers import MarkerStyle  # noqa: E402
+from keymark.core.keyframe_file import rounded, write_keyframes  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.take import Take, write_take  # noqa: E402
+from studio.catalogue import TAKES  # noqa: E402
+from studio.described import Described  # noqa: E402
+from studio.filming import (  # noqa: E402
+    add_sensor_noise,
+    encode,
+    film,
+    marker_masks,
+    only_markers,
+    place_camera,
+    prepare_cycles,
+)
+from studio.look import MARKERS  # noqa: E402
+from studio.performance import FPS, Performance, principal_points  # noqa: E402
+from studio.performer import Performer, build_performer  # noqa: E402
+from studio.posing import pose_by_hand  # noqa: E402
+from studio.room import BuiltRoom, build_room  # noqa: E402
+
+FRAME_START = 1
+SIDE_EXPOSURE = {"moments": 2, "samples": 2}
+LICENSE = (
+    "The take in this folder (clip, camera, keyframes, truth) was made by\n"
+    "tools/make_takes.py and is free under the project's own licence,\n"
+    "GPL-3.0-or-later; see LICENSE in the project's root folder.\n"
+)
+
+
+def main(arguments: list[str]) -> int:
+    """Make the takes named; their folders get every file anew."""
+    parser = argparse.ArgumentParser(description="Make takes with truth.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(TAKES)}; by default all")
+    parser.add_argument("--output", type=Path, default=ROOT / "out" / "takes")
+    parser.add_argument("--threads", type=int, default=None, help="of rendering; by default one a core")
+    chosen = parser.parse_args(arguments)
+    unknown = [name for name in chosen.names if name not in TAKES]
+    if unknown:
+        parser.error(f"no take is called {', '.join(unknown)}; there are {', '.join(TAKES)}")
+    for name in chosen.names or TAKES:
+        make(TAKES[name], chosen.output / name, chosen.threads)
+    return 0
+
+
+def make(described: Described, output: Path, threads: int | None) -> None:
+    """Make one take."""
+    output.mkdir(parents=True, exist_ok=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    performance = described.perform(described.seed)
+    room = build_room(described.surroundings(performance))
+    performer = build_performer(performance.body, described.look)
+    prepare_cycles(described.seed, threads)
+    random = np.random.default_rng(described.seed)
+    shadow = np.array(described.shadow_per_height)
+    masks = _masks(performer, performance, room, described)
+    exposure = {"moments": described.moments, "samples": described.samples}
+    images = film(performer, performance, room, described.camera, **exposure, shadow_per_height=shadow)
+    noisy = [add_sensor_noise(image, random, described.noise) for image in images]
+    encode(noisy, output / "clip.mp4", described.quality)
+    _write_data(output, performance, masks, described)
+    if described.side is not None:
+        images = film(performer, performance, room, described.side, **SIDE_EXPOSURE, shadow_per_height=shadow)
+        noisy = [add_sensor_noise(image, random, described.noise) for image in images]
+        encode(noisy, output / "side.mp4", "MEDIUM")
+        _write_json(output / "side.json", {"clip": "side.mp4", "camera": described.side.to_dict()})
+
+
+def _masks(
+    performer: Performer, performance: Performance, room: BuiltRoom, described: Described
+) -> NDArray[np.bool_]:
+    """(F, M, height, width) where each marker is exactly visible in the middle of each exposure."""
+    place_camera(described.camera)
+    frames = []
+    with only_markers(performer.thing, room) as greys:
+        for frame, index in enumerate(performance.middles):
+            performer.bend(performance, int(index))
+            room.move(frame)
+            frames.append(marker_masks(greys))
+    return np.stack(frames)
+
+
+def _write_data(
+    output: Path, performance: Performance, masks: NDArray[np.bool_], described: Described
+) -> None:
+    indices = performance.middles
+    body = performance.body
+    points = principal_points(performance, indices)
+    truth = dict(zip(body.skeleton.point_names, rounded(np.swapaxes(points, 0, 1)), strict=True))
+    frames = list(range(FRAME_START, FRAME_START + performance.frame_count))
+    _write_json(output / "truth.json", {"frames": frames, "points": truth})
+    _write_json(output / "visibility.json", _visibility(masks))
+    (output / "LICENSE.txt").write_text(LICENSE, encoding="utf-8")
+    at = described.posed_frames(performance.frame_count)
+    exact = performance.postures[indices[list(at)]]
+    sight = -described.camera.matrix_world[:3, 2]
+    noisy = pose_by_hand(body, exact, sight, np.random.default_rng(described.seed))
+    take = Take(
+        folder=output,
+        clip=output / "clip.mp4",
+        fps=FPS,
+        frame_start=FRAME_START,
+        frame_count=performance.frame_count,
+        camera=described.camera,
+        body=body,
+        markers=_eyedropper(output / "clip.mp4", masks),
+        keyframes=tuple(Keyframe(index, exact[row]) for row, index in enumerate(at)),
+    )
+    write_take(take, output)
+    by_hand = [Keyframe(index, noisy[row]) for row, index in enumerate(at)]
+    write_keyframes(output / "keyframes_noisy.json", by_hand, body, FRAME_START)
+    if not described.postures:
+        for name in ("keyframes.json", "keyframes_noisy.json"):
+            _keep_points_only(output / name)
+
+
+def _keep_points_only(path: Path) -> None:
+    """Take the postures out of a keyframe file: a person who marks thirteen points says nothing of twists."""
+    keyframes = json.loads(path.read_text(encoding="utf-8"))["keyframes"]
+    for keyframe in keyframes:
+        del keyframe["posture"]
+    _write_json(path, {"keyframes": keyframes})
+
+
+def _visibility(masks: NDArray[np.bool_]) -> dict[str, dict[str, list]]:
+    """Visible pixels and their centroid [px] by marker and frame; null where none is visible."""
+    rows, columns = np.indices(masks.shape[2:]) + 0.5
+    visible: dict[str, dict[str, list]] = {}
+    for number, name in enumerate(MARKERS):
+        seen = masks[:, number]
+        centres = [
+            [round(float(columns[m].mean()), 2), round(float(rows[m].mean()), 2)] if m.any() else None
+            for m in seen
+        ]
+        visible[name] = {"pixels": [int(m.sum()) for m in seen], "centroid": centres}
+    return visible
+
+
+def _eyedropper(clip: Path, masks: NDArray[np.bool_]) -> tuple[MarkerStyle, ...]:
+    """One colour a marker, as found in the encoded footage: the median inside its region over the clip."""
+    capture = cv2.VideoCapture(str(clip))
+    images = np.stack([capture.read()[1] for _ in masks])[..., ::-1]
+    styles = []
+    for number, name in enumerate(MARKERS):
+        inside = np.stack([cv2.erode(m.astype(np.uint8), np.ones((3, 3))) for m in masks[:, number]]) > 0
+        red, green, blue = (int(round(value)) for value in np.median(images[inside], axis=0))
+        styles.append(MarkerStyle(name=name, segment=name, color_srgb=(red, green, blue)))
+    return tuple(styles)
+
+
+def _write_json(path: Path, value: object) -> None:
+    """Write JSON without spaces, which the folder's size would feel."""
+    path.write_text(json.dumps(value, separators=(",", ":")) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

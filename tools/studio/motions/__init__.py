@@ -1,0 +1,1 @@
+"""Motions of people, composed for takes: each module has `plan(body, times_s, random)`."""

@@ -1,0 +1,78 @@
+"""What surrounds a performer, described: lamps, walls, and things that stand or move about."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Triple = tuple[float, float, float]
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A square window of light that shines on the performer's chest.
+
+    Attributes:
+        place: Its middle [m].
+        size: Of an edge [m]; small ones throw hard shadows.
+        power: Watts.
+        colour: Red, green and blue, linear.
+    """
+
+    place: Triple
+    size: float
+    power: float
+    colour: Triple
+
+
+@dataclass(frozen=True)
+class Thing:
+    """A box or a ball that is no part of the room.
+
+    Attributes:
+        size: Edges [m]; a ball has three equal ones and is `round`.
+        colour: Red, green and blue, linear.
+        path: Its place [m] by frame, through which it moves evenly; a single one stands still.
+        round: Whether it is a ball.
+    """
+
+    size: Triple
+    colour: Triple
+    path: Mapping[float, Triple]
+    round: bool = False
+
+    @property
+    def moves(self) -> bool:
+        """Whether it does not stand still."""
+        return len(self.path) > 1
+
+    def place(self, frame: float) -> Array:
+        """(3,) where its middle is at a frame [m]."""
+        frames, places = np.array(list(self.path)), np.array(list(self.path.values()))
+        return np.array([np.interp(frame, frames, places[:, axis]) for axis in range(3)])
+
+
+@dataclass(frozen=True)
+class Room:
+    """What surrounds a performer.
+
+    Attributes:
+        lamps: The lamps, the brightest first.
+        sky: Red, green, blue and strength of the light from everywhere.
+        wall: Colour of the walls, linear.
+        planks: Colours of the floor's planks and of the gaps between them, linear.
+        furnished: Whether wall bars, pictures, a bench and a ball are there.
+        things: What else is there and may move or hide the performer.
+    """
+
+    lamps: tuple[Lamp, ...] = (
+        Lamp((-0.6, -4.0, 3.3), 2.4, 215.0, (1.0, 0.96, 0.90)),
+        Lamp((3.4, -2.2, 2.6), 1.8, 80.0, (0.92, 0.96, 1.0)),
+    )
+    sky: tuple[float, float, float, float] = (0.95, 0.97, 1.0, 0.42)
+    wall: Triple = (0.72, 0.69, 0.63)
+    planks: tuple[Triple, Triple, Triple] = ((0.36, 0.27, 0.19), (0.31, 0.23, 0.16), (0.2, 0.15, 0.1))
+    furnished: bool = True
+    things: tuple[Thing, ...] = ()
