@@ -17,7 +17,7 @@ REFERENCE_STEP_S = 1.0 / 30.0
 """Accelerations are stated as second differences at this step."""
 NATURAL_SHARE = 0.2
 """Of every degree of freedom's natural deviation (`Skeleton.deviations`)."""
-TOGETHER_SHARE, ALONE_SHARE = 6.0, 4.0
+TOGETHER_SHARE, ALONE_SHARE = 6.0, 2.5
 """Of the steps between keyframes over the square of the time they take, with and without correlations.
 
 A swing there and back within a gap, a half sine, accelerates by nearly ten times its size over that square.

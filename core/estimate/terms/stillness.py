@@ -27,9 +27,9 @@ class StillnessTerm:
     """Indices of the principal points it is about."""
     step_s: Array
     """(F - 1,) time between frames [s]."""
-    release_speed_m_s: float = 0.25
+    release_speed_m_s: float = 0.2
     """Speed across the line of sight at which a point is half released."""
-    depth_share: float = 0.1
+    depth_share: float = 0.3
     """How much motion along the line of sight counts to that speed."""
     release_height_m: float = 0.04
     """Height above the lowest of the points at which a point is half released."""
