@@ -1,13 +1,13 @@
-"""What the footage at the keyframes tells: where the markers sit, and how well the keyframes were posed.
+"""What the footage at the keyframes tells: how the markers sit, the lens, and how well the keyframes were posed.
 
-Both are read from the same differences between the regions seen and those predicted, so they are found
+All are read from the same differences between the regions seen and those predicted, so they are found
 together: the size of the posing error and of its timing are those that make what is seen most likely
-whatever the markers' placements (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and
-the placements are the most probable ones given those sizes. Regions that fit no placement count for less
+whatever the placements and the lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*),
+and placements and lens are the most probable ones given those sizes. Regions that fit none count for less
 (Student's t), and a marker that never fits is distrusted in all frames.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,9 @@ TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
 TIMING_MEAN = 0.7
 """An exponential belief in it [frames]."""
+LENS_STD = 0.03
+"""How far a stated focal length may be off, as a share."""
+LENS_DIFFERENCE = 1e-3
 UNUSED = 1e6
 """Variance that takes a row out [px²]."""
 MOST_DISTRUST = 10.0
@@ -53,6 +56,7 @@ class KeyframeEvidence:
     """The calibrated model and the trust that keyframes and markers deserve."""
 
     model: RegionModel
+    """With the placements and the lens found."""
     posing_scale: float
     """Size of the posing error relative to a person's usual one."""
     timing_frames: float
@@ -72,7 +76,7 @@ class _Differences:
     residual: Array
     """(J, R) predicted minus seen, at the average placements."""
     slopes: Array
-    """(J, R, M * P) by all placements' parameters."""
+    """(J, R, X) by what is fitted: all placements' M * P parameters and the logarithm of the focal length."""
     variance: Array
     """(J, R) of the rows at a perfectly posed keyframe."""
     posing: Array
@@ -114,31 +118,47 @@ def read_keyframes(
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
     # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
-    average = placement_values(model.placements)
     calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
-    distrust = np.ones(len(average))
+    distrust = np.ones(len(model.placements))
     scale, timing = SCALE_MEDIAN, 0.0
     for _ in range(ITERATIONS):
-        seen = _differences(calibrated, average, known, variance, posing[judged], velocity[judged])
+        seen = _differences(calibrated, model, known, variance, posing[judged], velocity[judged])
         scale, timing = _most_likely_sizes(seen, weight)
-        values, squared = _calibrate(seen, weight, scale, timing)
-        values = np.clip(average + values, SMALLEST, LARGEST)
-        calibrated = RegionModel(model.body, model.camera, placements_from(model.placements, values))
+        change, squared = _calibrate(seen, weight, scale, timing)
+        calibrated = _changed(model, change)
         weight = np.repeat(student_weight(squared, DEGREES, FEATURES), FEATURES, axis=1)
         distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
     total = scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :]
     return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, np.linalg.inv(total))
 
 
+def _changed(model: RegionModel, change: Array) -> RegionModel:
+    """A model with changed placements' parameters and logarithm of the focal length (X,)."""
+    values = placement_values(model.placements)
+    values = np.clip(values + change[:-1].reshape(values.shape), SMALLEST, LARGEST)
+    camera = replace(model.camera, lens_mm=model.camera.lens_mm * float(np.exp(change[-1])))
+    return RegionModel(model.body, camera, placements_from(model.placements, values))
+
+
 def _differences(
-    model: RegionModel, average: Array, known: KnownFrames, variance: Array, posing: Array, velocity: Array
+    model: RegionModel,
+    average: RegionModel,
+    known: KnownFrames,
+    variance: Array,
+    posing: Array,
+    velocity: Array,
 ) -> _Differences:
     predicted = model.evaluate(known.pose, known.frame, jacobian=True)
     residual, jacobian = feature_rows(known.observed, predicted)
     assert jacobian is not None
     slopes = placement_slopes(model.body, model.camera, known, model)
-    change = average - placement_values(model.placements)
-    residual = residual + (slopes @ change[..., None])[..., 0]
+    nudge = np.zeros(slopes.shape[1] * slopes.shape[-1] + 1)
+    nudge[-1] = LENS_DIFFERENCE
+    zoomed, _ = feature_rows(known.observed, _changed(model, nudge).evaluate(known.pose, known.frame))
+    by_lens = (zoomed - residual) / LENS_DIFFERENCE
+    change = placement_values(average.placements) - placement_values(model.placements)
+    lens_change = np.log(average.camera.lens_mm / model.camera.lens_mm)
+    residual = residual + (slopes @ change[..., None])[..., 0] + by_lens * lens_change
     usable = (
         np.isfinite(residual).all(-1)
         & (predicted.visible > LEAST_TRUSTED)
@@ -151,10 +171,11 @@ def _differences(
     own = np.zeros((judged, markers, FEATURES, markers, slopes.shape[-1]))
     index = np.arange(markers)
     own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], slopes, 0.0), 1, 0)
+    by_lens = np.where(usable[..., None], by_lens, 0.0).reshape(*rows, 1)
     jacobian = np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, -1)
     return _Differences(
         np.where(usable[..., None], residual, 0.0).reshape(rows),
-        own.reshape(*rows, -1),
+        np.concatenate([own.reshape(*rows, -1), by_lens], axis=-1),
         np.where(usable[..., None], variance, UNUSED).reshape(rows),
         jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
         (jacobian @ velocity[..., None])[..., 0],
@@ -192,16 +213,16 @@ def _log_likelihood(seen: _Differences, noise: Array) -> float:
 
 
 def _gather(seen: _Differences, noise: Array) -> tuple[Array, Array, Array]:
-    """The noise's inverse, the placements' information (X, X), prior included, and their right side (X,)."""
+    """The noise's inverse, what is known of the fitted (X, X), prior included, and their right side (X,)."""
     inverse = np.linalg.inv(noise)
     weighted = np.swapaxes(seen.slopes, -1, -2) @ inverse
-    prior = np.tile(PRIOR_STD**-2, seen.slopes.shape[-1] // len(PRIOR_STD))
+    prior = np.append(np.tile(PRIOR_STD, seen.slopes.shape[-1] // len(PRIOR_STD)), LENS_STD) ** -2
     information = (weighted @ seen.slopes).sum(axis=0) + np.diag(prior)
     return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
 
 
 def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (M, P) of the placements, and squared residuals (J, M) in their standard deviations."""
+    """Most probable change (X,) of what is fitted, and squared residuals (J, M) in their standard deviations."""
     noise = seen.noise(weight, scale, timing)
     _, information, right = _gather(seen, noise)
     change = -np.linalg.solve(information, right)
@@ -212,7 +233,7 @@ def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -
     index = np.arange(rows).reshape(-1, FEATURES)
     own = expected[:, index[:, :, None], index[:, None, :]]  # (J, M, 5, 5)
     squared = by_marker[..., None, :] @ np.linalg.solve(own, by_marker[..., None])
-    return change.reshape(-1, len(PRIOR_STD)), np.asarray(squared[..., 0, 0])
+    return change, np.asarray(squared[..., 0, 0])
 
 
 def _distrust(squared: Array, usable: NDArray[np.bool_]) -> Array:
