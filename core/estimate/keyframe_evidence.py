@@ -121,13 +121,15 @@ def read_keyframes(
     calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
     distrust = np.ones(len(model.placements))
     scale, timing = SCALE_MEDIAN, 0.0
-    for _ in range(ITERATIONS):
+    for iteration in range(ITERATIONS):
         seen = _differences(calibrated, model, known, variance, posing[judged], velocity[judged])
-        scale, timing = _most_likely_sizes(seen, weight)
+        if iteration > 0:  # before, nothing tells a careless keyframe from a marker that is something else
+            scale, timing = _most_likely_sizes(seen, weight)
         change, squared = _calibrate(seen, weight, scale, timing)
         calibrated = _changed(model, change)
-        weight = np.repeat(student_weight(squared, DEGREES, FEATURES), FEATURES, axis=1)
         distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
+        trust = student_weight(squared / distrust**2, DEGREES, FEATURES) / distrust**2
+        weight = np.repeat(trust, FEATURES, axis=1)
     total = scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :]
     return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, np.linalg.inv(total))
 
@@ -237,11 +239,11 @@ def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -
 
 
 def _distrust(squared: Array, usable: NDArray[np.bool_]) -> Array:
-    """(M,) factors: the median marker-frame's misfit against what it should be, where it is seen at all."""
-    distrust = np.ones(squared.shape[1])
+    """(M,) factors: each marker's median misfit against what it should be, or against the others' if larger."""
+    # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
+    usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
+    ratio = np.ones(squared.shape[1])
     for marker, (values, used) in enumerate(zip(squared.T, usable.T, strict=True)):
         if used.any():
-            # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
-            usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
-            distrust[marker] = np.clip(np.sqrt(np.median(values[used]) / usual), 1.0, MOST_DISTRUST)
-    return distrust
+            ratio[marker] = np.sqrt(np.median(values[used]) / usual)
+    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, MOST_DISTRUST))

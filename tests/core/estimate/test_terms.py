@@ -10,10 +10,12 @@ from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.depths import DepthTerm
 from keymark.core.estimate.terms.limits import LimitTerm
 from keymark.core.estimate.terms.quadratic import QuadraticBuilder
-from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows
+from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
+from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
 from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight
 from keymark.core.observation import depths
+from keymark.core.prior.variability import acceleration_factor
 
 FRAMES = 6
 DOFS = HUMAN.dof_count
@@ -26,9 +28,15 @@ def state(seed: int = 1, size: float = 0.05) -> ClipState:
         BODY,
         exercise(FRAMES),
         np.arange(FRAMES),
-        size * rng.normal(size=(FRAMES, DOFS)),
+        acceleration_factor(exercise(FRAMES), np.arange(FRAMES) / 4.0),
+        20.0 * size * rng.normal(size=(FRAMES, DOFS)),
         np.zeros((FRAMES, 0)),
     )
+
+
+def moved(at: ClipState, step: np.ndarray) -> ClipState:
+    """The state a small step away."""
+    return at.stepped(step, np.inf)[0]
 
 
 def gradient(term: Term, at: ClipState) -> np.ndarray:
@@ -45,7 +53,7 @@ def assert_gradient(term: Term, cost, at: ClipState) -> None:  # noqa: ANN001
     for _ in range(6):
         direction = rng.normal(size=ours.shape)
         step = 1e-6
-        numeric = (cost(at.stepped(step * direction)) - cost(at.stepped(-step * direction))) / (2 * step)
+        numeric = (cost(moved(at, step * direction)) - cost(moved(at, -step * direction))) / (2 * step)
         assert np.sum(ours * direction) == pytest.approx(numeric, rel=1e-4, abs=1e-6)
 
 
@@ -61,7 +69,7 @@ def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
         return float(0.5 * np.sum((depth - prior) ** 2) / term.std_m**2)
 
     assert_gradient(term, cost, at)
-    assert np.abs(gradient(term, at.stepped(-at.unknowns))).max() < 1e-9
+    assert np.abs(gradient(term, moved(at, -at.unknowns))).max() < 1e-9
 
 
 def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> None:
@@ -71,30 +79,85 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
     knee = HUMAN.dof_names.index("knee.R.flexion")
     deviation = np.zeros((FRAMES, DOFS))
     deviation[2, knee] = -0.5
-    push = gradient(LimitTerm(), ClipState(BODY, at.prior, at.frame, deviation, at.bias))
+    push = gradient(LimitTerm(), replace(at, factor=np.eye(DOFS), variation=deviation))
     assert push[2, knee] < 0.0
     assert np.count_nonzero(push) == 1
 
 
+def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:
+    """How strongly the stillness term pulls the first frame of a body that moves as a whole (3,) [m a frame]."""
+    term = StillnessTerm(CAMERA, points, np.full(FRAMES - 1, 1.0 / 30.0))
+    deviation = np.zeros((FRAMES, DOFS))
+    deviation[:, :3] = step_m * np.arange(FRAMES)[:, None]
+    held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
+    at = ClipState(BODY, held, np.arange(FRAMES), np.eye(DOFS), deviation, np.zeros((FRAMES, 0)))
+    return gradient(term, at)[0]
+
+
 def test_the_stillness_term_holds_a_slow_foot_and_lets_a_fast_one_go() -> None:
-    """The pull on a foot at walking speed is a small part of that on one that creeps."""
+    """The pull on a foot at walking speed across the view is a small part of that on one that creeps."""
     ankle = HUMAN.point_names.index("ankle.L")
-    term = StillnessTerm((ankle,), np.full(FRAMES - 1, 1.0 / 30.0))
+    across = CAMERA.matrix_world[:3, 0]
+    creeping, walking = (np.linalg.norm(pull((ankle,), across * v / 30.0)[:3]) for v in (0.06, 1.2))
+    assert creeping > 0.0
+    assert walking < 0.2 * creeping
 
-    def pull(speed_m_s: float) -> float:
-        deviation = np.zeros((FRAMES, DOFS))
-        deviation[:, 0] = speed_m_s / 30.0 * np.arange(FRAMES)
-        held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
-        return float(
-            np.abs(
-                gradient(term, ClipState(BODY, held, np.arange(FRAMES), deviation, np.zeros((FRAMES, 0))))[
-                    0, 0
-                ]
-            )
-        )
 
-    assert pull(0.03) > 0.0
-    assert pull(1.2) < 0.2 * pull(0.06)
+def test_motion_along_the_line_of_sight_alone_does_not_free_a_foot() -> None:
+    """The image would not show it: such a foot is held more strongly than one that moves across the view."""
+    ankle = HUMAN.point_names.index("ankle.L")
+    along, across = (
+        np.linalg.norm(pull((ankle,), CAMERA.matrix_world[:3, axis] * 0.4 / 30.0)[:3]) for axis in (2, 0)
+    )
+    assert along > 5.0 * across
+
+
+def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
+    """Of two still ankles the one far above the other may move."""
+    posture = exercise(1)
+    thigh = HUMAN.dof_names.index("hip.L.rotation_x")
+    raised = np.zeros((FRAMES, DOFS))
+    raised[:, thigh] = -1.2
+    term = StillnessTerm(
+        CAMERA,
+        (HUMAN.point_names.index("ankle.L"), HUMAN.point_names.index("ankle.R")),
+        np.full(FRAMES - 1, 1.0 / 30.0),
+    )
+    held = posture[np.zeros(FRAMES, dtype=np.intp)]
+    raised[:, 0] = 0.001 * np.arange(FRAMES)
+    at = ClipState(BODY, held, np.arange(FRAMES), np.eye(DOFS), raised, np.zeros((FRAMES, 0)))
+    found = gradient(term, at)[0]
+    left, right = (HUMAN.dof_names.index(f"hip.{side}.rotation_y") for side in "LR")
+    assert abs(found[left]) < 0.05 * abs(found[right])
+
+
+def test_bursts_of_acceleration_pull_less_than_their_size() -> None:
+    """The smoothness term is quadratic for usual accelerations and grows with their logarithm for bursts."""
+    at = state(size=0.0)
+    limb = HUMAN.limbs[1]
+
+    def push(size: float) -> float:
+        variation = np.zeros((FRAMES, DOFS))
+        variation[3, limb[0]] = size
+        return float(np.abs(gradient(SmoothnessTerm(1.0), replace(at, variation=variation))).max())
+
+    assert push(0.02) == pytest.approx(2.0 * push(0.01), rel=1e-2)
+    assert push(20.0) < push(2.0)
+
+
+def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
+    """Weights are a limb's own."""
+    at = state(size=0.0)
+    calm = np.zeros((FRAMES, DOFS))
+    calm[2, HUMAN.limbs[2][0]] = 1.0
+    kicking = calm.copy()
+    kicking[2, HUMAN.limbs[4][0]] = 50.0
+    limb = HUMAN.limbs[2]
+    term = SmoothnessTerm(1.0)
+    np.testing.assert_array_equal(
+        gradient(term, replace(at, variation=calm))[:, limb],
+        gradient(term, replace(at, variation=kicking))[:, limb],
+    )
 
 
 def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
@@ -105,7 +168,7 @@ def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
     at = state()
 
     def cost(s: ClipState) -> float:
-        return float(0.5 * np.sum((np.diff(s.deviation, 2, axis=0) / std) ** 2))
+        return float(0.5 * np.sum((np.diff(s.variation, 2, axis=0) / std) ** 2))
 
     assert_gradient(builder.term(), cost, at)
 
@@ -120,14 +183,8 @@ def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() 
     seen = tracks.visible
     assert residual.shape[-1] == FEATURES
     assert np.abs(residual[seen]).max() < 1e-9
-    moved = ObservedRegions(
-        observed.centroid - [3.0, 0.0],
-        observed.second_moment,
-        observed.axes,
-        observed.deviation,
-        observed.quality,
-    )
-    shifted, _ = feature_rows(moved, predicted)
+    elsewhere = replace(observed, centroid=observed.centroid - [3.0, 0.0])
+    shifted, _ = feature_rows(elsewhere, predicted)
     np.testing.assert_allclose(shifted[seen][:, 0], 3.0)
     np.testing.assert_allclose(shifted[seen][:, 1:], 0.0, atol=1e-9)
 
@@ -152,3 +209,13 @@ def test_student_weights_fall_with_the_residual() -> None:
     """One at zero, half where the mean square equals the degrees of freedom."""
     weight = student_weight(np.array([0.0, 8.0, 800.0]), 4.0, 2)
     np.testing.assert_allclose(weight, [1.0, 0.5, 4.0 / 404.0])
+
+
+def test_what_is_missing_of_a_region_widens_its_features() -> None:
+    """Nothing for a whole region, about a standard deviation of the region for half of it, and more for less."""
+    predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
+    variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
+    assert variance[0].max() == 0.0
+    along = np.sqrt(predicted.second_moment[..., 0, 0])
+    assert np.all(np.sqrt(variance[1][..., 0]) > 0.4 * along)
+    assert np.all(variance[2] > variance[1])

@@ -1,0 +1,117 @@
+"""Placements, lens, posing and timing errors, all found from what is seen at the keyframes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, MODEL, exercise, film
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, read_keyframes
+from keymark.core.estimate.posing_error import posing_covariance, velocities
+from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
+from keymark.core.footage.tracks import RegionTracks
+from keymark.core.observation.regions import MarkerPlacement, RegionModel
+
+FRAMES = 90
+MOTION = exercise(FRAMES)
+POSED = np.linspace(2, FRAMES - 3, 12).round().astype(np.intp)
+TRUE = tuple(
+    MarkerPlacement(name, first, last, lateral, 0.0, girth)
+    for name, first, last, lateral, girth in (
+        ("trunk", 0.15, 1.05, 0.005, 1.15),
+        ("forearm.L", 0.15, 0.85, 0.0, 1.2),
+        ("forearm.R", 0.0, 0.9, 0.0, 0.9),
+        ("shin.L", 0.2, 1.0, 0.004, 1.1),
+        ("shin.R", 0.1, 0.8, -0.004, 1.0),
+    )
+)
+
+
+def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> KeyframeEvidence:
+    """The evidence of keyframes posed at `POSED`."""
+    observed = ObservedRegions.from_tracks(tracks)[POSED]
+    width = limb_widths(model, posed.translation, POSED)
+    return read_keyframes(model, RegionNoise(), observed, width, posed, POSED)
+
+
+def posed_by_hand(seed: int) -> Posture:
+    """The true keyframes with a person's usual error."""
+    rng = np.random.default_rng(seed)
+    factor = np.linalg.cholesky(posing_covariance(BODY, BODY.pose(MOTION[POSED])))
+    return MOTION[POSED].plus((factor @ rng.normal(size=(*factor.shape[:-1], 1)))[..., 0])
+
+
+@pytest.fixture(scope="module")
+def worn() -> RegionTracks:
+    """The motion filmed with other placements than the average."""
+    return film(MOTION, 0.2, model=RegionModel(BODY, CAMERA, TRUE))
+
+
+def test_known_postures_tell_where_the_colour_begins_and_how_thick_the_limb_is(worn: RegionTracks) -> None:
+    """With exact keyframes the placements come back, and predict far better than average ones."""
+    found = read(MOTION[POSED], worn).model
+    for ours, true in zip(found.placements, TRUE, strict=True):
+        assert ours.first == pytest.approx(true.first, abs=0.06)
+        assert ours.last == pytest.approx(true.last, abs=0.06)
+        assert ours.girth == pytest.approx(true.girth, rel=0.15)
+
+    def error(model: RegionModel) -> float:
+        predicted = model.evaluate(BODY.pose(MOTION), np.arange(FRAMES))
+        return float(np.nanmean(np.linalg.norm(predicted.centroid - worn.centroid, axis=-1)))
+
+    assert error(found) < 0.4 * error(MODEL)
+
+
+def test_exact_keyframes_are_told_from_careless_ones(worn: RegionTracks) -> None:
+    """Whatever the placements are, the size of the posing error is found."""
+    exact = read(MOTION[POSED], worn)
+    careless = read(posed_by_hand(3), worn)
+    assert exact.posing_scale < 0.3
+    assert 0.5 < careless.posing_scale < 1.8
+    trust = [np.trace(evidence.information, axis1=-2, axis2=-1).mean() for evidence in (exact, careless)]
+    assert trust[0] > 3.0 * trust[1]
+
+
+@pytest.mark.parametrize("factor", [0.92, 1.08])
+def test_a_misstated_lens_is_found(factor: float) -> None:
+    """Keyframes that lie rightly in the world tell that the lens is another than stated."""
+    stated = replace(CAMERA, lens_mm=CAMERA.lens_mm * factor)
+    found = read(MOTION[POSED], film(MOTION, 0.2), RegionModel(BODY, stated, MODEL.placements)).model.camera
+    assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.015)
+
+
+def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
+    """A person's errors do not look like a lens."""
+    found = read(posed_by_hand(5), film(MOTION, 0.2)).model.camera
+    assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.02)
+
+
+def test_keyframes_set_at_the_wrong_frame_are_recognised() -> None:
+    """Postures of up to three frames before or after are taken as mistimed; right ones are not."""
+    rng = np.random.default_rng(4)
+    shifted = np.clip(POSED + rng.choice([-3, -2, 2, 3], len(POSED)), 0, FRAMES - 1)
+    tracks = film(MOTION, 0.2)
+    assert read(MOTION[shifted], tracks).timing_frames > 0.8
+    assert read(MOTION[POSED], tracks).timing_frames < 0.2
+
+
+def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
+    """Clutter in a marker's place for the whole clip costs that marker its weight, not the keyframes theirs."""
+    tracks = film(MOTION, 0.2)
+    rng = np.random.default_rng(6)
+    centroid = tracks.centroid.copy()
+    centroid[:, 2] += rng.uniform(12.0, 25.0, (FRAMES, 2)) * rng.choice([-1.0, 1.0], (FRAMES, 2))
+    evidence = read(MOTION[POSED], replace(tracks, centroid=centroid))
+    assert evidence.distrust[2] > 4.0
+    assert np.delete(evidence.distrust, 2).max() < 1.5
+    assert evidence.posing_scale < 0.5
+
+
+def test_velocities_are_those_of_the_parabola() -> None:
+    """On a motion of constant acceleration the middle keyframes' velocities are exact."""
+    frame = np.array([0, 4, 10, 13])
+    vector = np.zeros((4, BODY.skeleton.dof_count))
+    vector[:, 0] = 0.01 * frame + 0.002 * frame**2
+    found = velocities(Posture.from_vector(BODY.skeleton, vector), frame)
+    np.testing.assert_allclose(found[1:-1, 0], 0.01 + 0.004 * frame[1:-1])
+    assert np.abs(found[:, 1:]).max() == 0.0
