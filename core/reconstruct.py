@@ -11,6 +11,7 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
+from .footage.album import Album, watched
 from .footage.clip import Clip
 from .footage.markers import track_markers
 from .footage.tracks import ExpectedRegions, RegionTracks

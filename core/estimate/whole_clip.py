@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..footage.album import Album
 from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
 from ..observation.regions import MarkerPlacement, RegionModel
 from .clip_state import ClipState
+from .contour_evidence import read_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
@@ -32,6 +34,10 @@ from .windows import Window, windows
 Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+REFINEMENTS = (1.0, 1.0, 1.0)
+"""The steps that contours join in, when the markers have brought them within reach of their edges."""
+MARKERS_SHARE = 0.7
+"""Share of the work that is done before."""
 LARGEST_STEP = 0.5
 """No unknown of the posture moves further in one step [m, rad]."""
 SETTLED = 1e-3
@@ -85,6 +91,7 @@ def estimate_whole_clip(
     prior: Posture,
     keyframe_indices: tuple[int, ...],
     options: WholeClipOptions | None = None,
+    album: Album | None = None,
 ) -> Generator[float, None, WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -96,6 +103,7 @@ def estimate_whole_clip(
         prior: F postures that pass through the keyframes.
         keyframe_indices: Frames whose prior was posed, at least one.
         options: Noise, smoothness and windows.
+        album: Pictures of all frames, for contours to be looked for; None does without.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -127,6 +135,7 @@ def estimate_whole_clip(
             np.flatnonzero(inside),
             index[inside] - window.first,
             options,
+            album,
         )
         for done in problem.solve():
             yield (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
@@ -158,6 +167,7 @@ class _Problem:
     keyframe_frames: NDArray[np.intp]
     """Their places in the window."""
     options: WholeClipOptions
+    album: Album | None
 
     def __post_init__(self) -> None:
         skeleton = self.body.skeleton
@@ -180,14 +190,28 @@ class _Problem:
         ]
 
     def solve(self) -> Generator[float, None, None]:
-        """Gauss-Newton with annealed image noise; yields the fraction done."""
+        """Gauss-Newton with annealed image noise, then with contours too; yields the fraction done."""
+        for done in self._descend(TEMPERATURES):
+            yield done * MARKERS_SHARE
+        if self.album is not None:
+            contours = read_contours(
+                self.body, self.camera, self.album, self.state.posture, self.frame, self.keyframe_frames
+            )
+            if contours is not None:
+                self.terms.append(contours)
+                for done in self._descend(REFINEMENTS):
+                    yield MARKERS_SHARE + done * (1.0 - MARKERS_SHARE)
+        yield 1.0
+
+    def _descend(self, temperatures: tuple[float, ...]) -> Generator[float, None, None]:
+        """Gauss-Newton steps until nothing moves any more; yields the fraction done."""
         dofs = self.state.deviation.shape[1]
-        for i, temperature in enumerate(TEMPERATURES):
+        for i, temperature in enumerate(temperatures):
             equations = self._equations(temperature)
             step = equations.matrix.factorise().solve(-equations.gradient)
             step[:, :dofs] = np.clip(step[:, :dofs], -LARGEST_STEP, LARGEST_STEP)
             self.state = self.state.stepped(step)
-            yield (i + 1) / len(TEMPERATURES)
+            yield (i + 1) / len(temperatures)
             if temperature == 1.0 and np.abs(step[:, :dofs]).max() < SETTLED:
                 break
 

@@ -1,0 +1,98 @@
+"""A small picture of every frame, kept while the clip is read, so that nothing has to be decoded twice.
+
+What the estimate wants to see again, it wants only once it knows roughly where the performer is, and then on
+a coarse grid. Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip import Clip, FrameSource
+from .working_image import reduce, smooth
+
+Image = NDArray[np.uint8]
+
+_COLUMNS: Final = 320
+"""About the columns of the pictures: limbs are several pixels wide wherever markers can be followed."""
+_QUALITY: Final = 95
+"""Of the compression; its error stays below that of the video."""
+
+
+@dataclass(eq=False)
+class Album:
+    """Small pictures of the frames read so far.
+
+    Attributes:
+        factor: pixels of the clip to a pixel of the pictures, along either axis.
+    """
+
+    factor: int = 1
+    _pictures: dict[int, NDArray[np.uint8]] = field(default_factory=dict)
+
+    def add(self, index: int, image: Image) -> None:
+        """Keep a frame (rows, columns, 3)."""
+        self.factor = max(1, round(max(image.shape[:2]) / _COLUMNS))
+        small = reduce(image, self.factor)
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        self._pictures[index] = packed
+
+    def __contains__(self, index: int) -> bool:
+        """Whether there is a picture of a frame."""
+        return index in self._pictures
+
+    def picture(self, index: int) -> Image:
+        """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that colour decides.
+
+        Raises:
+            KeyError: the frame was never read.
+        """
+        return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
+
+
+@dataclass(frozen=True, eq=False)
+class _WatchedSource:
+    """A source of frames that puts every frame it yields in order into an album."""
+
+    source: FrameSource
+    album: Album
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the frames."""
+        return self.source.size
+
+    @property
+    def fps(self) -> float:
+        """Nominal frames per second."""
+        return self.source.fps
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames the file claims."""
+        return self.source.frame_count
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield every frame after keeping a picture of it."""
+        for index, time_s, image in self.source.frames():
+            self.album.add(index, image)
+            yield index, time_s, image
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield the time of every frame."""
+        return self.source.time_stamps()
+
+    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield the frames of ascending indices."""
+        return self.source.at(indices)
+
+
+def watched(clip: Clip, album: Album) -> Clip:
+    """Return the clip as one that fills an album while its frames are read in order."""
+    return Clip(clip.path, _WatchedSource(clip.source, album))
