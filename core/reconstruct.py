@@ -71,15 +71,17 @@ def reconstruct(take: Take, method: str = "map") -> Job[Reconstruction]:
     clip = open_clip(take)
     check_in_front(take)
     expected = expected_regions(take, clip.frame_count)
+    album = Album() if method == "map" and not take.camera.is_moving else None
+    filmed = clip if album is None else watched(clip, album)
     tracks = yield from within(
-        "Following the markers", track_markers(clip, take.markers, expected), 0.0, EXTRACTION_SHARE
+        "Following the markers", track_markers(filmed, take.markers, expected), 0.0, EXTRACTION_SHARE
     )
     check_frame_count(take, tracks.frame_count)
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion = baseline
     if method == "map":
-        motion = yield from _whole_clip(take, tracks, prior)
+        motion = yield from _whole_clip(take, tracks, prior, album)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior)
     yield Progress("Done", 1.0)
@@ -104,9 +106,9 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
     return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
-def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
+def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture, album: Album | None) -> Job[Motion]:
     estimate = estimate_whole_clip(
-        take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices
+        take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices, album=album
     )
     result = yield from within("Estimating the motion", estimate, EXTRACTION_SHARE, 1.0)
     diagnostics = {

@@ -22,7 +22,7 @@ from .terms.term import student_weight
 
 Array = NDArray[np.float64]
 
-LEARNED_FRAMES = 40
+LEARNED_FRAMES = 32
 CHUNK_FRAMES = 50
 ROUNDS = 3
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
@@ -56,7 +56,7 @@ def read_contours(
     appearance = _learn(model, album, posture, frame)
     if not appearance.steady:
         return None
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if len(keyframes) else 0):
         known = [_look(model, album, appearance, posture[k], frame[k]) for k in _chunks(keyframes)]
         model = model.with_shape(_fitted_shape(model, known, album.factor))
     parts = list(_measured(model, album, appearance, posture, frame))
@@ -98,9 +98,7 @@ def _measured(
         yield edge, predicted.normal, edges.variance + (PIXEL_STD * album.factor) ** 2
 
 
-def _fitted_shape(
-    model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: int
-) -> Array:
+def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: int) -> Array:
     """(O, SHAPE) corrections that best explain edges found where the posture is known."""
     rate = np.concatenate([predicted.shape_rate for predicted, _ in known])
     width = np.concatenate([predicted.half_width for predicted, _ in known])

@@ -69,8 +69,8 @@ def find_edges(
     places = predicted.pixel[..., None, :] / factor + offset[:, None] * predicted.normal[..., None, :]
     rows, columns = pictures.shape[1:3]
     inside = ((places >= 0.0) & (places < [columns, rows])).all(axis=(-1, -2))
-    column, row = np.moveaxis(np.nan_to_num(places).astype(np.intp), -1, 0)
-    column, row = np.clip(column, 0, columns - 1), np.clip(row, 0, rows - 1)
+    within = np.where(inside[..., None, None], places, 0.0).astype(np.intp)
+    column, row = within[..., 0], within[..., 1]
     seen = pictures[np.arange(len(frame))[:, None, None], row, column]
     own = appearance.part(model.part_of[:, None], seen)
     other = np.where(
@@ -81,13 +81,11 @@ def find_edges(
     evidence = np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE)
     mean, variance = _edge(evidence, offset)
     found = open_view & inside & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
-    return Edges(
-        np.where(found, mean, 0.0) * factor, np.where(found, variance, np.inf) * float(factor) ** 2
-    )
+    return Edges(np.where(found, mean, 0.0) * factor, np.where(found, variance, np.inf) * float(factor) ** 2)
 
 
 def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
-    """Mean and variance (...) of the edge's distance that evidence (..., K) at offsets (K,) adds to belief."""
+    """Mean and variance (...) of the edge's distance that evidence (..., K) at offsets (K,) adds."""
     between = offset + 0.5
     likelihood = 2.0 * INDEPENDENT * np.cumsum(evidence, axis=-1)
     log = likelihood - 0.5 * (between / BELIEF) ** 2

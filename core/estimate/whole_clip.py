@@ -34,8 +34,10 @@ from .windows import Window, windows
 Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0, 1.0, 1.0)
-REFINEMENTS = (1.0, 1.0, 1.0)
+REFINEMENTS = (1.0, 1.0)
 """The steps that contours join in, when the markers have brought them within reach of their edges."""
+LOOKS = 2
+"""How often contours are looked for, each time nearer to where they are."""
 MARKERS_SHARE = 0.7
 """Share of the work that is done before."""
 LARGEST_STEP = 0.5
@@ -193,14 +195,17 @@ class _Problem:
         """Gauss-Newton with annealed image noise, then with contours too; yields the fraction done."""
         for done in self._descend(TEMPERATURES):
             yield done * MARKERS_SHARE
-        if self.album is not None:
+        markers_only = list(self.terms)
+        for look in range(LOOKS if self.album is not None else 0):
+            assert self.album is not None
             contours = read_contours(
                 self.body, self.camera, self.album, self.state.posture, self.frame, self.keyframe_frames
             )
-            if contours is not None:
-                self.terms.append(contours)
-                for done in self._descend(REFINEMENTS):
-                    yield MARKERS_SHARE + done * (1.0 - MARKERS_SHARE)
+            if contours is None:
+                break
+            self.terms = [*markers_only, contours]
+            for done in self._descend(REFINEMENTS):
+                yield MARKERS_SHARE + (look + done) / LOOKS * (1.0 - MARKERS_SHARE)
         yield 1.0
 
     def _descend(self, temperatures: tuple[float, ...]) -> Generator[float, None, None]:

@@ -21,7 +21,7 @@ Image = NDArray[np.uint8]
 
 _COLUMNS: Final = 320
 """About the columns of the pictures: limbs are several pixels wide wherever markers can be followed."""
-_QUALITY: Final = 95
+_QUALITY: Final = 90
 """Of the compression; its error stays below that of the video."""
 
 
@@ -56,27 +56,15 @@ class Album:
         return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _WatchedSource:
     """A source of frames that puts every frame it yields in order into an album."""
 
+    size: tuple[int, int]
+    fps: float
+    frame_count: int
     source: FrameSource
     album: Album
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of the frames."""
-        return self.source.size
-
-    @property
-    def fps(self) -> float:
-        """Nominal frames per second."""
-        return self.source.fps
-
-    @property
-    def frame_count(self) -> int:
-        """Number of frames the file claims."""
-        return self.source.frame_count
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield every frame after keeping a picture of it."""
@@ -95,4 +83,4 @@ class _WatchedSource:
 
 def watched(clip: Clip, album: Album) -> Clip:
     """Return the clip as one that fills an album while its frames are read in order."""
-    return Clip(clip.path, _WatchedSource(clip.source, album))
+    return Clip(clip.path, _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, album))

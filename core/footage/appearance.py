@@ -32,6 +32,8 @@ _UNSEEN: Final = 0.02
 _MARGIN_PX: Final = 5
 """A predicted body may lie this far off: what is nearer to it is not taken for background."""
 _FEWEST_FREE: Final = 3
+_NEVER: Final = 10_000
+"""In place of a level that was never free."""
 _SMALLEST_DEVIATION, _LARGEST_DEVIATION = 3.0, 12.0
 """Bounds of a background pixel's standard deviation in levels."""
 _STEADY: Final = 6.0
@@ -96,8 +98,7 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
         counted = (index != parts) | ~near
         flat = index[counted].astype(np.intp) * _CELLS + cells[counted]
         counts += np.bincount(flat, minlength=counts.size).reshape(counts.shape)
-    stack = np.stack(images).astype(np.float32)
-    colour, spread = _middle_and_spread(stack, ~body)
+    colour, spread = _middle_and_spread(np.stack(images), ~body)
     known = np.count_nonzero(~body, axis=0) >= _FEWEST_FREE
     steady = bool(known.any() and np.mean(spread[known] < _STEADY) >= _STEADY_SHARE)
     deviation = np.clip(spread, _SMALLEST_DEVIATION, _LARGEST_DEVIATION)
@@ -124,16 +125,19 @@ def _log_density(counts: FloatArray) -> FloatArray:
     return np.asarray(np.log(((1.0 - _UNSEEN) * share + _UNSEEN / _CELLS) / _CELL_VOLUME))
 
 
-def _middle_and_spread(stack: NDArray[np.float32], free: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Return the median colour (rows, columns, 3) and the largest channel's deviation of free pixels."""
-    colour = _median(stack, free)
-    spread = 1.48 * _median(np.abs(stack - colour), free).max(axis=-1)
-    return colour.astype(np.float64), spread.astype(np.float64)
+    levels = stack.astype(np.int16)
+    colour = _median(levels, free)
+    spread = 1.48 * _median(np.abs(levels - colour), free).max(axis=-1)
+    return colour.astype(np.float64), np.asarray(spread, dtype=np.float64)
 
 
-def _median(stack: NDArray[np.float32], free: BoolArray) -> NDArray[np.float32]:
+def _median(stack: NDArray[np.int16], free: BoolArray) -> NDArray[np.int16]:
     """Return the lower median over the free ones of the leading axis; zero where nothing is free."""
-    ordered = np.sort(np.where(free[..., None], stack, np.float32(np.inf)), axis=0)
+    # The leading axis last and whole numbers: both make sorting several times as fast.
+    values = np.where(free[..., None], stack, np.int16(_NEVER)).transpose(1, 2, 3, 0)
+    ordered = np.sort(np.ascontiguousarray(values), axis=-1, kind="stable")
     middle = np.maximum(np.count_nonzero(free, axis=0) - 1, 0) // 2
-    found = np.take_along_axis(ordered, middle[None, ..., None], axis=0)[0]
-    return np.asarray(np.where(np.isfinite(found), found, np.float32(0.0)))
+    found = np.take_along_axis(ordered, middle[..., None, None], axis=-1)[..., 0]
+    return np.where(found == _NEVER, np.int16(0), found)

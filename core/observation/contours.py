@@ -19,8 +19,6 @@ from .outline import View, cross, view_pieces
 
 Array = NDArray[np.float64]
 
-UNWATCHED = ("head",)
-"""No cylinder: hair, chin and neck make its outline another with every turn."""
 SHARES = (0.2, 0.4, 0.6, 0.8)
 """Where on a part samples lie; its ends are another part's as much."""
 SIDES = (-1.0, 1.0)
@@ -73,9 +71,7 @@ class ContourModel:
     @cached_property
     def part_of(self) -> NDArray[np.intp]:
         """(N,) the part of each sample."""
-        names = self.parts.segments
-        watched = [i for i, name in enumerate(names) if name.split(".")[0] not in UNWATCHED]
-        return np.repeat(watched, len(SHARES) * len(SIDES))
+        return np.repeat(np.arange(len(self.parts.segments)), len(SHARES) * len(SIDES))
 
     @cached_property
     def adjoining(self) -> NDArray[np.bool_]:

@@ -86,7 +86,7 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
 
 
 def outline_depth(pixels: Array, parts: Covers) -> Array:
-    """Camera depth (F, N, O) [m] of each part's axis where its outline covers pixels (F, N, 2), else infinite."""
+    """Camera depth (F, N, O) [m] of each part's axis where it covers pixels (F, N, 2), else infinite."""
     start, axis = parts.start[:, None], (parts.end - parts.start)[:, None]  # (F, 1, O, 2)
     length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
     x, y = np.moveaxis(pixels[:, :, None] - start, -1, 0)

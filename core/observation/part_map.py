@@ -8,6 +8,8 @@ from .cover import Covers
 
 Array = NDArray[np.float64]
 
+NOWHERE = 255
+"""While drawing, what is -1 as a signed byte."""
 FINENESS = 4
 """Binary digits of a pixel's fraction that outlines are drawn to."""
 
@@ -24,15 +26,15 @@ def part_map(parts: Covers, frame: int, size: tuple[int, int], factor: float) ->
     Returns:
         (rows, columns) index of the part seen, -1 where none is.
     """
-    labels = np.full((size[1], size[0]), -1, dtype=np.int16)
+    labels = np.full((size[1], size[0]), NOWHERE, dtype=np.uint8)
     for part in np.argsort(-parts.depth[frame].mean(-1)):
         ends = np.stack([parts.start[frame, part], parts.end[frame, part]])
         if not np.isfinite(ends).all():
             continue
         for polygon in _outline(ends, parts.half_width[frame, part], parts.overshoot[frame, part]):
             corners = np.round((polygon / factor - 0.5) * 2**FINENESS).astype(np.int32)
-            cv2.fillConvexPoly(labels, corners, int(part), cv2.LINE_8, FINENESS)
-    return labels.astype(np.int8)
+            cv2.fillConvexPoly(labels, corners, (int(part),), cv2.LINE_8, FINENESS)
+    return labels.view(np.int8)
 
 
 def _outline(ends: Array, half_width: Array, overshoot: Array) -> list[Array]:
@@ -43,7 +45,9 @@ def _outline(ends: Array, half_width: Array, overshoot: Array) -> list[Array]:
     sides = half_width[:, None] * across
     turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     caps = [
-        ends[i] + np.outer(np.cos(turn) * half_width[i], across) + np.outer(np.sin(turn) * overshoot[i], along)
+        ends[i]
+        + np.outer(np.cos(turn) * half_width[i], across)
+        + np.outer(np.sin(turn) * overshoot[i], along)
         for i in range(2)
     ]
     return [np.stack([ends[0] + sides[0], ends[1] + sides[1], ends[1] - sides[1], ends[0] - sides[0]]), *caps]

@@ -1,0 +1,87 @@
+"""Contours found in pictures that were drawn from a known motion."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from _filmed import photograph
+from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from keymark.core.body.human import HUMAN
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.contour_evidence import read_contours
+from keymark.core.estimate.whole_clip import estimate_whole_clip
+from keymark.core.footage.album import Album
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+
+FRAMES = 46
+POSED = np.array([0, 15, 30, 45])
+TRUTH = exercise(FRAMES)
+FRAME = np.arange(FRAMES)
+
+
+@cache
+def album() -> Album:
+    """Pictures of the true motion."""
+    return photograph(TRUTH)
+
+
+def solve(pictures: Album | None) -> Posture:
+    """The estimate from few keyframes, with or without pictures."""
+    keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
+    prior = interpolate(keyframes, FRAMES)
+    job = estimate_whole_clip(
+        BODY, CAMERA, film(TRUTH, 0.3), SEGMENTS, prior, tuple(int(i) for i in POSED), album=pictures
+    )
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
+            return stop.value.posture
+
+
+def test_edges_are_found_where_the_true_contours_are() -> None:
+    """From a thigh 4 cm off, the edges found lie on the true contour to a fraction of a pixel."""
+    step = np.zeros((FRAMES, HUMAN.dof_count))
+    step[:, HUMAN.dof_names.index("hip.R.rotation_y")] = 0.08
+    term = read_contours(BODY, CAMERA, album(), TRUTH.plus(step), FRAME, POSED)
+    assert term is not None
+    thigh = term.model.part_of == term.model.parts.segments.index("thigh.R")
+    true = replace(term.model, shape=np.zeros_like(term.model.shape)).evaluate(BODY.pose(TRUTH), FRAME)
+    wrong = term.model.evaluate(BODY.pose(TRUTH.plus(step)), FRAME)
+    found = np.isfinite(term.edge[..., 0]) & thigh
+    assert found[:, thigh].mean() > 0.3
+    off = np.abs(np.sum(term.normal * (term.edge - true.pixel), axis=-1))[found]
+    before = np.abs(np.sum(term.normal * (wrong.pixel - true.pixel), axis=-1))[found]
+    assert np.median(off) < 0.6
+    assert np.median(off) < 0.5 * np.median(before)
+
+
+def test_contours_bring_the_estimate_nearer_to_the_truth() -> None:
+    """With few keyframes the pictures take at least a tenth of the error away."""
+    without = point_error_m(solve(None), TRUTH).mean()
+    assert point_error_m(solve(album()), TRUTH).mean() < 0.9 * without
+
+
+def test_a_shaken_camera_changes_nothing() -> None:
+    """Where the background does not stand still, the estimate is the markers' own, bit for bit."""
+    shaken = photograph(TRUTH, shake_px=4)
+    np.testing.assert_array_equal(solve(shaken).to_vector(), solve(None).to_vector())
+
+
+def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
+    """No contours are read where a picture's background cannot be the others'."""
+    moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
+    assert read_contours(BODY, moving, album(), TRUTH, FRAME, POSED) is None
+    assert read_contours(BODY, CAMERA, Album(), TRUTH, FRAME, POSED) is None
+
+
+def test_a_stretch_without_keyframes_keeps_average_shapes() -> None:
+    """Windows of a long clip may hold none."""
+    term = read_contours(BODY, CAMERA, album(), TRUTH, FRAME, POSED[:0])
+    assert term is not None
+    assert not term.model.shape.any()
+    assert np.isfinite(term.edge[..., 0]).mean() > 0.2
