@@ -80,8 +80,11 @@ def find_edges(
     )
     evidence = np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE)
     mean, variance = _edge(evidence, offset)
-    found = open_view & inside & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
-    return Edges(np.where(found, mean, 0.0) * factor, np.where(found, variance, np.inf) * float(factor) ** 2)
+    # What a background looks like that was never free is a guess, and a guess would draw edges outwards.
+    judged = (behind >= 0) | appearance.known[row, column][..., offset > 0.0].all(axis=-1)
+    found = open_view & inside & judged & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
+    scale = float(factor)
+    return Edges(np.where(found, mean * scale, 0.0), np.where(found, variance * scale**2, np.inf))
 
 
 def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:

@@ -29,6 +29,8 @@ _CELLS: Final = _LEVELS**3
 _CELL_VOLUME: Final = (256 / _LEVELS) ** 3
 _UNSEEN: Final = 0.02
 """Share of any surface's colours that a few frames do not show."""
+_STRANGE: Final = float(np.log(_UNSEEN / (_CELLS * _CELL_VOLUME)))
+"""Log density of a colour that was never seen on any surface."""
 _MARGIN_PX: Final = 5
 """A predicted body may lie this far off: what is nearer to it is not taken for background."""
 _FEWEST_FREE: Final = 3
@@ -78,6 +80,8 @@ class Appearance:
         squared += ((light - 1.0) / _LIGHT_DEVIATION) ** 2
         here = -0.5 * squared - 3.0 * np.log(deviation) - 1.5 * np.log(2.0 * np.pi)
         mixed = np.logaddexp(np.log(1.0 - _CHANGED) + here, np.log(_CHANGED) + anywhere)
+        # Blends at an edge are as strange to either side, and must speak for none.
+        mixed = np.logaddexp(np.log(1.0 - _UNSEEN) + mixed, _STRANGE)
         return np.where(self.known[row, column], mixed, anywhere)
 
 
@@ -122,7 +126,9 @@ def _log_density(counts: FloatArray) -> FloatArray:
     """Return the logarithm of a smoothed histogram as density per level³."""
     smoothed = gaussian_filter(counts.reshape((_LEVELS,) * 3), 1.0, truncate=3.0).ravel()
     share = smoothed / max(float(smoothed.sum()), 1.0)
-    return np.asarray(np.log(((1.0 - _UNSEEN) * share + _UNSEEN / _CELLS) / _CELL_VOLUME))
+    return np.asarray(
+        np.logaddexp(np.log(np.maximum((1.0 - _UNSEEN) * share / _CELL_VOLUME, 1e-300)), _STRANGE)
+    )
 
 
 def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, FloatArray]:
