@@ -32,15 +32,10 @@ FEWEST_EDGES = 20
 DEGREES = 4.0
 
 
-def read_contours(
-    body: Body,
-    camera: Camera,
-    album: Album,
-    posture: Posture,
-    frame: NDArray[np.intp],
-    keyframes: NDArray[np.intp],
-) -> ContourTerm | None:
-    """Measure the contours of a stretch of F frames; None where the background cannot be trusted.
+def learn_scene(
+    body: Body, camera: Camera, album: Album, posture: Posture, frame: NDArray[np.intp]
+) -> Appearance | None:
+    """Learn how performer and background look in a stretch of F frames; None where that cannot be trusted.
 
     Args:
         body: The actor's body.
@@ -48,14 +43,32 @@ def read_contours(
         album: Pictures of the frames.
         posture: The F postures as far as they are known.
         frame: (F,) their places in the clip.
-        keyframes: Those of the stretch, counted from its start, whose posture is known best.
     """
     if camera.is_moving or not all(int(index) in album for index in frame):
         return None
     model = ContourModel.average(body, camera)
     appearance = _learn(model, album, posture, frame)
-    if not appearance.steady:
-        return None
+    return appearance if appearance.steady else None
+
+
+def read_contours(
+    model: ContourModel,
+    album: Album,
+    appearance: Appearance,
+    posture: Posture,
+    frame: NDArray[np.intp],
+    keyframes: NDArray[np.intp],
+) -> ContourTerm:
+    """Fit the contours' shapes and measure the edges of a stretch of F frames.
+
+    Args:
+        model: The contours to start from.
+        album: Pictures of the frames.
+        appearance: How performer and background look.
+        posture: The F postures as far as they are known.
+        frame: (F,) their places in the clip.
+        keyframes: Those of the stretch, counted from its start, whose posture is known best.
+    """
     for _ in range(ROUNDS if len(keyframes) else 0):
         known = [_look(model, album, appearance, posture[k], frame[k]) for k in _chunks(keyframes)]
         model = model.with_shape(_fitted_shape(model, known, album.factor))

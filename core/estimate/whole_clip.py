@@ -19,9 +19,10 @@ from ..footage.album import Album
 from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
+from ..observation.contours import ContourModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from .clip_state import ClipState
-from .contour_evidence import read_contours
+from .contour_evidence import learn_scene, read_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
@@ -195,18 +196,24 @@ class _Problem:
         """Gauss-Newton with annealed image noise, then with contours too; yields the fraction done."""
         for done in self._descend(TEMPERATURES):
             yield done * MARKERS_SHARE
-        markers_only = list(self.terms)
-        for look in range(LOOKS if self.album is not None else 0):
-            assert self.album is not None
-            contours = read_contours(
-                self.body, self.camera, self.album, self.state.posture, self.frame, self.keyframe_frames
-            )
-            if contours is None:
-                break
-            self.terms = [*markers_only, contours]
-            for done in self._descend(REFINEMENTS):
-                yield MARKERS_SHARE + (look + done) / LOOKS * (1.0 - MARKERS_SHARE)
+        if self.album is not None:
+            for done in self._follow_contours(self.album):
+                yield MARKERS_SHARE + done * (1.0 - MARKERS_SHARE)
         yield 1.0
+
+    def _follow_contours(self, album: Album) -> Generator[float, None, None]:
+        """Let the contours join in where the background can be trusted; yields the fraction done."""
+        scene = learn_scene(self.body, self.camera, album, self.state.posture, self.frame)
+        if scene is None:
+            return
+        model = ContourModel.average(self.body, self.camera)
+        others = list(self.terms)
+        for look in range(LOOKS):
+            posture = self.state.posture
+            contours = read_contours(model, album, scene, posture, self.frame, self.keyframe_frames)
+            self.terms = [*others, contours]
+            for done in self._descend(REFINEMENTS):
+                yield (look + done) / LOOKS
 
     def _descend(self, temperatures: tuple[float, ...]) -> Generator[float, None, None]:
         """Gauss-Newton steps until nothing moves any more; yields the fraction done."""

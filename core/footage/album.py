@@ -15,19 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clip import Clip, FrameSource
-from .working_image import reduce, smooth
+from .working_image import searching_image, smooth
 
 Image = NDArray[np.uint8]
 
-_COLUMNS: Final = 320
-"""About the columns of the pictures: limbs are several pixels wide wherever markers can be followed."""
 _QUALITY: Final = 90
 """Of the compression; its error stays below that of the video."""
 
 
 @dataclass(eq=False)
 class Album:
-    """Small pictures of the frames read so far.
+    """Small pictures of the frames read so far, on the grid that markers are found on.
 
     Attributes:
         factor: pixels of the clip to a pixel of the pictures, along either axis.
@@ -38,8 +36,8 @@ class Album:
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
-        self.factor = max(1, round(max(image.shape[:2]) / _COLUMNS))
-        small = reduce(image, self.factor)
+        small = searching_image(image)
+        self.factor = image.shape[1] // small.shape[1]
         _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
         self._pictures[index] = packed
 

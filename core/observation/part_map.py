@@ -13,6 +13,9 @@ NOWHERE = 255
 FINENESS = 4
 """Binary digits of a pixel's fraction that outlines are drawn to."""
 
+_TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
+CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
+
 
 def part_map(parts: Covers, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
     """Draw the body of one frame.
@@ -43,11 +46,8 @@ def _outline(ends: Array, half_width: Array, overshoot: Array) -> list[Array]:
     along = along / max(float(np.hypot(*along)), 1e-6)
     across = np.array([-along[1], along[0]])
     sides = half_width[:, None] * across
-    turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     caps = [
-        ends[i]
-        + np.outer(np.cos(turn) * half_width[i], across)
-        + np.outer(np.sin(turn) * overshoot[i], along)
+        ends[i] + half_width[i] * np.outer(CIRCLE[0], across) + overshoot[i] * np.outer(CIRCLE[1], along)
         for i in range(2)
     ]
     return [np.stack([ends[0] + sides[0], ends[1] + sides[1], ends[1] - sides[1], ends[0] - sides[0]]), *caps]

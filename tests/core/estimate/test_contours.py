@@ -9,9 +9,11 @@ from _filmed import photograph
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.contour_evidence import read_contours
+from keymark.core.estimate.contour_evidence import learn_scene, read_contours
+from keymark.core.estimate.terms.contours import ContourTerm
 from keymark.core.estimate.whole_clip import estimate_whole_clip
 from keymark.core.footage.album import Album
+from keymark.core.observation.contours import ContourModel
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 
@@ -25,6 +27,13 @@ FRAME = np.arange(FRAMES)
 def album() -> Album:
     """Pictures of the true motion."""
     return photograph(TRUTH)
+
+
+def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
+    """What is measured from roughly known postures."""
+    scene = learn_scene(BODY, CAMERA, album(), posture, FRAME)
+    assert scene is not None
+    return read_contours(ContourModel.average(BODY, CAMERA), album(), scene, posture, FRAME, keyframes)
 
 
 def solve(pictures: Album | None) -> Posture:
@@ -48,8 +57,7 @@ def test_edges_follow_the_true_contours_and_not_the_predicted_ones() -> None:
     step = np.zeros((FRAMES, HUMAN.dof_count))
     step[:, HUMAN.dof_names.index("hip.R.rotation_y")] = 0.1 * np.sin(0.9 * FRAME)
     step[POSED] = 0.0
-    term = read_contours(BODY, CAMERA, album(), TRUTH.plus(step), FRAME, POSED)
-    assert term is not None
+    term = measure(TRUTH.plus(step), POSED)
     thigh = term.model.part_of == term.model.parts.segments.index("thigh.R")
     true = replace(term.model, shape=np.zeros_like(term.model.shape)).evaluate(BODY.pose(TRUTH), FRAME)
     wrong = term.model.evaluate(BODY.pose(TRUTH.plus(step)), FRAME)
@@ -77,13 +85,12 @@ def test_a_shaken_camera_changes_nothing() -> None:
 def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
     """No contours are read where a picture's background cannot be the others'."""
     moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
-    assert read_contours(BODY, moving, album(), TRUTH, FRAME, POSED) is None
-    assert read_contours(BODY, CAMERA, Album(), TRUTH, FRAME, POSED) is None
+    assert learn_scene(BODY, moving, album(), TRUTH, FRAME) is None
+    assert learn_scene(BODY, CAMERA, Album(), TRUTH, FRAME) is None
 
 
 def test_a_stretch_without_keyframes_keeps_average_shapes() -> None:
     """Windows of a long clip may hold none."""
-    term = read_contours(BODY, CAMERA, album(), TRUTH, FRAME, POSED[:0])
-    assert term is not None
+    term = measure(TRUTH, POSED[:0])
     assert not term.model.shape.any()
     assert np.isfinite(term.edge[..., 0]).mean() > 0.2
