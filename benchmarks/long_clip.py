@@ -81,12 +81,20 @@ def measure_long(folder: Path) -> dict[str, Any]:
 def measure_seam(folder: Path) -> dict[str, float]:
     """How far [mm] any point of a motion solved in windows is from the same solved at once."""
     take = read_take(folder)
-    tracks = run(reconstruct(take, "interpolation")).tracks
+    reading = run(reconstruct(take, "interpolation")).reading
+    tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
 
     def points(options: WholeClipOptions) -> np.ndarray:
         job = estimate_whole_clip(
-            take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices, options
+            take.body,
+            take.camera,
+            tracks,
+            take.marker_segments,
+            prior,
+            take.keyframe_indices,
+            options,
+            reading.album,
         )
         return take.body.points(take.body.pose(run(job).posture))
 
@@ -110,9 +118,9 @@ def convert_long(folder: Path, output: Path) -> dict[str, Any]:
         peak_mb[stage] = peak_memory_mb()
 
     take = read_take(folder)
-    tracks = run(reconstruct(take, "interpolation")).tracks
+    reading = run(reconstruct(take, "interpolation")).reading
     ended("extract")
-    motion = run(reconstruct(take, "map", tracks)).motion
+    motion = run(reconstruct(take, "map", reading)).motion
     ended("estimate")
     write_motion(motion, output)
     ended("write")

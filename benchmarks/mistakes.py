@@ -17,6 +17,7 @@ from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.footage.camera import Camera  # noqa: E402
+from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
@@ -92,7 +93,8 @@ def hidden(trial: Trial, marker: int, frames: slice) -> Trial:
         array[frames, marker] = np.nan
     quality, clipped = np.array(tracks.quality), np.array(tracks.clipped)
     quality[frames, marker], clipped[frames, marker] = 0.0, False
-    return replace(trial, tracks=replace(tracks, **values, quality=quality, clipped=clipped))
+    tracks = replace(tracks, **values, quality=quality, clipped=clipped)
+    return replace(trial, reading=replace(trial.reading, tracks=tracks))
 
 
 def doubled_speed(trial: Trial, every_keyframe: int = 1) -> Trial:
@@ -104,7 +106,9 @@ def doubled_speed(trial: Trial, every_keyframe: int = 1) -> Trial:
         camera = replace(camera, matrix_world=camera.matrix_world[::2])
     tracks = _every_second(trial.tracks)
     take = replace(trial.take, camera=camera, frame_count=tracks.frame_count)
-    half = replace(trial, take=take, tracks=tracks, truth=trial.truth[::2])
+    album = trial.reading.album
+    reading = Reading(tracks, None if album is None else album.every(2))
+    half = replace(trial, take=take, reading=reading, truth=trial.truth[::2])
     return keyed(half, exact_postures(trial)[::2], kept)
 
 

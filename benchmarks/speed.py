@@ -118,13 +118,14 @@ def processor_times(folder: Path) -> dict[str, float]:
     cv2.setNumThreads(1)
     take = read_take(folder)
     clip = open_clip(take)
-    tracks = run(reconstruct(take, "interpolation")).tracks
+    reading = run(reconstruct(take, "interpolation")).reading
+    tracks = reading.tracks
     expected = expected_regions(take, tracks.frame_count)
     work = {
         "decode": lambda: [index for index, _, _ in clip.frames()],
         "extract": lambda: run(track_markers(clip, take.markers, expected)),
-        "map": lambda: run(reconstruct(take, "map", tracks)),
-        "ekf": lambda: run(reconstruct(take, "ekf", tracks)),
+        "map": lambda: run(reconstruct(take, "map", reading)),
+        "ekf": lambda: run(reconstruct(take, "ekf", reading)),
     }
     return {name: 1e3 * least_time(job) / tracks.frame_count for name, job in work.items()}
 

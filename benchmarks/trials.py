@@ -10,6 +10,7 @@ from takes import load_project
 load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
+from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.tracks import RegionTracks  # noqa: E402
 from keymark.core.motion import Motion  # noqa: E402
 from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
@@ -33,11 +34,16 @@ class Trial:
     """A take as a method is given it, and the truth, which the method is not given."""
 
     take: Take
-    tracks: RegionTracks
+    reading: Reading
     truth: Array
     """(F, 13, 3) true points [m]."""
     unscored: tuple[int, ...]
     """Frames, from 0, that count in no mean, as those given as keyframes."""
+
+    @property
+    def tracks(self) -> RegionTracks:
+        """The markers' regions."""
+        return self.reading.tracks
 
     def interpolated(self) -> dict[str, Array]:
         """Points (F, 13, 3) [m] of every interpolation of the keyframes."""
@@ -49,7 +55,7 @@ class Trial:
 
     def estimated(self, method: str) -> Motion:
         """The motion by `map` or `ekf`."""
-        return run(reconstruct(self.take, method, self.tracks)).motion
+        return run(reconstruct(self.take, method, self.reading)).motion
 
     def score(self, points: Array, sigma_m: Array | None = None) -> Score:
         """How far points (F, 13, 3) are from the truth."""
@@ -64,6 +70,6 @@ class Trial:
 def read_trial(folder: Path, keyframes: Path | None = None) -> Trial:
     """A take with its own keyframes, or with those of a file, after following its markers."""
     take = read_take(folder, keyframes)
-    tracks = run(reconstruct(take, "interpolation")).tracks
-    truth = read_truth(folder / "truth.json", take.frame_start, tracks.frame_count)
-    return Trial(take, tracks, truth, take.keyframe_indices)
+    reading = run(reconstruct(take, "interpolation")).reading
+    truth = read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count)
+    return Trial(take, reading, truth, take.keyframe_indices)

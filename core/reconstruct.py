@@ -11,8 +11,10 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
+from .footage.album import Album, watched
 from .footage.clip import Clip
 from .footage.markers import track_markers
+from .footage.reading import Reading
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
 from .observation.regions import MarkerPlacement, RegionModel
@@ -38,21 +40,27 @@ class Reconstruction:
     motion: Motion
     interpolation: Motion
     """The keyframes interpolated without the footage, for comparison."""
-    tracks: RegionTracks
+    reading: Reading
+    """What was read of the clip, for another reconstruction of it."""
     speed: Array
     """(F,) V_sum of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """What a person should know of the result, one sentence each."""
 
+    @property
+    def tracks(self) -> RegionTracks:
+        """The markers' regions in every frame."""
+        return self.reading.tracks
 
-def reconstruct(take: Take, method: str = "map", tracks: RegionTracks | None = None) -> Job[Reconstruction]:
+
+def reconstruct(take: Take, method: str = "map", reading: Reading | None = None) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     Args:
         take: A validated take with at least two keyframes.
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        tracks: The markers' regions where an earlier reconstruction of the same clip has found them already;
-            the clip is then not opened, and no note speaks of it.
+        reading: What an earlier reconstruction has read of the same clip; it is then not opened again, and no
+            note speaks of it.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -63,41 +71,45 @@ def reconstruct(take: Take, method: str = "map", tracks: RegionTracks | None = N
     Raises:
         InputError: The clip cannot be used, a colour matches nothing in it, or the method is unknown.
         ConversionError: No motion could be computed.
-        ValueError: The tracks are those of other markers.
+        ValueError: The reading is one of other markers.
     """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
     notes, begun = take.notes, 0.0
-    if tracks is None:
-        tracks, of_the_clip = yield from _follow(take)
+    if reading is None:
+        reading, of_the_clip = yield from _read(take)
         notes, begun = notes + of_the_clip, EXTRACTION_SHARE
     else:
-        _check_tracks(take, tracks)
+        _check_tracks(take, reading.tracks)
+    tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion = baseline
     if method == "map":
-        motion = yield from _whole_clip(take, tracks, prior, begun)
+        motion = yield from _whole_clip(take, reading, prior, begun)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
     yield Progress("Done", 1.0)
     notes += _notes(tracks)
-    return Reconstruction(motion, baseline, tracks, marker_speed(tracks), notes)
+    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes)
 
 
-def _follow(take: Take) -> Job[tuple[RegionTracks, tuple[str, ...]]]:
-    """The markers' regions in the take's clip, and what a person should know of the clip."""
+def _read(take: Take) -> Job[tuple[Reading, tuple[str, ...]]]:
+    """What is to be read of the take's clip, and what a person should know of the clip."""
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
     expected = expected_regions(take, clip.frame_count)
+    # Before a camera that moves, no background stands still to tell the performer from.
+    album = None if take.camera.is_moving else Album()
+    filmed = clip if album is None else watched(clip, album)
     tracks = yield from within(
-        "Following the markers", track_markers(clip, take.markers, expected), 0.0, EXTRACTION_SHARE
+        "Following the markers", track_markers(filmed, take.markers, expected), 0.0, EXTRACTION_SHARE
     )
     check_frame_count(take, tracks.frame_count)
-    return tracks, _clip_notes(take, clip, tracks)
+    return Reading(tracks, album), _clip_notes(take, clip, tracks)
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
@@ -127,9 +139,16 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
     return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
-def _whole_clip(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
+def _whole_clip(take: Take, reading: Reading, prior: Posture, begun: float) -> Job[Motion]:
+    tracks = reading.tracks
     estimate = estimate_whole_clip(
-        take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices
+        take.body,
+        take.camera,
+        tracks,
+        take.marker_segments,
+        prior,
+        take.keyframe_indices,
+        album=reading.album,
     )
     result = yield from within("Estimating the motion", estimate, begun, 1.0)
     diagnostics = {

@@ -55,10 +55,10 @@ def main(output: str) -> None:
     methods = METHODS[::-1]
     row = TITLE + CELL[1] + GAP
     canvas = Canvas(GAP + len(FRAMES) * (CELL[0] + GAP), len(views) * len(methods) * row)
-    tracks = None  # of one clip, however many methods look at them
+    reading = None  # of one clip, however many methods look at it
     for i, method in enumerate(methods):
-        done = run(reconstruct(take, method, tracks))
-        motion, tracks = done.motion, done.tracks
+        done = run(reconstruct(take, method, reading))
+        motion, reading = done.motion, done.reading
         for j, (view, clip, camera) in enumerate(views):
             title = f"{NAMES[method]} ({view})"
             draw_rows(canvas, (j * len(methods) + i) * row, clip, camera, motion, title)

@@ -15,12 +15,15 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..footage.album import Album
 from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
+from ..observation.contours import ContourModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from .clip_state import ClipState
+from .contour_evidence import learn_scene, read_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
@@ -34,6 +37,12 @@ from .windows import Window, windows
 Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
+REFINEMENTS = (1.0, 1.0)
+"""The steps that contours join in, when the markers have brought them within reach of their edges."""
+LOOKS = 2
+"""How often contours are looked for, each time nearer to where they are."""
+MARKERS_SHARE = 0.7
+"""Share of the work that is done before."""
 LARGEST_STEP = 0.5
 """No unknown of the posture moves further in one step [m, rad]."""
 SETTLED = 3e-3
@@ -78,6 +87,7 @@ def estimate_whole_clip(
     prior: Posture,
     keyframe_indices: tuple[int, ...],
     options: WholeClipOptions | None = None,
+    album: Album | None = None,
 ) -> Generator[float, None, WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -89,6 +99,7 @@ def estimate_whole_clip(
         prior: F postures that pass through the keyframes.
         keyframe_indices: Frames whose prior was posed, at least one.
         options: Noise, smoothness and windows.
+        album: Pictures of all frames, for contours to be looked for; None does without.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -122,6 +133,7 @@ def estimate_whole_clip(
             np.flatnonzero(inside),
             index[inside] - window.first,
             options,
+            album,
         )
         for done in problem.solve():
             yield (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
@@ -155,6 +167,7 @@ class _Problem:
     keyframe_frames: NDArray[np.intp]
     """Their places in the window."""
     options: WholeClipOptions
+    album: Album | None
 
     def __post_init__(self) -> None:
         skeleton = self.body.skeleton
@@ -187,12 +200,36 @@ class _Problem:
         ]
 
     def solve(self) -> Generator[float, None, None]:
-        """Gauss-Newton with annealed image noise; yields the fraction done."""
-        for i, temperature in enumerate(TEMPERATURES):
+        """Gauss-Newton with annealed image noise, then with contours too; yields the fraction done."""
+        for done in self._descend(TEMPERATURES):
+            yield done * MARKERS_SHARE
+        if self.album is not None:
+            for done in self._follow_contours(self.album):
+                yield MARKERS_SHARE + done * (1.0 - MARKERS_SHARE)
+        yield 1.0
+
+    def _follow_contours(self, album: Album) -> Generator[float, None, None]:
+        """Let the contours join in where the background can be trusted; yields the fraction done."""
+        camera = self.evidence.model.camera  # with the lens that was found
+        scene = learn_scene(self.body, camera, album, self.state.posture, self.frame)
+        if scene is None:
+            return
+        model = ContourModel.average(self.body, camera)
+        others = list(self.terms)
+        for look in range(LOOKS):
+            posture = self.state.posture
+            contours = read_contours(model, album, scene, posture, self.frame, self.keyframe_frames)
+            self.terms = [*others, contours]
+            for done in self._descend(REFINEMENTS):
+                yield (look + done) / LOOKS
+
+    def _descend(self, temperatures: tuple[float, ...]) -> Generator[float, None, None]:
+        """Gauss-Newton steps until nothing moves any more; yields the fraction done."""
+        for i, temperature in enumerate(temperatures):
             equations = self._equations(temperature)
             step = equations.matrix.factorise().solve(-equations.gradient)
             self.state, moved = self.state.stepped(step, LARGEST_STEP)
-            yield (i + 1) / len(TEMPERATURES)
+            yield (i + 1) / len(temperatures)
             if temperature == 1.0 and moved < SETTLED:
                 break
 

@@ -93,6 +93,25 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bo
     return seen
 
 
+def outline_depth(pixels: Array, parts: Covers) -> Array:
+    """Camera depth (F, N, O) [m] of each part's axis where it covers pixels (F, N, 2), else infinite."""
+    start, axis = parts.start[:, None], (parts.end - parts.start)[:, None]  # (F, 1, O, 2)
+    length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
+    x, y = np.moveaxis(pixels[:, :, None] - start, -1, 0)
+    across, down = np.moveaxis(axis / length[..., None], -1, 0)
+    run = x * across + y * down
+    away = y * across - x * down
+    on_axis = np.clip(run, 0.0, length)
+    share = on_axis / length
+
+    def at(ends: Array) -> Array:
+        return np.asarray(ends[:, None, :, 0] + share * (ends[:, None, :, 1] - ends[:, None, :, 0]))
+
+    half = np.maximum(at(parts.half_width), 0.5)
+    past = (run - on_axis) * half / np.maximum(at(parts.overshoot), 0.5)
+    return np.where(away * away + past * past < half * half, at(parts.depth), np.inf)
+
+
 def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
     """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
     columns, rows = pixels[..., 0], pixels[..., 1]

@@ -29,7 +29,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         done = convert(DEMO, arguments.output, console, keyframes=KEYFRAMES, debug=arguments.debug)
         console.stage("Trying the paper's filter")
-        filtered = run(reconstruct(done.take, "ekf", done.reconstruction.tracks))
+        filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
         scores = {
             "interpolation": _score(done.take, done.reconstruction.interpolation),
             "ekf": _score(done.take, filtered.motion),

@@ -39,12 +39,12 @@ def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str
     assert error.mean() < 0.04
 
 
-def test_tracks_found_before_give_the_same_motion_without_the_clip(take: Take, tmp_path: Path) -> None:
-    """What one method has followed serves the others; tracks of other markers are refused."""
-    found = run(reconstruct(take, "interpolation")).tracks
+def test_a_clip_read_before_gives_the_same_motion_without_the_clip(take: Take, tmp_path: Path) -> None:
+    """What was read for one method serves the others; what was read for other markers is refused."""
+    found = run(reconstruct(take, "interpolation")).reading
     seen: list[Progress] = []
     again = run(reconstruct(replace(take, clip=tmp_path / "gone"), "map", found), seen.append)
-    assert again.tracks is found
+    assert again.reading is found
     assert np.array_equal(again.motion.points, run(reconstruct(take, "map")).motion.points)
     assert [step.fraction for step in seen] == sorted(step.fraction for step in seen)
     with pytest.raises(ValueError, match="not of the take's markers"):

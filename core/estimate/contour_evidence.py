@@ -1,0 +1,133 @@
+"""What the pictures tell of the body's contours, once the markers have told roughly where it is.
+
+From some frames it is learned how the parts of the body and the background look; from the keyframes, where
+the posture is known best, how thick the parts are and where they sit; then edges are measured everywhere.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..footage.album import Album
+from ..footage.appearance import Appearance, learn_appearance
+from ..footage.camera import Camera
+from ..observation.contours import SHAPE, ContourModel, ContourPrediction
+from ..observation.part_map import part_map
+from .contour_search import Edges, find_edges
+from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
+from .terms.term import student_weight
+
+Array = NDArray[np.float64]
+
+LEARNED_FRAMES = 32
+CHUNK_FRAMES = 50
+ROUNDS = 3
+SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
+"""How far a performer's parts are from average ones: thickness at both ends, and place."""
+EDGE_STD_M = 0.012
+FEWEST_EDGES = 20
+DEGREES = 4.0
+
+
+def learn_scene(
+    body: Body, camera: Camera, album: Album, posture: Posture, frame: NDArray[np.intp]
+) -> Appearance | None:
+    """Learn how performer and background look in a stretch of F frames; None where that cannot be trusted.
+
+    Args:
+        body: The actor's body.
+        camera: The camera.
+        album: Pictures of the frames.
+        posture: The F postures as far as they are known.
+        frame: (F,) their places in the clip.
+    """
+    if camera.is_moving or not all(int(index) in album for index in frame):
+        return None
+    model = ContourModel.average(body, camera)
+    appearance = _learn(model, album, posture, frame)
+    return appearance if appearance.steady else None
+
+
+def read_contours(
+    model: ContourModel,
+    album: Album,
+    appearance: Appearance,
+    posture: Posture,
+    frame: NDArray[np.intp],
+    keyframes: NDArray[np.intp],
+) -> ContourTerm:
+    """Fit the contours' shapes and measure the edges of a stretch of F frames.
+
+    Args:
+        model: The contours to start from.
+        album: Pictures of the frames.
+        appearance: How performer and background look.
+        posture: The F postures as far as they are known.
+        frame: (F,) their places in the clip.
+        keyframes: Those of the stretch, counted from its start, whose posture is known best.
+    """
+    for _ in range(ROUNDS if len(keyframes) else 0):
+        known = [_look(model, album, appearance, posture[k], frame[k]) for k in _chunks(keyframes)]
+        model = model.with_shape(_fitted_shape(model, known, album.factor))
+    parts = list(_measured(model, album, appearance, posture, frame))
+    edge, normal, variance = (np.concatenate(rows) for rows in zip(*parts, strict=True))
+    return ContourTerm(model, edge, normal, variance)
+
+
+def _chunks(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    return np.array_split(index, max(1, -(-len(index) // CHUNK_FRAMES)))
+
+
+def _learn(model: ContourModel, album: Album, posture: Posture, frame: NDArray[np.intp]) -> Appearance:
+    count = min(LEARNED_FRAMES, len(frame))
+    chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
+    parts = model.covers(model.body.pose(posture[chosen]), frame[chosen])
+    images = [album.picture(int(index)) for index in frame[chosen]]
+    size = images[0].shape[1], images[0].shape[0]
+    labels = [part_map(parts, i, size, album.factor) for i in range(len(chosen))]
+    return learn_appearance(images, labels, len(model.parts.segments))
+
+
+def _look(
+    model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
+) -> tuple[ContourPrediction, Edges]:
+    pose = model.body.pose(posture)
+    predicted = model.evaluate(pose, frame)
+    pictures = np.stack([album.picture(int(index)) for index in frame])
+    return predicted, find_edges(model, predicted, pose, frame, pictures, album.factor, appearance)
+
+
+def _measured(
+    model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
+) -> Iterator[tuple[Array, Array, Array]]:
+    """Edges, normals and variances of one chunk after the other."""
+    for chunk in _chunks(np.arange(len(frame))):
+        predicted, edges = _look(model, album, appearance, posture[chunk], frame[chunk])
+        edge = predicted.pixel + edges.distance[..., None] * predicted.normal
+        edge[~np.isfinite(edges.variance)] = np.nan
+        yield edge, predicted.normal, edges.variance + (PIXEL_STD * album.factor) ** 2
+
+
+def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: int) -> Array:
+    """(O, SHAPE) corrections that best explain edges found where the posture is known."""
+    rate = np.concatenate([predicted.shape_rate for predicted, _ in known])
+    width = np.concatenate([predicted.half_width for predicted, _ in known])
+    distance = np.concatenate([edges.distance for _, edges in known])
+    variance = np.concatenate([edges.variance for _, edges in known])
+    variance = variance + (PIXEL_STD * factor) ** 2 + (0.5 * SURFACE_SHARE * width) ** 2
+    shape = np.zeros_like(model.shape)
+    for part in np.unique(model.part_of):
+        own = (model.part_of == part) & np.isfinite(variance)
+        if np.count_nonzero(own) < FEWEST_EDGES:
+            continue
+        rows, noise = rate[own], variance[own]
+        wanted = distance[own] + rows @ model.shape[part]
+        scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a metre
+        weight = student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES, 1) / noise
+        normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
+        shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
+    assert shape.shape[1] == SHAPE
+    return shape

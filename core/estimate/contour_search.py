@@ -1,0 +1,119 @@
+"""Finding the edges of body parts in the pictures: along each contour sample's normal, where colours change.
+
+At every place along the normal the part's colours compete with those of what lies behind it; an edge lies
+where the part wins on the inner side and loses on the outer. Over all places this gives a distribution of
+the edge's distance, and its mean and variance are the measurement (as Hanek & Beetz 2004, *The contracting
+curve density algorithm*, fit curves to two sides' statistics): colours that do not differ measure nothing.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Pose
+from ..footage.appearance import Appearance
+from ..observation.contours import ContourModel, ContourPrediction
+from ..observation.cover import Covers, outline_depth, visible_share
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+REACH = 6
+"""How far along the normal an edge is looked for, in pixels of the pictures."""
+FARTHEST = 4.0
+"""An edge found farther off is likelier another's."""
+BELIEF = 3.0
+"""Standard deviation of the edge's distance before looking; what looking adds is the measurement."""
+INNER, OUTER = 2.0, 2.5
+"""Places inside and outside the contour that decide what is seen there."""
+MOST_EVIDENCE = 4.0
+"""No pixel's colours speak more than this for either side, as a log likelihood ratio."""
+INDEPENDENT = 0.5
+"""Share of pixels whose colours are independent of their neighbours'."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """What was found near N contour samples in F frames."""
+
+    distance: Array
+    """(F, N) from the sample along its normal [px]; zero where nothing was found."""
+    variance: Array
+    """(F, N) [px²], infinite where nothing was found."""
+
+
+def find_edges(
+    model: ContourModel,
+    predicted: ContourPrediction,
+    pose: Pose,
+    frame: NDArray[np.intp],
+    pictures: Image,
+    factor: int,
+    appearance: Appearance,
+) -> Edges:
+    """Look for the edges near predicted contours.
+
+    Args:
+        model: The contours' model.
+        predicted: Its prediction.
+        pose: Forward kinematics of the F postures it was made from.
+        frame: (F,) their places in the clip.
+        pictures: (F, rows, columns, 3) small pictures of the frames.
+        factor: Pixels of the camera to one of the pictures.
+        appearance: How parts and background look in them.
+    """
+    parts = model.covers(pose, frame)
+    behind, open_view = _surroundings(model, predicted, parts, factor)
+    offset = np.arange(-REACH, REACH + 1.0)
+    places = predicted.pixel[..., None, :] / factor + offset[:, None] * predicted.normal[..., None, :]
+    rows, columns = pictures.shape[1:3]
+    inside = ((places >= 0.0) & (places < [columns, rows])).all(axis=(-1, -2))
+    within = np.where(inside[..., None, None], places, 0.0).astype(np.intp)
+    column, row = within[..., 0], within[..., 1]
+    seen = pictures[np.arange(len(frame))[:, None, None], row, column]
+    own = appearance.part(model.part_of[:, None], seen)
+    other = np.where(
+        behind[..., None] >= 0,
+        appearance.part(behind[..., None], seen),
+        appearance.background(row, column, seen),
+    )
+    evidence = np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE)
+    mean, variance = _edge(evidence, offset)
+    # What a background looks like that was never free is a guess, and a guess would draw edges outwards.
+    judged = (behind >= 0) | appearance.known[row, column][..., offset > 0.0].all(axis=-1)
+    found = open_view & inside & judged & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
+    scale = float(factor)
+    return Edges(np.where(found, mean * scale, 0.0), np.where(found, variance * scale**2, np.inf))
+
+
+def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
+    """Mean and variance (...) of the edge's distance that evidence (..., K) at offsets (K,) adds."""
+    between = offset + 0.5
+    likelihood = 2.0 * INDEPENDENT * np.cumsum(evidence, axis=-1)
+    log = likelihood - 0.5 * (between / BELIEF) ** 2
+    weight = np.exp(log - log.max(axis=-1, keepdims=True))
+    weight /= weight.sum(axis=-1, keepdims=True)
+    mean = weight @ between
+    # An edge lies anywhere in its pixel.
+    variance = np.sum(weight * (between - mean[..., None]) ** 2, axis=-1) + 1.0 / 12.0
+    added = np.maximum(1.0 / variance - BELIEF**-2, 1e-9)
+    return mean / (variance * added), 1.0 / added
+
+
+def _surroundings(
+    model: ContourModel, predicted: ContourPrediction, parts: Covers, factor: int
+) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Which part lies behind each contour sample, -1 for none, and whether its edge is there to be seen."""
+    normal = factor * predicted.normal
+    inner = (predicted.pixel - INNER * normal)[:, :, None]
+    own = np.eye(len(model.parts.segments), dtype=bool)[model.part_of]
+    shown = visible_share(inner, predicted.depth[:, :, None], parts, own)[..., 0] > 0.5
+    covering = outline_depth(predicted.pixel + OUTER * normal, parts)  # (F, N, O), infinite outside
+    joined = (np.isfinite(covering) & model.adjoining).any(axis=-1)
+    covering = np.where(model.adjoining, np.inf, covering)
+    nearest = covering.argmin(axis=-1)
+    depth = covering.min(axis=-1)
+    # A nearer part's own edge is what shows there.
+    shown &= ~joined & (depth >= predicted.depth)
+    return np.where(np.isfinite(depth), nearest, -1), shown

@@ -1,0 +1,45 @@
+"""The contours of limbs and trunk against the edges found near them, along the contours' normals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...observation.contours import SHARES, SIDES, ContourModel
+from ..clip_state import ClipState
+from .term import NormalEquations, student_weight
+
+Array = NDArray[np.float64]
+
+SURFACE_SHARE = 0.2
+"""How far a part's contour as a whole may lie from a perfect one, of its half-width: clothes, muscles."""
+PIXEL_STD = 0.6
+"""The same in pixels of the pictures: blur and light."""
+DEGREES = 4.0
+ALIKE = len(SHARES) * len(SIDES)
+"""The samples of a part err together: all of them weigh as much as one."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContourTerm:
+    """Compares every contour sample with the edge that was found near it."""
+
+    model: ContourModel
+    edge: Array
+    """(F, N, 2) where the edge lies [px]; NaN where none was found."""
+    normal: Array
+    """(F, N, 2) across it."""
+    variance: Array
+    """(F, N) [px²]."""
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each edge."""
+        predicted = self.model.evaluate(state.pose, state.frame)
+        residual = np.sum(self.normal * (predicted.pixel - self.edge), axis=-1)
+        found = np.isfinite(residual)
+        residual = np.where(found, residual, 0.0)
+        variance = (self.variance + (SURFACE_SHARE * predicted.half_width) ** 2) * temperature
+        information = np.where(found, student_weight(residual**2 / variance, DEGREES, 1) / variance, 0.0)
+        weight = np.sqrt(information / ALIKE)
+        jacobian = self.model.normal_jacobian(predicted, self.normal, state.pose) @ state.chain
+        equations.add_rows(residual * weight, np.where(found[..., None], jacobian, 0.0) * weight[..., None])

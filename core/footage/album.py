@@ -1,0 +1,89 @@
+"""A small picture of every frame, kept while the clip is read, so that nothing has to be decoded twice.
+
+What the estimate wants to see again, it wants only once it knows roughly where the performer is, and then on
+a coarse grid. Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip import Clip, FrameSource
+from .working_image import searching_image, smooth
+
+Image = NDArray[np.uint8]
+
+_QUALITY: Final = 90
+"""Of the compression; its error stays below that of the video."""
+
+
+@dataclass(eq=False)
+class Album:
+    """Small pictures of the frames read so far, on the grid that markers are found on.
+
+    Attributes:
+        factor: pixels of the clip to a pixel of the pictures, along either axis.
+    """
+
+    factor: int = 1
+    _pictures: dict[int, NDArray[np.uint8]] = field(default_factory=dict)
+
+    def add(self, index: int, image: Image) -> None:
+        """Keep a frame (rows, columns, 3)."""
+        small = searching_image(image)
+        self.factor = image.shape[1] // small.shape[1]
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        self._pictures[index] = packed
+
+    def every(self, step: int) -> Album:
+        """Return the album of a clip that holds only every so many-th frame, counted anew."""
+        kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
+        return Album(self.factor, kept)
+
+    def __contains__(self, index: int) -> bool:
+        """Whether there is a picture of a frame."""
+        return index in self._pictures
+
+    def picture(self, index: int) -> Image:
+        """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that colour decides.
+
+        Raises:
+            KeyError: the frame was never read.
+        """
+        return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
+
+
+@dataclass(eq=False)
+class _WatchedSource:
+    """A source of frames that puts every frame it yields in order into an album."""
+
+    size: tuple[int, int]
+    fps: float
+    frame_count: int
+    source: FrameSource
+    album: Album
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield every frame after keeping a picture of it."""
+        for index, time_s, image in self.source.frames():
+            self.album.add(index, image)
+            yield index, time_s, image
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield the time of every frame."""
+        return self.source.time_stamps()
+
+    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield the frames of ascending indices."""
+        return self.source.at(indices)
+
+
+def watched(clip: Clip, album: Album) -> Clip:
+    """Return the clip as one that fills an album while its frames are read in order."""
+    return Clip(clip.path, _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, album))

@@ -1,0 +1,96 @@
+"""Contours found in pictures that were drawn from a known motion."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from _filmed import photograph
+from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from keymark.core.body.human import HUMAN
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.contour_evidence import learn_scene, read_contours
+from keymark.core.estimate.terms.contours import ContourTerm
+from keymark.core.estimate.whole_clip import estimate_whole_clip
+from keymark.core.footage.album import Album
+from keymark.core.observation.contours import ContourModel
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+
+FRAMES = 46
+POSED = np.array([0, 15, 30, 45])
+TRUTH = exercise(FRAMES)
+FRAME = np.arange(FRAMES)
+
+
+@cache
+def album() -> Album:
+    """Pictures of the true motion."""
+    return photograph(TRUTH)
+
+
+def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
+    """What is measured from roughly known postures."""
+    scene = learn_scene(BODY, CAMERA, album(), posture, FRAME)
+    assert scene is not None
+    return read_contours(ContourModel.average(BODY, CAMERA), album(), scene, posture, FRAME, keyframes)
+
+
+def solve(pictures: Album | None) -> Posture:
+    """The estimate from few keyframes, with or without pictures."""
+    keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
+    prior = interpolate(keyframes, FRAMES)
+    job = estimate_whole_clip(
+        BODY, CAMERA, film(TRUTH, 0.3), SEGMENTS, prior, tuple(int(i) for i in POSED), album=pictures
+    )
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
+            return stop.value.posture
+
+
+def test_edges_follow_the_true_contours_and_not_the_predicted_ones() -> None:
+    """From a thigh that wobbles by up to 4 cm, edges are found that do not wobble with it."""
+    step = np.zeros((FRAMES, HUMAN.dof_count))
+    step[:, HUMAN.dof_names.index("hip.R.rotation_y")] = 0.1 * np.sin(0.9 * FRAME)
+    step[POSED] = 0.0
+    term = measure(TRUTH.plus(step), POSED)
+    thigh = term.model.part_of == term.model.parts.segments.index("thigh.R")
+    true = replace(term.model, shape=np.zeros_like(term.model.shape)).evaluate(BODY.pose(TRUTH), FRAME)
+    wrong = term.model.evaluate(BODY.pose(TRUTH.plus(step)), FRAME)
+    found = np.isfinite(term.edge[..., 0]) & thigh
+    assert found[:, thigh].mean() > 0.3
+    off = np.sum(term.normal * (term.edge - true.pixel), axis=-1)[found]
+    before = np.sum(term.normal * (wrong.pixel - true.pixel), axis=-1)[found]
+    # Blurred edges look thicker by the same amount everywhere, which is the shape's to explain.
+    assert abs(np.median(off)) < 2.0
+    assert np.std(off) < 0.6 * np.std(before)
+
+
+def test_contours_bring_the_estimate_nearer_to_the_truth() -> None:
+    """The pictures take error away even where the markers' model is perfect and much background is hidden."""
+    without = point_error_m(solve(None), TRUTH).mean()
+    assert point_error_m(solve(album()), TRUTH).mean() < 0.95 * without
+
+
+def test_a_shaken_camera_changes_nothing() -> None:
+    """Where the background does not stand still, the estimate is the markers' own, bit for bit."""
+    shaken = photograph(TRUTH, shake_px=4)
+    np.testing.assert_array_equal(solve(shaken).to_vector(), solve(None).to_vector())
+
+
+def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
+    """No contours are read where a picture's background cannot be the others'."""
+    moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
+    assert learn_scene(BODY, moving, album(), TRUTH, FRAME) is None
+    assert learn_scene(BODY, CAMERA, Album(), TRUTH, FRAME) is None
+
+
+def test_a_stretch_without_keyframes_keeps_average_shapes() -> None:
+    """Windows of a long clip may hold none."""
+    term = measure(TRUTH, POSED[:0])
+    assert not term.model.shape.any()
+    assert np.isfinite(term.edge[..., 0]).mean() > 0.2

@@ -1,0 +1,56 @@
+"""How parts of the body and the background look."""
+
+import numpy as np
+import pytest
+from keymark.core.footage.appearance import NOTHING, Appearance, learn_appearance
+
+PLACE = np.kron(np.random.default_rng(1).uniform(60, 220, size=(6, 8, 3)), np.ones((10, 10, 1)))
+RED = np.array([40.0, 40.0, 210.0])
+FRAMES = 12
+
+
+def walk_by(shake: int = 0, stays: bool = False) -> Appearance:
+    """What is learned of a red block that crosses a still background, or stays, or before a shaken camera."""
+    rng = np.random.default_rng(2)
+    images, labels = [], []
+    for frame in range(FRAMES):
+        label = np.full(PLACE.shape[:2], NOTHING, dtype=np.int8)
+        left = 30 if stays else 5 * frame
+        label[20:44, left : left + 12] = 0
+        scene = np.roll(PLACE, tuple(rng.integers(-shake, shake + 1, size=2)), axis=(0, 1))
+        image = np.where(label[..., None] == 0, RED, scene) + rng.normal(0.0, 3.0, size=PLACE.shape)
+        images.append(np.clip(image, 0, 255).astype(np.uint8))
+        labels.append(label)
+    return learn_appearance(images, labels, 1)
+
+
+def test_the_background_is_what_shows_when_nobody_is_before_it() -> None:
+    """Every pixel is known although the block crossed most of them, and has its own colour."""
+    learned = walk_by()
+    assert learned.steady
+    assert learned.known.all()
+    assert np.abs(learned.colour - PLACE).max() < 8.0
+
+
+def test_what_a_performer_who_stays_hides_is_not_known() -> None:
+    """Behind him nothing is claimed; elsewhere the background is known."""
+    learned = walk_by(stays=True)
+    assert not learned.known[25:40, 32:40].any()
+    assert learned.known[:, :20].all()
+
+
+@pytest.mark.parametrize("shake", [2, 6])
+def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
+    """Two pixels of shake are told from a tripod."""
+    assert not walk_by(shake).steady
+
+
+def test_colours_are_likelier_as_what_they_are() -> None:
+    """The block's red is the part's; a background pixel is the background's, in shadow too."""
+    learned = walk_by()
+    part, row, column = np.array(0), np.array(5), np.array(5)
+    red, usual = RED.astype(np.uint8), PLACE[5, 5].astype(np.uint8)
+    shaded = (0.8 * PLACE[5, 5]).astype(np.uint8)
+    assert learned.part(part, red) > learned.background(row, column, red) + 3.0
+    assert learned.part(part, usual) < learned.background(row, column, usual) - 3.0
+    assert learned.part(part, shaded) < learned.background(row, column, shaded) - 3.0
