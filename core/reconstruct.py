@@ -168,7 +168,7 @@ def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
 
 def _notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
     """Sentences on what may have gone wrong."""
-    notes = list(take.notes)
+    notes = [*take.notes, *tracks.notes]
     rate = rate_note(take, clip)
     if rate is not None:
         notes.append(rate)
