@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from .moments import MOMENT_POWERS
 from .regions import Regions
 from .tracks import ExpectedRegions
 
@@ -21,8 +22,6 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-_MOMENT_POWERS: Final = np.array([2, 3, 3, 4, 4, 4])
-"""Of a length that raw moments from m00 to m02 grow with."""
 _HIDING_COST: Final = 4.0
 """Cost of hiding at all: a marker seen a moment ago is seen again in 98 of 100 frames."""
 _HIDDEN_COST: Final = 2.5
@@ -94,7 +93,7 @@ def candidates(regions: Sequence[Regions], colour: int, scale: float) -> Candida
     frame = frame[own]
     return Candidates(
         frame=frame,
-        moments=np.concatenate([found.moments for found in regions])[own] * scale**_MOMENT_POWERS,
+        moments=np.concatenate([found.moments for found in regions])[own] * scale**MOMENT_POWERS,
         box=np.concatenate([found.box for found in regions])[own] * scale,
         certainty=np.concatenate([found.certainty for found in regions])[own],
         clipped=np.concatenate([found.clipped for found in regions])[own],

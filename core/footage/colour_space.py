@@ -42,7 +42,8 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
         levels.
     """
     colour = np.asarray(bgr, dtype=np.float64)
-    luma = colour @ _LUMA_BGR
+    # Written out: for so short a product, libraries of linear algebra wake up threads that then wait.
+    luma = colour[..., 0] * _LUMA_BGR[0] + colour[..., 1] * _LUMA_BGR[1] + colour[..., 2] * _LUMA_BGR[2]
     offset_luma = luma + LUMA_OFFSET
     differences = np.stack(
         [(colour[..., 0] - luma) * _BLUE_SCALE, (colour[..., 2] - luma) * _RED_SCALE], axis=-1

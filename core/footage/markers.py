@@ -34,6 +34,8 @@ __all__ = ["MarkerStyle", "learn_model", "track_markers"]
 
 _STRETCH_BYTES: Final = 100_000_000
 """Memory for the images that wait until the colours are learned: five seconds of video and more."""
+_TOGETHER: Final = 4
+"""Images that are looked at together: enough to make little of the cost of every step."""
 _SAMPLED_FRAMES: Final = 12
 _DEAREST_PIECE: Final = 10.0
 
@@ -106,14 +108,19 @@ def _all_regions(
         time_s.append(stamp)
         if index < longest:
             waiting.append(measuring_image(image, times))
-        if index + 1 == longest:
-            yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
-        elif index >= longest:
+        else:
+            if index == longest:
+                yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+            waiting.append(image)
             colours.watch(index, image)
-            regions.append(find_regions(image, times, colours.model, regions[-1]))
+            if len(waiting) == _TOGETHER:
+                regions += find_regions(waiting, times, colours.model, regions[-1])
+                waiting.clear()
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
-    if waiting:
+    if len(time_s) <= longest:
         yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+    elif waiting:
+        regions += find_regions(waiting, times, colours.model, regions[-1])
     return regions, np.array(time_s)
 
 
@@ -123,9 +130,10 @@ def _regions_of_stretch(
     """Learn the colours from images on the measuring grid; append their regions and let go of them."""
     colours.learn(waiting)
     stretch = len(waiting)
-    waiting.reverse()
     while waiting:
-        regions.append(find_regions(waiting.pop(), 0, colours.model, regions[-1] if regions else NO_REGIONS))
+        before = regions[-1] if regions else NO_REGIONS
+        regions += find_regions(waiting[:_TOGETHER], 0, colours.model, before)
+        del waiting[:_TOGETHER]
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 

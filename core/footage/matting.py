@@ -61,8 +61,8 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     pixel = np.flatnonzero(grown.view(np.bool_))
     row = pixel // mask.shape[1]
     near = (row >> 1) * start.shape[1] + ((pixel - row * mask.shape[1]) >> 1)
-    along = (colour.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)) @ _SUM[0]
-    along -= start.take(near)
+    product = colour.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
+    along = product[:, 0] + product[:, 1] + product[:, 2] - start.take(near)
     mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no colour, it is not a number
     share = np.where(mixed, cv2.min(cv2.max(along, 0.0), 1.0)[:, 0], mask.take(pixel))
     return Coverage(pixel, share)

@@ -9,14 +9,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from .sheet import Window
-
 Box = tuple[int, int, int, int]
 
 _MOST_BOXES: Final = 12
 """Boxes kept of each colour in a frame, those with most of it."""
-_MARGIN: Final = 8
-"""Pixels of the measuring grid about a box: border band, and background enough to know its colour."""
+MARGIN: Final = 6
+"""Pixels about a box when it is measured: border band, and background enough to know its colour."""
 
 
 def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[Box]:
@@ -42,28 +40,27 @@ def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[B
     ]
 
 
-def windows_about(colour: int, boxes: Sequence[Box], followed: Sequence[Box]) -> list[Window]:
-    """Return windows with a margin about boxes; boxes whose windows would overlap share one.
+def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
+    """Return boxes about what is to be measured; what would overlap with its margin shares one.
 
-    Shared windows see that no pixel is measured twice for a colour.
+    So no pixel is measured twice for a colour.
 
     Args:
-        colour: what is looked for.
-        boxes: where it is seen.
-        followed: where it was a frame ago; of use where the coarse grid slips through what is left of it.
+        seen: where the colour is seen.
+        followed: where it was just before; of use where the coarse grid slips through what is left of it.
     """
-    pending = list(boxes) + [box for box in followed if not any(_overlap(box, seen, 0) for seen in boxes)]
-    windows = []
+    pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
+    boxes = []
     while pending:
         a, b, c, d = pending.pop()
         for other in pending:
-            if _overlap((a, b, c, d), other, 2 * _MARGIN):
+            if _overlap((a, b, c, d), other, 2 * MARGIN):
                 pending.remove(other)
                 pending.append((min(a, other[0]), min(b, other[1]), max(c, other[2]), max(d, other[3])))
                 break
         else:
-            windows.append(Window(colour, a - _MARGIN, b - _MARGIN, c + _MARGIN, d + _MARGIN))
-    return windows
+            boxes.append((a, b, c, d))
+    return boxes
 
 
 def _overlap(first: Box, second: Box, gap: int) -> bool:

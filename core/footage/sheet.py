@@ -1,4 +1,4 @@
-"""Windows of a picture laid side by side on one sheet, so that every step of the work is done once for all.
+"""Windows of some pictures laid side by side on one sheet, so that every step of the work is done once for all.
 
 Each panel of the sheet serves one marker. Where a window reaches beyond the picture, the picture's border is
 repeated, so that it is no edge of a region that it cuts.
@@ -22,8 +22,10 @@ NO_COLOUR = 254
 
 
 class Window(NamedTuple):
-    """A part of the measuring grid in which a colour is looked for, in its pixels."""
+    """A part of one of some images in which a colour is looked for, in pixels of the image halved `times`."""
 
+    image: int
+    times: int
     colour: int
     left: int
     top: int
@@ -32,48 +34,60 @@ class Window(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """Windows side by side, their tops at the sheet's first row, with an empty column after each; even numbers of rows and columns.
+    """Windows side by side, their tops at the sheet's first row, with an empty column after each.
 
     Attributes:
-        image: (rows, columns, 3) uint8.
-        colour: (columns,) uint8, the colour that each column serves; NO_COLOUR in empty ones.
+        picture: (rows, columns, 3) uint8, both numbers even.
+        image: (columns,) int64, the image that each column is of.
+        colour: (columns,) uint8, the colour that it serves; NO_COLOUR in empty ones.
         height: (columns,) rows in use.
-        shift: (2, columns) what takes a column, and the rows in it, to the measuring grid.
+        shift: (2, columns) what takes a column, and the rows in it, to the halved image.
+        scale: (columns,) pixels of the image that one of the sheet spans.
     """
 
-    image: Image
+    picture: Image
+    image: NDArray[np.int64]
     colour: NDArray[np.uint8]
     height: NDArray[np.int64]
     shift: NDArray[np.int64]
+    scale: NDArray[np.int64]
 
 
-def lay_out(image: Image, times: int, windows: Sequence[Window]) -> Sheet:
-    """Cut windows out of an image and lay them side by side.
+def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
+    """Cut windows out of images and lay them side by side.
 
     Args:
-        image: (rows, columns, 3), to be halved `times` to become the measuring grid.
-        times: how often.
-        windows: what to cut out, at least one; each overlaps the image.
+        images: (rows, columns, 3), all of one size.
+        windows: what to cut out, at least one; each overlaps its image.
     """
-    rows, columns = image.shape[0] >> times, image.shape[1] >> times
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))
-    sheet = np.zeros((height, width, 3), dtype=np.uint8)
-    served = np.full(width, NO_COLOUR, dtype=np.uint8)
-    used, shift = np.zeros(width, dtype=np.int64), np.zeros((2, width), dtype=np.int64)
+    picture = np.zeros((height, width, 3), dtype=np.uint8)
+    colour = np.full(width, NO_COLOUR, dtype=np.uint8)
+    image, used = np.zeros((2, width), dtype=np.int64)
+    shift, scale = np.zeros((2, width), dtype=np.int64), np.ones(width, dtype=np.int64)
     start = 0
-    for colour, left, top, right, bottom in windows:
-        a, b, c, d = max(left, 0), max(top, 0), min(right, columns), min(bottom, rows)
-        cut = measuring_image(image[b << times : d << times, a << times : c << times], times)
-        if (a, b, c, d) != (left, top, right, bottom):
-            cut = cv2.copyMakeBorder(cut, b - top, bottom - d, a - left, right - c, cv2.BORDER_REPLICATE)
-        end = start + right - left
-        sheet[: bottom - top, start:end] = cut
-        served[start:end] = colour
-        used[start:end] = bottom - top
-        shift[0, start:end], shift[1, start:end] = left - start, top
+    for window in windows:
+        cut = _cut(images[window.image], window)
+        end = start + cut.shape[1]
+        picture[: len(cut), start:end] = cut
+        colour[start:end] = window.colour
+        image[start:end], used[start:end], scale[start:end] = window.image, len(cut), 1 << window.times
+        shift[0, start:end], shift[1, start:end] = window.left - start, window.top
         start = end + 1
-    return Sheet(sheet, served, used, shift)
+    return Sheet(picture, image, colour, used, shift, scale)
+
+
+def _cut(image: Image, window: Window) -> Image:
+    """Return a window of an image; beyond the image its border is repeated."""
+    _, times, _, left, top, right, bottom = window
+    rows, columns = image.shape[0] >> times, image.shape[1] >> times
+    a, b, c, d = max(left, 0), max(top, 0), min(right, columns), min(bottom, rows)
+    cut = measuring_image(image[b << times : d << times, a << times : c << times], times)
+    if (a, b, c, d) == (left, top, right, bottom):
+        return cut
+    around = (b - top, bottom - d, a - left, right - c)
+    return np.asarray(cv2.copyMakeBorder(cut, *around, cv2.BORDER_REPLICATE), dtype=np.uint8)
 
 
 def _even(number: int) -> int:
