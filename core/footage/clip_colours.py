@@ -21,7 +21,7 @@ from .working_image import halvings, learning_image, measuring_image
 Image = NDArray[np.uint8]
 
 _SAMPLES: Final = 12
-"""Frames that are learned from first; up to twice as many are kept."""
+"""Frames that are learned from first; up to three times as many are kept."""
 _MOST_SAMPLES: Final = 48
 """Frames that are looked at where a marker is in none of the first."""
 _WIDEST_SPACING: Final = 96
@@ -85,14 +85,14 @@ class ClipColours:
     def watch(self, index: int, image: Image) -> None:
         """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
 
-        Colours are learned anew when there are twice as many samples as at first; every second one then goes.
+        Colours are learned anew when there are three times as many samples as at first; every third one stays.
         """
         if index - self._samples[-1][0] < self._spacing:
             return
         self._samples.append((index, learning_image(measuring_image(image, self._times))))
-        if len(self._samples) >= 2 * _SAMPLES:
-            self._samples = self._samples[1::2]
-            self._spacing = min(2 * self._spacing, _WIDEST_SPACING)
+        if len(self._samples) >= 3 * _SAMPLES:
+            self._samples = self._samples[2::3]
+            self._spacing = min(3 * self._spacing, _WIDEST_SPACING)
             self._learn()
 
     def check_found(self) -> None:

@@ -142,6 +142,7 @@ def _cells_near(distributions: Sequence[ColourDistribution]) -> NDArray[np.int32
     group = np.arange(side**3, dtype=np.int32)
     levels = np.stack([group % side, group // side % side, group // side**2], axis=-1)
     chroma, luma = chromaticity(levels * (2.0 * CELL_WIDTH) + (2 * CELL_WIDTH - 1) / 2.0)
+    chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
     near = np.zeros((side, side, side), dtype=np.bool_)
     for distribution in distributions:
         near |= (distribution.distance(chroma, luma)[0] < _GROUP_MARGIN * OUTLIER_DISTANCE).reshape(
@@ -172,7 +173,7 @@ def weigh(
     label, distance = np.zeros(len(luma), dtype=np.intp), np.full(len(luma), np.inf)
     for marker, distribution in enumerate(distributions):
         near = distribution.within_reach(chroma, luma)
-        squared, log_density = distribution.distance(chroma[near], luma[near])
+        squared, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
         evidence = counts[marker] * np.exp(log_density) * cell_volume(luma[near])
         total[near] += evidence
         better = evidence > best[near]
