@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .colour_model import ColourDistribution, ColourModel, colour_model
 from .colour_space import chromaticity
-from .sampled_colours import PlacedMask, SampledColours
+from .sampled_colours import LEARNING_NOISE_LEVELS, PlacedMask, SampledColours
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -144,7 +144,7 @@ def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColourDistribution
     What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it
     would widen and move the distribution round by round.
     """
-    distance, _ = start.distance(chroma, luma)
+    distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
     if not len(distance):
         return np.zeros(0, dtype=np.bool_)
     return distance <= np.clip(np.quantile(distance, _LEARNED_SHARE), _NEAR, _FARTHEST)

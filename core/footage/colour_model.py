@@ -52,18 +52,21 @@ class ColourDistribution:
     slope: FloatArray
     covariance: FloatArray
 
-    def distance(self, chroma: FloatArray, luma: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def distance(
+        self, chroma: FloatArray, luma: FloatArray, noise_levels: float = NOISE_LEVELS
+    ) -> tuple[FloatArray, FloatArray]:
         """Return the squared Mahalanobis distance and the log density of colours.
 
         Args:
             chroma: (..., 2) chromaticity.
             luma: (...) offset luma in levels, as `chromaticity` gives it.
+            noise_levels: standard deviation of a pixel's colour difference in levels.
 
         Returns:
             Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
         """
         light = np.log(luma) - self.log_luma
-        noise = (NOISE_LEVELS / luma) ** 2
+        noise = (noise_levels / luma) ** 2
         first = float(self.covariance[0, 0]) + noise
         second = float(self.covariance[1, 1]) + noise
         cross = float(self.covariance[0, 1])

@@ -19,6 +19,8 @@ Labels = NDArray[np.uint8]
 
 _CORE_DISTANCE: Final = 7.8
 """Squared distance of a sample's near colours: 95 % of a chi-squared with 3 degrees of freedom."""
+LEARNING_NOISE_LEVELS: Final = 2.5
+"""Noise of what is learned from: pixels that only noise could have made so teach nothing."""
 _NO_MARKER: Final = 255
 _LARGEST_SHARE: Final = 0.25
 """A region over a quarter of the image is a wall or a floor."""
@@ -75,7 +77,10 @@ class SampledColours:
 
     def near(self, distributions: Sequence[ColourDistribution]) -> Labels:
         """Label each colour of the table by the distribution in whose core it lies; 255 for none."""
-        pairs = [distribution.distance(self._chroma, self._luma) for distribution in distributions]
+        pairs = [
+            distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
+            for distribution in distributions
+        ]
         nearest = np.argmax([density for _, density in pairs], axis=0)
         distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
         return np.where(distance < _CORE_DISTANCE, nearest, _NO_MARKER).astype(np.uint8)
