@@ -7,6 +7,7 @@ it is hidden. Costs are negative logarithms of likelihood ratios.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -35,6 +36,8 @@ _AREA_DEVIATION: Final = 1.2
 """Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
 _STEP_IN_SIZES: Final = 0.35
 """Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
+_STEP_TAIL: Final = 2.5
+"""Steps are spread like Student's t: a swung arm takes some of four deviations in a row."""
 _STILL_SHARE: Final = 0.5
 _STILL_STEP_PX: Final = 1.5
 _STILL_LOG_AREA: Final = 0.4
@@ -175,7 +178,8 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
                 through = total[before] + (_HIDING_COST + _HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
                 if through < least:
                     across, down = place[before]
-                    through += 0.5 * ((x - across) ** 2 + (y - down) ** 2) / gap**2
+                    squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
+                    through += _STEP_TAIL * math.log1p(0.5 * squared / _STEP_TAIL)
                     if through < least:
                         least, source = through, before
             total.append(least + own[here])
