@@ -36,7 +36,7 @@ _AREA_DEVIATION: Final = 1.2
 """Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
 _STEP_IN_SIZES: Final = 0.35
 """Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
-_STEP_TAIL: Final = 2.5
+_STEP_TAIL: Final = 1.0
 """Steps are spread like Student's t: a swung arm takes some of four deviations in a row."""
 _STILL_SHARE: Final = 0.5
 _STILL_STEP_PX: Final = 1.5

@@ -85,7 +85,7 @@ class ClipColours:
     def watch(self, index: int, image: Image) -> None:
         """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
 
-        Colours are learned anew when there are three times as many samples as at first; every third one stays.
+        Colours are learned anew with three times as many samples as at first; every third one then stays.
         """
         if index - self._samples[-1][0] < self._spacing:
             return
@@ -151,7 +151,7 @@ class ClipColours:
                     place[:] = 1
                     continue
                 x, y, radius = np.clip(circle, -_FAR, _FAR).round().astype(int).tolist()
-                cv2.circle(place, (x, y), radius, 1, -1)
+                cv2.circle(place, (x, y), radius, (1.0,), -1)
         return places
 
 

@@ -70,6 +70,7 @@ def learn_colours(
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     core = labels = sampled.near(initial)
+    found, background = np.zeros(len(initial), dtype=np.int64), np.zeros(0)
     for turn in range(_ROUNDS):
         if turn:
             labels = sampled.weighed(distributions, np.maximum(found, 1), background)
@@ -78,7 +79,7 @@ def learn_colours(
         background = sampled.background_counts(masks)
         if allowed is not None:
             masks = [_allowed(own, places) for own, places in zip(masks, allowed, strict=True)]
-        found = np.array([sum(own[marker].count for own in masks) for marker in range(len(initial))])
+        found = np.array([sum(own[marker].area for own in masks) for marker in range(len(initial))])
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colours([own[marker] for own in masks])
             own = _near_sample(chroma, luma, start)

@@ -20,6 +20,7 @@ from .colour_space import (
 )
 
 FloatArray = NDArray[np.float64]
+ColourArray = NDArray[np.float64] | NDArray[np.float32]
 
 NOISE_LEVELS: Final = 5.0
 """Standard deviation of a decoded, lightly smoothed colour difference in levels: sensor and compression."""
@@ -53,7 +54,7 @@ class ColourDistribution:
     covariance: FloatArray
 
     def distance(
-        self, chroma: FloatArray, luma: FloatArray, noise_levels: float = NOISE_LEVELS
+        self, chroma: ColourArray, luma: ColourArray, noise_levels: float = NOISE_LEVELS
     ) -> tuple[FloatArray, FloatArray]:
         """Return the squared Mahalanobis distance and the log density of colours.
 
@@ -78,7 +79,7 @@ class ColourDistribution:
         normaliser = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
         return squared, -0.5 * (squared + normaliser)
 
-    def within_reach(self, chroma: FloatArray, luma: FloatArray) -> NDArray[np.intp]:
+    def within_reach(self, chroma: ColourArray, luma: ColourArray) -> NDArray[np.intp]:
         """Return the indices of all N colours nearer than OUTLIER_DISTANCE, and of some beyond.
 
         No part of a distance is more than the whole of it, and a part is quickly had.
@@ -159,8 +160,8 @@ def weigh(
     distributions: Sequence[ColourDistribution],
     pixel_counts: ArrayLike,
     background_counts: ArrayLike,
-    chroma: FloatArray,
-    luma: FloatArray,
+    chroma: ColourArray,
+    luma: ColourArray,
 ) -> tuple[NDArray[np.intp], FloatArray]:
     """Return the likeliest marker of each of N colour cells, (N,), and its posterior probability, (N,).
 

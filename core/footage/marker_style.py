@@ -11,7 +11,7 @@ import numpy as np
 from .colour_learning import sample_distribution
 
 _ALIKE_DISTANCE: Final = 2.5
-"""Squared distance of two samples, in what one sample leaves open, below which light decides which is which."""
+"""Squared distance of two samples, in what one sample leaves open, below which light may make them equal."""
 
 
 @dataclass(frozen=True)

@@ -47,10 +47,10 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     second = cv2.erode(first, _CROSS)
     grown = cv2.dilate(mask, _CROSS, iterations=2)
     # The deeper inside, the purer the colour: squared depth, as the sum of the first odd numbers.
-    depth = cv2.add(cv2.addWeighted(first, 3.0, second, 5.0, 0.0), mask)
+    depth = np.asarray(cv2.add(cv2.addWeighted(first, 3.0, second, 5.0, 0.0), mask), dtype=np.uint8)
     colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
     inner, has_inner = _local_mean(colour, depth)
-    outer, has_outer = _local_mean(colour, cv2.bitwise_xor(grown, 1))
+    outer, has_outer = _local_mean(colour, np.bitwise_xor(grown, 1).astype(np.uint8))
     axis = cv2.subtract(inner, outer)
     gain = cv2.transform(axis, _WEIGHT)
     length = cv2.transform(cv2.multiply(axis, gain), _SUM) + 1.0  # one squared level: less is the same colour
@@ -64,7 +64,7 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     product = colour.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
     along = product[:, 0] + product[:, 1] + product[:, 2] - start.take(near)
     mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no colour, it is not a number
-    share = np.where(mixed, cv2.min(cv2.max(along, 0.0), 1.0)[:, 0], mask.take(pixel))
+    share = np.where(mixed, np.minimum(np.maximum(along, 0.0), 1.0), mask.take(pixel))
     return Coverage(pixel, share)
 
 
@@ -76,5 +76,5 @@ def _local_mean(
     half = (weight.shape[1] // 2, weight.shape[0] // 2)
     weighted = cv2.resize(cv2.multiply(colour, cv2.merge([factor] * 3)), half)
     weighted, total = cv2.blur(weighted, _REACH), cv2.blur(cv2.resize(factor, half), _REACH)
-    divisor = cv2.max(total, 1e-6)
+    divisor = np.maximum(total, 1e-6)
     return np.asarray(cv2.divide(weighted, cv2.merge([divisor] * 3)), dtype=np.float32), total > 1e-6

@@ -48,9 +48,20 @@ class Regions(NamedTuple):
     certainty: FloatArray
     clipped: BoolArray
 
+    def part(self, first: int, end: int) -> Regions:
+        """Return the regions from `first` to before `end`."""
+        some = slice(first, end)
+        return Regions(
+            self.colour[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
+        )
+
 
 NO_REGIONS: Final = Regions(
-    np.zeros(0, dtype=np.int64), np.zeros((0, 6)), np.zeros((0, 4), dtype=np.int64), np.zeros(0), np.zeros(0, dtype=np.bool_)
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, 6)),
+    np.zeros((0, 4), dtype=np.int64),
+    np.zeros(0),
+    np.zeros(0, dtype=np.bool_),
 )
 
 
@@ -98,11 +109,12 @@ def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
     times = halvings((width, height))
     shares = []
     for colour in range(len(model.distributions)):
-        sheet = lay_out([image], [Window(0, times, colour, 0, 0, width >> times, height >> times)])
+        around = (-MARGIN, -MARGIN, (width >> times) + MARGIN, (height >> times) + MARGIN)
+        sheet = lay_out([image], [Window(0, times, colour, *around)])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
-        share = share[: height >> times, : width >> times]
+        share = share[MARGIN : MARGIN + (height >> times), MARGIN : MARGIN + (width >> times)]
         shares.append(share if times == 0 else np.asarray(cv2.resize(share, (width, height))))
     return np.stack(shares)
 
@@ -142,17 +154,17 @@ def _components(sheet: Sheet, model: ColourModel) -> _Components:
     renumbered = np.zeros(count, dtype=np.uint16)
     renumbered[kept] = np.arange(1, len(kept) + 1)
     box = np.stack([left, top, left + width, top + height], axis=-1)
-    return _Components(renumbered.take(number), box, certainty / area)
+    return _Components(renumbered.take(np.asarray(number)), box, certainty / area)
 
 
 def _measure(
     sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColourModel
 ) -> list[Regions]:
-    """Measure the regions on a sheet of windows of images of a shape, on the grid of their halving `times`."""
+    """Measure the regions on a sheet, in pixels of the grid that images of a shape halved `times` make."""
     found = _components(sheet, model)
     covered = coverage(sheet.picture, np.minimum(found.number, 1).astype(np.uint8))
     # What lies in the band beyond the edges belongs to the region beside it.
-    owner = cv2.dilate(found.number, _CROSS, iterations=2).take(covered.pixel)
+    owner = np.asarray(cv2.dilate(found.number, _CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
     row = covered.pixel // len(sheet.colour)
     column = covered.pixel - row * len(sheet.colour)
     x, y = column + sheet.shift[0].take(column), row + sheet.shift[1].take(column)
@@ -172,16 +184,16 @@ def _measure(
     order = order[_rank(256 * image[order] + colour[order]) < MOST_REGIONS]
     every = Regions(colour[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
-    return [Regions(*(field[a:b] for field in every)) for a, b in itertools.pairwise(start)]
+    return [every.part(a, b) for a, b in itertools.pairwise(start)]
 
 
 def _moments(
     owner: NDArray[np.uint16], weight: NDArray[np.float32], x: FloatArray, y: FloatArray, count: int
 ) -> FloatArray:
-    """Return raw moments (count, 6) of weighted pixels by their owner; every pixel is a unit square (eq. 1)."""
+    """Return raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
     weight_x, weight_y = weight * x, weight * y
     terms = (weight, weight_x, weight_y, weight_x * x, weight_x * y, weight_y * y)
-    moments = np.stack([np.bincount(owner, term, minlength=count) for term in terms], axis=-1)
+    moments = np.stack([np.bincount(owner, term, minlength=count) for term in terms], axis=-1).astype(float)
     moments[:, 3] += PIXEL_VARIANCE * moments[:, 0]
     moments[:, 5] += PIXEL_VARIANCE * moments[:, 0]
     return moments

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import cv2
 import numpy as np
@@ -16,6 +16,7 @@ from .working_image import smooth
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
 Labels = NDArray[np.uint8]
+_Number = TypeVar("_Number", bound=np.generic)
 
 _CORE_DISTANCE: Final = 7.8
 """Squared distance of a sample's near colours: 95 % of a chi-squared with 3 degrees of freedom."""
@@ -37,13 +38,13 @@ class PlacedMask(NamedTuple):
         left: first column of the part.
         top: its first row.
         mask: (rows, columns) uint8, 0 or 1.
-        count: pixels that are 1.
+        area: pixels that are 1.
     """
 
     left: int
     top: int
     mask: NDArray[np.uint8]
-    count: int
+    area: int
 
     def within(self, place: NDArray[np.uint8]) -> PlacedMask:
         """Return what of it lies in a mask of the whole image."""
@@ -51,10 +52,10 @@ class PlacedMask(NamedTuple):
 
     def interior(self) -> NDArray[np.uint8]:
         """Return the mask without its mixed border where that leaves enough of it."""
-        inner = cv2.erode(self.mask, _KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=0)
-        return inner if cv2.countNonZero(inner) >= 0.25 * self.count else self.mask
+        inner = cv2.erode(self.mask, _KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
+        return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
 
-    def cut(self, image: NDArray[np.generic]) -> NDArray:
+    def cut(self, image: NDArray[_Number]) -> NDArray[_Number]:
         """Return the part of an image that the mask is of."""
         rows, columns = self.mask.shape
         return image[self.top : self.top + rows, self.left : self.left + columns]
@@ -105,7 +106,7 @@ class SampledColours:
         inside = [
             mask.cut(image)[mask.interior().view(np.bool_)]
             for image, mask in zip(self._images, masks, strict=True)
-            if mask.count
+            if mask.area
         ]
         index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
@@ -114,10 +115,10 @@ class SampledColours:
         """Count the colours clear of all masks by cells, (CELL_COUNT,), spread over neighbouring cells."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
-            near = np.zeros(image.shape, dtype=np.uint8)
+            covered = np.zeros(image.shape, dtype=np.uint8)
             for mask in placed:
-                mask.cut(near)[:] |= mask.mask
-            near = cv2.dilate(near, _KERNEL, iterations=_BACKGROUND_MARGIN)
+                mask.cut(covered)[:] |= mask.mask
+            near = cv2.dilate(covered, _KERNEL, iterations=_BACKGROUND_MARGIN)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts = np.zeros(CELL_COUNT)
         counts[self._table] = total
@@ -138,7 +139,7 @@ def _spread(counts: FloatArray) -> FloatArray:
 
 def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int) -> PlacedMask:
     """Keep regions of which enough is of the core colour and which are not most of the image."""
-    mask = cv2.compare(label, marker, cv2.CMP_EQ)
+    mask = np.equal(label, marker).view(np.uint8)
     left, top, columns, rows = cv2.boundingRect(mask)
     part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
     if not columns:
@@ -146,11 +147,11 @@ def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int
     count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(part)
     colour = image[top : top + rows, left : left + columns].take(pixel)
-    strong = np.bincount(number.take(pixel[core.take(colour) == marker]), minlength=count)
+    strong = np.bincount(np.asarray(number).take(pixel[core.take(colour) == marker]), minlength=count)
     area = stats[:, cv2.CC_STAT_AREA]
     good = (strong >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * label.size)
     good[0] = False
-    return _placed(left, top, good.astype(np.uint8).take(number))
+    return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
 
 
 def _placed(left: int, top: int, mask: NDArray[np.uint8]) -> PlacedMask:

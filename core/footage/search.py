@@ -18,14 +18,14 @@ MARGIN: Final = 6
 
 
 def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[Box]:
-    """Return boxes about all there is of a colour, as left, top, right, bottom in the measuring grid's pixels.
+    """Return boxes (left, top, right, bottom) about all of a colour in pixels of the measuring grid.
 
     Args:
         label: (rows, columns) colour of each pixel of the coarse grid.
         colour: which one.
         factor: pixels of the measuring grid that one of the coarse grid spans.
     """
-    mask = cv2.compare(label, colour, cv2.CMP_EQ)
+    mask = np.equal(label, colour).view(np.uint8)
     x, y, columns, rows = cv2.boundingRect(mask)
     if not columns:
         return []

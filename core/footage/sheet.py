@@ -1,4 +1,4 @@
-"""Windows of some pictures laid side by side on one sheet, so that every step of the work is done once for all.
+"""Windows of some pictures side by side on one sheet, so that every step of the work is done once for all.
 
 Each panel of the sheet serves one marker. Where a window reaches beyond the picture, the picture's border is
 repeated, so that it is no edge of a region that it cuts.
@@ -34,12 +34,12 @@ class Window(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """Windows side by side, their tops at the sheet's first row, with an empty column after each.
+    """Windows side by side, their tops at the sheet's first row, with a column between them.
 
     Attributes:
         picture: (rows, columns, 3) uint8, both numbers even.
         image: (columns,) int64, the image that each column is of.
-        colour: (columns,) uint8, the colour that it serves; NO_COLOUR in empty ones.
+        colour: (columns,) uint8, the colour that it serves; NO_COLOUR where panels meet.
         height: (columns,) rows in use.
         shift: (2, columns) what takes a column, and the rows in it, to the halved image.
         scale: (columns,) pixels of the image that one of the sheet spans.
@@ -68,25 +68,25 @@ def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
     shift, scale = np.zeros((2, width), dtype=np.int64), np.ones(width, dtype=np.int64)
     start = 0
     for window in windows:
-        cut = _cut(images[window.image], window)
-        end = start + cut.shape[1]
-        picture[: len(cut), start:end] = cut
-        colour[start:end] = window.colour
-        image[start:end], used[start:end], scale[start:end] = window.image, len(cut), 1 << window.times
-        shift[0, start:end], shift[1, start:end] = window.left - start, window.top
+        columns, rows = window.right - window.left, window.bottom - window.top
+        end = start + columns
+        picture[:, start : end + 1] = _cut(images[window.image], window, height)
+        # Smoothing mixes the first column with the panel to its left.
+        colour[start + 1 : end] = window.colour
+        panel = slice(start, end + 1)
+        image[panel], used[panel], scale[panel] = window.image, rows, 1 << window.times
+        shift[0, panel], shift[1, panel] = window.left - start, window.top
         start = end + 1
     return Sheet(picture, image, colour, used, shift, scale)
 
 
-def _cut(image: Image, window: Window) -> Image:
-    """Return a window of an image; beyond the image its border is repeated."""
+def _cut(image: Image, window: Window, height: int) -> Image:
+    """Return a window of an image, extended to a height and by a column; all beyond repeats the border."""
     _, times, _, left, top, right, bottom = window
     rows, columns = image.shape[0] >> times, image.shape[1] >> times
     a, b, c, d = max(left, 0), max(top, 0), min(right, columns), min(bottom, rows)
     cut = measuring_image(image[b << times : d << times, a << times : c << times], times)
-    if (a, b, c, d) == (left, top, right, bottom):
-        return cut
-    around = (b - top, bottom - d, a - left, right - c)
+    around = (b - top, top + height - d, a - left, right + 1 - c)
     return np.asarray(cv2.copyMakeBorder(cut, *around, cv2.BORDER_REPLICATE), dtype=np.uint8)
 
 
