@@ -44,7 +44,8 @@ load_package()
 
 from keymark.core.footage.clip import Clip  # noqa: E402
 from keymark.core.footage.clip_colours import ClipColours  # noqa: E402
-from keymark.core.footage.markers import MarkerStyle, track_markers  # noqa: E402
+from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
+from keymark.core.footage.markers import track_markers  # noqa: E402
 from keymark.core.footage.tracks import RegionTracks  # noqa: E402
 
 

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from keymark.core.footage.clip import Clip
-from keymark.core.footage.markers import MarkerStyle
+from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.tracks import RegionTracks
 
 SIZE = (320, 240)

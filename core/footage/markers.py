@@ -29,8 +29,6 @@ from .working_image import halvings, measuring_image
 
 FloatArray = NDArray[np.float64]
 
-__all__ = ["MarkerStyle", "learn_model", "track_markers"]
-
 _STRETCH_BYTES: Final = 100_000_000
 """Memory for the images that wait until the colours are learned: five seconds of video and more."""
 _TOGETHER: Final = 4

@@ -20,7 +20,7 @@ _COARSEST_COLUMNS: Final = 320
 """Fewest on which large regions are measured well enough."""
 _LEARNING_COLUMNS: Final = 240
 """Fewest on which the inside of a forearm is clear of its blurred border."""
-_FEWEST_ACROSS: Final = 12
+_FEWEST_ACROSS: Final = 24
 """Fewest pixels across a region that its border is measured well enough with."""
 _SEARCHING_COLUMNS: Final = 160
 """Fewest that a marker worth measuring does not slip through."""

@@ -7,7 +7,8 @@ from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, m
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
 from keymark.core.footage.clip import Clip
-from keymark.core.footage.markers import MarkerStyle, track_markers
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.markers import track_markers
 from keymark.core.footage.matting import coverage
 from keymark.core.footage.search import boxes_to_measure
 from keymark.core.footage.sheet import NO_COLOUR, Window, lay_out

@@ -12,7 +12,8 @@ from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, 
 from keymark.core.errors import InputError
 from keymark.core.footage.clip import Clip
 from keymark.core.footage.colour_learning import learn_colours
-from keymark.core.footage.markers import MarkerStyle, learn_model, track_markers
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.markers import learn_model, track_markers
 from keymark.core.footage.regions import marker_masks
 from keymark.core.footage.tracks import ExpectedRegions, RegionTracks
 
