@@ -15,7 +15,7 @@ from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search import MARGIN, Box, boxes_to_measure, coloured_boxes
 from .sheet import Sheet, Window, lay_out
-from .working_image import further_halvings, halvings, searching_factor, searching_image, smooth
+from .working_image import halvings, searching_factor, searching_image, smooth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -89,18 +89,12 @@ def find_regions(
     for number, part in enumerate(np.split(label, len(images))):
         for colour, boxes in enumerate(followed):
             seen = coloured_boxes(part, colour, factor)
-            for box in boxes_to_measure(seen, boxes):
-                more = further_halvings(grid, min(box[2] - box[0], box[3] - box[1]))
-                windows.append(_window(number, colour, times, more, box))
+            for left, top, right, bottom in boxes_to_measure(seen, boxes):
+                box = (left - MARGIN, top - MARGIN, right + MARGIN, bottom + MARGIN)
+                windows.append(Window(number, times, colour, *box))
     if not windows:
         return [NO_REGIONS] * len(images)
     return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
-
-
-def _window(image: int, colour: int, times: int, more: int, box: Box) -> Window:
-    """Return a window with a margin about a box on the measuring grid, to be halved `more` times."""
-    a, b, c, d = box[0] >> more, box[1] >> more, -(-box[2] >> more), -(-box[3] >> more)
-    return Window(image, times + more, colour, a - MARGIN, b - MARGIN, c + MARGIN, d + MARGIN)
 
 
 def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:

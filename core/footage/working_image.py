@@ -14,14 +14,10 @@ from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
 
-_MEASURING_COLUMNS: Final = 480
+_MEASURING_COLUMNS: Final = 320
 """Fewest on which borders are measured finer than any body model predicts them."""
-_COARSEST_COLUMNS: Final = 320
-"""Fewest on which large regions are measured well enough."""
 _LEARNING_COLUMNS: Final = 240
 """Fewest on which the inside of a forearm is clear of its blurred border."""
-_FEWEST_ACROSS: Final = 24
-"""Fewest pixels across a region that its border is measured well enough with."""
 _SEARCHING_COLUMNS: Final = 160
 """Fewest that a marker worth measuring does not slip through."""
 
@@ -38,16 +34,6 @@ def measuring_image(image: Image, times: int) -> Image:
         whole = image[: 2 * rows, : 2 * columns]
         image = np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA), dtype=np.uint8)
     return image
-
-
-def further_halvings(grid: tuple[int, int], side: int) -> int:
-    """Return how often a region may be halved once more on the measuring grid.
-
-    Args:
-        grid: rows and columns of the measuring grid.
-        side: the region's shorter side in its pixels.
-    """
-    return min(_halvings(max(grid), _COARSEST_COLUMNS), _halvings(side, _FEWEST_ACROSS))
 
 
 def learning_image(measuring: Image) -> Image:
