@@ -223,7 +223,7 @@ def _clip_notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]
 
 def _notes(tracks: RegionTracks) -> tuple[str, ...]:
     """Sentences on what may have gone wrong with the markers."""
-    notes = []
+    notes = list(tracks.notes)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
         if seen < 0.5 * tracks.frame_count:

@@ -14,7 +14,7 @@ from .files.fields import Fields, listed
 from .files.json_file import read_json, shown, write_json, write_whole
 from .footage.camera import Camera
 from .footage.clip import Clip
-from .footage.markers import MarkerStyle
+from .footage.marker_style import MarkerStyle
 from .keyframe_file import read_keyframes, write_keyframes
 from .prior.keyframes import Keyframe
 

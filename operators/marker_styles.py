@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 if TYPE_CHECKING:
-    from ..core.footage.markers import MarkerStyle
+    from ..core.footage.marker_style import MarkerStyle
 
 FULL_SCALE = 255
 
@@ -17,7 +17,7 @@ def marker_styles(scene: bpy.types.Scene) -> "tuple[MarkerStyle, ...]":
         InputError: Two markers have one name or one segment.
     """
     from ..core.errors import InputError
-    from ..core.footage.markers import MarkerStyle
+    from ..core.footage.marker_style import MarkerStyle
 
     styles = tuple(
         MarkerStyle(marker.name, marker.segment, _to_bytes(marker.color)) for marker in scene.keymark.markers

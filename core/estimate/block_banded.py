@@ -57,7 +57,9 @@ class BlockBanded:
         for left, right in zip(turned, jacobians[1:], strict=False):
             self.next[:rows, :n, :n] += left @ right
 
-    def add_combination(self, columns: slice, coefficients: tuple[Array | float, ...], information: Array) -> None:
+    def add_combination(
+        self, columns: slice, coefficients: tuple[Array | float, ...], information: Array
+    ) -> None:
         """Add independent rows, each a combination of one unknown over consecutive frames: Σ_k c_k x[t + k].
 
         Args:

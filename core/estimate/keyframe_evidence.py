@@ -1,4 +1,4 @@
-"""What the footage at the keyframes tells: how the markers sit, the lens, and how well the keyframes were posed.
+"""What the footage at the keyframes tells: how markers sit, the lens, and how well the keyframes were posed.
 
 All are read from the same differences between the regions seen and those predicted, so they are found
 together: the size of the posing error and of its timing are those that make what is seen most likely
@@ -224,7 +224,7 @@ def _gather(seen: _Differences, noise: Array) -> tuple[Array, Array, Array]:
 
 
 def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (X,) of what is fitted, and squared residuals (J, M) in their standard deviations."""
+    """Most probable change (X,) of what is fitted, and squared residuals (J, M) in standard deviations."""
     noise = seen.noise(weight, scale, timing)
     _, information, right = _gather(seen, noise)
     change = -np.linalg.solve(information, right)
@@ -239,7 +239,7 @@ def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -
 
 
 def _distrust(squared: Array, usable: NDArray[np.bool_]) -> Array:
-    """(M,) factors: each marker's median misfit against what it should be, or against the others' if larger."""
+    """(M,) factors: each marker's median misfit against what it should be, or the others' if larger."""
     # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
     usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
     ratio = np.ones(squared.shape[1])

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clip import Clip, FrameSource
-from .working_image import searching_image, smooth
+from .working_image import halvings, learning_image, measuring_image, smooth
 
 Image = NDArray[np.uint8]
 
@@ -25,7 +25,7 @@ _QUALITY: Final = 90
 
 @dataclass(eq=False)
 class Album:
-    """Small pictures of the frames read so far, on the grid that markers are found on.
+    """Small pictures of the frames read so far, on the grid that colours are learned on.
 
     Attributes:
         factor: pixels of the clip to a pixel of the pictures, along either axis.
@@ -36,7 +36,7 @@ class Album:
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
-        small = searching_image(image)
+        small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
         _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
         self._pictures[index] = packed

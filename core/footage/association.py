@@ -7,6 +7,7 @@ it is hidden. Costs are negative logarithms of likelihood ratios.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -14,7 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .regions import Region
+from .moments import MOMENT_POWERS
+from .regions import Regions
+from .tracks import ExpectedRegions
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -33,10 +36,17 @@ _AREA_DEVIATION: Final = 1.2
 """Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
 _STEP_IN_SIZES: Final = 0.35
 """Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
+_STEP_TAIL: Final = 1.0
+"""Steps are spread like Student's t: a swung arm takes some of four deviations in a row."""
 _STILL_SHARE: Final = 0.5
 _STILL_STEP_PX: Final = 1.5
 _STILL_LOG_AREA: Final = 0.4
+_STILL_CELL: Final = 2.0 / 3.0
+"""Width of a cell in steps, so that a cell and its neighbours reach one step on average."""
 _STILL_COST: Final = 20.0
+_TAKEN_COST: Final = 20.0
+_RIVAL_DEVIATION: Final = 0.2
+"""Of a marker from its expected place, in the radii that bound it generously."""
 _RIVAL_SHARE: Final = 0.25
 _RIVAL_AREA: Final = 0.1
 """A moving region of a tenth of a still one's area is no speck of noise beside it."""
@@ -73,17 +83,24 @@ class Candidates:
         return np.asarray(self.moments[:, 0])
 
 
-def candidates(regions: Sequence[Sequence[Region]]) -> Candidates:
-    """Gather one marker's regions, one sequence a frame."""
-    counts = np.array([len(row) for row in regions], dtype=np.int64)
-    flat = [region for row in regions for region in row]
+def candidates(regions: Sequence[Regions], colour: int, scale: float) -> Candidates:
+    """Gather the regions of one colour and take them to the image's own pixels.
+
+    Args:
+        regions: of each frame, what was found in it.
+        colour: which.
+        scale: pixels of the image that one of the measuring grid spans.
+    """
+    frame = np.repeat(np.arange(len(regions)), [len(found.colour) for found in regions])
+    own = np.concatenate([found.colour for found in regions]) == colour
+    frame = frame[own]
     return Candidates(
-        frame=np.repeat(np.arange(len(regions)), counts),
-        moments=np.array([region.moments for region in flat]).reshape(-1, 6),
-        box=np.array([region.box for region in flat]).reshape(-1, 4),
-        certainty=np.array([region.certainty for region in flat], dtype=np.float64),
-        clipped=np.array([region.clipped for region in flat], dtype=np.bool_),
-        start=np.concatenate([[0], np.cumsum(counts)]),
+        frame=frame,
+        moments=np.concatenate([found.moments for found in regions])[own] * scale**MOMENT_POWERS,
+        box=np.concatenate([found.box for found in regions])[own] * scale,
+        certainty=np.concatenate([found.certainty for found in regions])[own],
+        clipped=np.concatenate([found.clipped for found in regions])[own],
+        start=np.searchsorted(frame, np.arange(len(regions) + 1)),
     )
 
 
@@ -112,19 +129,27 @@ def still_clutter(found: Candidates) -> BoolArray:
 
 
 def _still(found: Candidates, frames: int) -> BoolArray:
-    """Mark regions with like ones at their place in most frames."""
-    still = np.zeros(len(found.frame), dtype=np.bool_)
-    centroid, log_area = found.centroid, np.log(found.area)
-    order = np.argsort(centroid[:, 0])
-    column = centroid[order, 0]
-    for index in range(len(found.frame)):
-        first = np.searchsorted(column, centroid[index, 0] - _STILL_STEP_PX)
-        last = np.searchsorted(column, centroid[index, 0] + _STILL_STEP_PX)
-        beside = order[first:last]
-        near = np.abs(centroid[beside, 1] - centroid[index, 1]) <= _STILL_STEP_PX
-        near &= np.abs(log_area[beside] - log_area[index]) < _STILL_LOG_AREA
-        still[index] = len(np.unique(found.frame[beside[near]])) >= _STILL_SHARE * frames
-    return still
+    """Mark regions with like ones at their place in most frames.
+
+    Places and sizes are counted in cells; a region's own and the neighbouring cells are what is like it.
+    """
+    if not len(found.frame):
+        return np.zeros(0, dtype=np.bool_)
+    steps = np.array([_STILL_STEP_PX, _STILL_STEP_PX, _STILL_LOG_AREA]) * _STILL_CELL
+    place = np.column_stack([found.centroid, np.log(found.area)]) / steps
+    place = np.floor(place - place.min(axis=0)).astype(np.int64) + 1
+    sides = place.max(axis=0) + 2
+    cell, index, count = np.unique(
+        np.ravel_multi_index(tuple(place.T), tuple(sides)), return_inverse=True, return_counts=True
+    )
+    around = np.zeros(len(cell), dtype=np.int64)
+    for offset in np.ndindex(3, 3, 3):
+        neighbour = (
+            cell + np.ravel_multi_index(offset, tuple(sides)) - np.ravel_multi_index((1, 1, 1), tuple(sides))
+        )
+        where = np.minimum(np.searchsorted(cell, neighbour), len(cell) - 1)
+        around += np.where(cell[where] == neighbour, count[where], 0)
+    return np.asarray(around[index] >= _STILL_SHARE * frames)
 
 
 def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
@@ -135,45 +160,43 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
         unary: (N,) cost of taking each region for the marker.
         size_px: length of the marker, the measure of its steps.
     """
-    total = np.full(len(found.frame), np.inf)
-    previous = np.full(len(found.frame), -1, dtype=np.int64)
-    centroid = found.centroid
-    frames = len(found.start) - 1
+    # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
+    frame, start = found.frame.tolist(), found.start.tolist()
+    place = (found.centroid / (_STEP_IN_SIZES * size_px)).tolist()
+    own = unary.tolist()
+    total: list[float] = []
+    previous: list[int] = []
     best_before, best_index = 0.0, -1  # the cheapest path so far plus its hidden frames, and where it ended
-    for frame in range(frames):
-        here = slice(int(found.start[frame]), int(found.start[frame + 1]))
-        if here.stop > here.start:
-            first = int(found.start[max(frame - _LONGEST_GAP, 0)])
-            restart = best_before + (_RESTART_COST if best_index >= 0 else 0.0)
-            cost = np.full(here.stop - here.start, restart)
-            source = np.full(here.stop - here.start, best_index)
-            if here.start > first:
-                gap = frame - found.frame[first : here.start]
-                step = np.linalg.norm(centroid[here, None] - centroid[None, first : here.start], axis=-1)
-                through = total[first : here.start] + _HIDDEN_COST * (gap - 1) + _HIDING_COST * (gap > 1)
-                through = through + 0.5 * (step / (_STEP_IN_SIZES * size_px * gap)) ** 2
-                nearest = np.argmin(through, axis=1)
-                cheaper = through[np.arange(len(nearest)), nearest] < cost
-                cost = np.where(cheaper, through[np.arange(len(nearest)), nearest], cost)
-                source = np.where(cheaper, nearest + first, source)
-            total[here] = cost + unary[here]
-            previous[here] = source
+    for now in range(len(start) - 1):
+        first = start[max(now - _LONGEST_GAP, 0)]
+        restart = best_before + (_RESTART_COST if best_index >= 0 else 0.0)
+        for here in range(start[now], start[now + 1]):
+            least, source = restart, best_index
+            x, y = place[here]
+            for before in range(start[now] - 1, first - 1, -1):
+                gap = now - frame[before]
+                through = total[before] + (_HIDING_COST + _HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
+                if through < least:
+                    across, down = place[before]
+                    squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
+                    through += _STEP_TAIL * math.log1p(0.5 * squared / _STEP_TAIL)
+                    if through < least:
+                        least, source = through, before
+            total.append(least + own[here])
+            previous.append(source)
         best_before += _HIDDEN_COST
-        if here.stop > here.start and total[here].min() < best_before:
-            best_before, best_index = float(total[here].min()), int(here.start + np.argmin(total[here]))
-    path = np.full(frames, -1, dtype=np.int64)
+        for here in range(start[now], start[now + 1]):
+            if total[here] < best_before:
+                best_before, best_index = total[here], here
+    path = np.full(len(start) - 1, -1, dtype=np.int64)
     while best_index >= 0:
-        path[found.frame[best_index]] = best_index
-        best_index = int(previous[best_index])
+        path[frame[best_index]] = best_index
+        best_index = previous[best_index]
     return path
 
 
 def region_costs(
-    found: Candidates,
-    clutter: BoolArray,
-    usual_area: float,
-    expected_centre: FloatArray | None,
-    expected_radius: FloatArray | None,
+    found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
 ) -> FloatArray:
     """Return the cost of taking each region for the marker, (N,), by area, colour, rest and expected place.
 
@@ -181,19 +204,49 @@ def region_costs(
         found: the regions.
         clutter: (N,) regions known to be none of the marker.
         usual_area: area of the marker in px.
-        expected_centre: (F, 2) px or None.
-        expected_radius: (F,) px or None.
+        expected: where the markers are expected.
+        marker: which of them.
     """
     if not len(found.frame):
         return np.zeros(0)
     cost = 0.5 * (np.log(found.area / usual_area) / _AREA_DEVIATION) ** 2
     cost -= _CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
     cost += np.where(clutter, _STILL_COST, 0.0)
-    if expected_centre is not None and expected_radius is not None:
-        # A container's claimed frame count may fall short: frames beyond it have no expectation.
-        known = np.flatnonzero(found.frame < len(expected_centre))
-        frame = found.frame[known]
-        offset = np.linalg.norm(found.centroid[known] - expected_centre[frame], axis=1)
-        relative = offset / np.maximum(expected_radius[frame], 1.0)
-        cost[known] += np.nan_to_num(np.minimum(0.5 * (2.0 * relative) ** 2, 2.0 * _RESTART_COST))
+    far = 0.5 * (2.0 * _relative_offset(found, expected, marker)) ** 2
+    return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * _RESTART_COST)))
+
+
+def rivals_costs(
+    found: Candidates,
+    taken: BoolArray,
+    expected: ExpectedRegions | None,
+    marker: int,
+    rivals: Sequence[int],
+) -> FloatArray:
+    """Return what each region costs more, (N,), because markers of the same colour may be what it is.
+
+    Args:
+        found: the regions.
+        taken: (N,) regions that are a rival's already.
+        expected: where the markers are expected.
+        marker: whose cost it is.
+        rivals: the markers of its colour.
+    """
+    cost = np.where(taken, _TAKEN_COST, 0.0)
+    own = _relative_offset(found, expected, marker)
+    for rival in rivals:
+        nearer = own**2 - _relative_offset(found, expected, rival) ** 2
+        cost += np.clip(np.nan_to_num(0.5 * nearer / _RIVAL_DEVIATION**2), 0.0, _TAKEN_COST)
     return np.asarray(cost)
+
+
+def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> FloatArray:
+    """Return how far each region lies from the marker's expected place, (N,) in radii; NaN where unknown."""
+    relative = np.full(len(found.frame), np.nan)
+    if expected is not None:
+        # A container's claimed frame count may fall short: frames beyond it have no expectation.
+        known = np.flatnonzero(found.frame < len(expected.centre))
+        frame = found.frame[known]
+        offset = np.linalg.norm(found.centroid[known] - expected.centre[frame, marker], axis=1)
+        relative[known] = offset / np.maximum(expected.radius[frame, marker], 1.0)
+    return relative

@@ -3,53 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from .association import Candidates, candidates, main_path, region_costs, still_clutter, typical_area
+from .association import (
+    Candidates,
+    candidates,
+    main_path,
+    region_costs,
+    rivals_costs,
+    still_clutter,
+    typical_area,
+)
 from .clip import Clip
-from .colour_learning import learn_colours
+from .clip_colours import ClipColours
 from .colour_model import ColourModel
-from .colour_names import nearest_colours
+from .marker_style import MarkerStyle
 from .moments import centroid_and_second_moment
 from .pieces import join_pieces, region_quality
-from .regions import Region, find_regions
+from .regions import NO_REGIONS, Regions, find_regions
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import searching_image
+from .working_image import halvings, measuring_image
 
 FloatArray = NDArray[np.float64]
 
+_STRETCH_BYTES: Final = 100_000_000
+"""Memory for the images that wait until the colours are learned: five seconds of video and more."""
+_TOGETHER: Final = 4
+"""Images that are looked at together: enough to make little of the cost of every step."""
 _SAMPLED_FRAMES: Final = 12
-_MOST_SAMPLED_FRAMES: Final = 48
-_LEARNING_SHARE: Final = 0.15
-"""Share of the progress that learning the colours takes."""
-_FEWEST_LEARNED: Final = 12
 _DEAREST_PIECE: Final = 10.0
-
-
-@dataclass(frozen=True)
-class MarkerStyle:
-    """A coloured surface marker as the performer wears it.
-
-    Attributes:
-        name: the marker's name.
-        segment: the body segment it is bound to.
-        color_srgb: one eyedropper sample of the footage, (red, green, blue) in 0..255.
-    """
-
-    name: str
-    segment: str
-    color_srgb: tuple[int, int, int]
 
 
 def learn_model(
     clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> ColourModel:
-    """Learn the markers' colours from frames spread over a clip.
+    """Learn the markers' colours from frames spread over a clip, for previews of its masks.
 
     Args:
         clip: the footage.
@@ -59,25 +50,11 @@ def learn_model(
     Raises:
         InputError: a marker's colour matches nothing in the clip; the sentence names colours that are there.
     """
-    for count in (_SAMPLED_FRAMES, _MOST_SAMPLED_FRAMES):
-        frames = [(index, searching_image(image)) for index, image in clip.sample(count)]
-        allowed = (
-            None if expected is None else [_allowed(i, im.shape[:2], clip.size, expected) for i, im in frames]
-        )
-        learned = learn_colours(
-            [image for _, image in frames], [style.color_srgb for style in styles], allowed
-        )
-        missing = np.flatnonzero(learned.found < _FEWEST_LEARNED)
-        if not len(missing):
-            return learned.model
-    style = styles[int(missing[0])]
-    nearest = ", ".join(
-        str(list(colour)) for colour in nearest_colours(learned.background_counts, style.color_srgb)
-    )
-    raise InputError(
-        f"{clip.path}: marker {style.name} has the colour {list(style.color_srgb)}, which matches "
-        f"nothing in the clip; pick it on the marker in a frame (the nearest colours found are {nearest})"
-    )
+    colours = ClipColours(clip.path, clip.size, styles, expected)
+    times = halvings(clip.size)
+    colours.learn([measuring_image(image, times) for _, image in clip.sample(_SAMPLED_FRAMES)])
+    colours.check_found()
+    return colours.model
 
 
 def track_markers(
@@ -103,36 +80,90 @@ def track_markers(
         InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
-    model = learn_model(clip, styles, expected)
-    yield _LEARNING_SHARE
-    regions: list[list[list[Region]]] = []
-    times: list[float] = []
-    for index, time_s, image in clip.frames():
-        regions.append(find_regions(image, model))
-        times.append(time_s)
-        yield _LEARNING_SHARE + (1.0 - _LEARNING_SHARE) * min((index + 1) / clip.frame_count, 1.0)
-    found = [candidates([frame[marker] for frame in regions]) for marker in range(len(styles))]
-    return _tracks(found, styles, expected, np.array(times), clip.size)
+    colours = ClipColours(clip.path, clip.size, styles, expected)
+    regions, time_s = yield from _all_regions(clip, colours)
+    colours.check_found()
+    tracks = _tracks(regions, styles, colours.groups, expected, time_s, clip.size)
+    yield 1.0
+    return tracks
+
+
+def _all_regions(
+    clip: Clip, colours: ClipColours
+) -> Generator[float, None, tuple[list[Regions], FloatArray]]:
+    """Find the regions of every frame, and the frames' times.
+
+    The images of the clip's first stretch wait, reduced, until the colours are learned from them; later ones
+    are looked at as they come.
+    """
+    times = halvings(clip.size)
+    longest = _STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
+    waiting: list[NDArray[np.uint8]] = []
+    regions: list[Regions] = []
+    time_s: list[float] = []
+    for index, stamp, image in clip.frames():
+        time_s.append(stamp)
+        if index < longest:
+            waiting.append(measuring_image(image, times))
+        else:
+            if index == longest:
+                yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+            waiting.append(image)
+            colours.watch(index, image)
+            if len(waiting) == _TOGETHER:
+                regions += find_regions(waiting, times, colours.model, regions[-1])
+                waiting.clear()
+        yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
+    if len(time_s) <= longest:
+        yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+    elif waiting:
+        regions += find_regions(waiting, times, colours.model, regions[-1])
+    return regions, np.array(time_s)
+
+
+def _regions_of_stretch(
+    waiting: list[NDArray[np.uint8]], colours: ClipColours, regions: list[Regions], frame_count: int
+) -> Generator[float, None, None]:
+    """Learn the colours from images on the measuring grid; append their regions and let go of them."""
+    colours.learn(waiting)
+    stretch = len(waiting)
+    while waiting:
+        before = regions[-1] if regions else NO_REGIONS
+        regions += find_regions(waiting[:_TOGETHER], 0, colours.model, before)
+        del waiting[:_TOGETHER]
+        yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
 def _tracks(
-    found: Sequence[Candidates],
+    regions: Sequence[Regions],
     styles: Sequence[MarkerStyle],
+    groups: Sequence[Sequence[int]],
     expected: ExpectedRegions | None,
     time_s: FloatArray,
     size: tuple[int, int],
 ) -> RegionTracks:
-    clutter = [still_clutter(one) for one in found]
+    """Tell which regions are the markers', over the whole clip at once."""
+    found = [candidates(regions, colour, 2.0 ** halvings(size)) for colour in range(len(groups))]
+    alone = [len(group) == 1 for group in groups]
+    clutter = [
+        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        for one, single in zip(found, alone, strict=True)
+    ]
     usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
     reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
-    joined = []
-    for marker, one in enumerate(found):
-        centre = None if expected is None else expected.centre[:, marker]
-        radius = None if expected is None else expected.radius[:, marker]
-        cost = region_costs(one, clutter[marker], usual[marker], centre, radius)
-        path = main_path(one, cost, _length(one, clutter[marker], usual[marker]))
-        joined.append(join_pieces(one, path, cost, reach, _DEAREST_PIECE))
-    moments = np.stack([row[0] for row in joined], axis=1)  # (F, M, 6)
+    joined = {}
+    for colour, group in enumerate(groups):
+        one = found[colour]
+        length = _length(one, clutter[colour], usual[colour])
+        taken = np.zeros(len(one.frame), dtype=np.bool_)
+        for marker in group:
+            cost = region_costs(one, clutter[colour], usual[colour], expected, marker)
+            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            path = main_path(one, cost, length)
+            joined[marker] = join_pieces(one, path, cost, reach, _DEAREST_PIECE)
+            taken[path[path >= 0]] = True
+    rows = [joined[marker] for marker in range(len(styles))]
+    moments = np.stack([row[0] for row in rows], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
     area = moments[..., 0]
     return RegionTracks(
@@ -140,10 +171,21 @@ def _tracks(
         centroid=centroid,
         second_moment=second,
         area=np.where(area > 0.0, area, np.nan),
-        quality=np.stack([region_quality(row[0][:, 0], row[1], row[2], row[3]) for row in joined], axis=1),
-        clipped=np.stack([row[1] for row in joined], axis=1),
+        quality=np.stack([region_quality(row[0][:, 0], row[1], row[2], row[3]) for row in rows], axis=1),
+        clipped=np.stack([row[1] for row in rows], axis=1),
         time_s=time_s,
         size=size,
+        notes=_notes(styles, groups, expected is not None),
+    )
+
+
+def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], placed: bool) -> tuple[str, ...]:
+    """Say which markers look alike."""
+    how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
+    return tuple(
+        f"markers {' and '.join(styles[marker].name for marker in group)} have almost the same colour; {how}"
+        for group in groups
+        if len(group) > 1
     )
 
 
@@ -154,17 +196,3 @@ def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) ->
         return 1.0
     _, second = centroid_and_second_moment(found.moments[full])
     return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
-
-
-def _allowed(
-    frame: int, shape: tuple[int, ...], size: tuple[int, int], expected: ExpectedRegions
-) -> NDArray[np.bool_] | None:
-    """Return where each marker may be looked for on the searching grid, (M, rows, columns)."""
-    if frame >= len(expected.centre):
-        return None
-    rows, columns = np.mgrid[: shape[0], : shape[1]]
-    step = size[0] // shape[1]
-    pixels = np.stack([(columns + 0.5) * step, (rows + 0.5) * step], axis=-1)
-    offset = np.linalg.norm(pixels - expected.centre[frame][:, None, None], axis=-1)
-    # The radius bounds the centroid; the region itself reaches beyond it.
-    return np.asarray(~(offset > 1.5 * expected.radius[frame][:, None, None]))

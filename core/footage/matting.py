@@ -7,52 +7,74 @@ where a threshold would grow a region over dark neighbours and shrink it before 
 
 from __future__ import annotations
 
+from typing import Final, NamedTuple
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-_LUMA_DEVIATION = 3.0
+_WEIGHT: Final = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
-_SUM = np.ones((1, 3), dtype=np.float32)
-_KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+_SUM: Final = np.ones((1, 3), dtype=np.float32)
+_CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+_REACH: Final = (5, 5)
+"""Sides, in halved pixels, of the squares that local colours are averaged over."""
 
 
-def coverage(image: NDArray[np.uint8], mask: NDArray[np.bool_], border: int) -> NDArray[np.float32]:
-    """Return the share of each pixel that the masked region covers, (rows, columns) in 0..1.
+class Coverage(NamedTuple):
+    """What regions cover.
+
+    Attributes:
+        pixel: (N,) flat indices of all pixels that may be covered at all.
+        share: (N,) float32 share of each that is covered, in 0..1.
+    """
+
+    pixel: NDArray[np.intp]
+    share: NDArray[np.float32]
+
+
+def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
+    """Return the share of each pixel that the masked regions cover.
+
+    The band of two pixels to either side of a region's edge, in which edges are blurred by optics and halved
+    chroma, is weighed anew; beyond it all is as the mask says.
 
     Args:
-        image: (rows, columns, 3) uint8.
-        mask: (rows, columns), the region as classified.
-        border: half-width in pixels of the band about the mask's edge that is weighed anew.
+        image: (rows, columns, 3) uint8 blue, green, red; both numbers even.
+        mask: (rows, columns) uint8, 1 in the regions as classified.
     """
-    inside = mask.view(np.uint8)
-    # Reflecting replicates the region beyond a window that cuts it, so that the image's border is no edge of
-    # it.
-    grown = cv2.dilate(inside, _KERNEL, iterations=border)
-    depth = cv2.distanceTransform(
-        cv2.copyMakeBorder(inside, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3
-    )
-    depth = depth[1:-1, 1:-1]
-    colour = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb), dtype=np.float32)
-    colour[..., 0] /= _LUMA_DEVIATION
-    size = 4 * border + 3
-    foreground, has_foreground = _local_mean(colour, depth * depth, size)
-    background, has_background = _local_mean(colour, (1 - grown).astype(np.float32), size)
-    axis = cv2.subtract(foreground, background)
-    along = cv2.transform(cv2.multiply(cv2.subtract(colour, background), axis), _SUM)
-    length = cv2.transform(cv2.multiply(axis, axis), _SUM) + 1.0  # one squared level: less is the same colour
-    mixed = has_foreground & has_background & (grown > 0) & (depth <= border)
-    return np.where(mixed, np.minimum(np.maximum(along / length, 0.0), 1.0), inside).astype(np.float32)
+    first = cv2.erode(mask, _CROSS)
+    second = cv2.erode(first, _CROSS)
+    grown = cv2.dilate(mask, _CROSS, iterations=2)
+    # The deeper inside, the purer the colour: squared depth, as the sum of the first odd numbers.
+    depth = np.asarray(cv2.add(cv2.addWeighted(first, 3.0, second, 5.0, 0.0), mask), dtype=np.uint8)
+    colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
+    inner, has_inner = _local_mean(colour, depth)
+    outer, has_outer = _local_mean(colour, np.bitwise_xor(grown, 1).astype(np.uint8))
+    axis = cv2.subtract(inner, outer)
+    gain = cv2.transform(axis, _WEIGHT)
+    length = cv2.transform(cv2.multiply(axis, gain), _SUM) + 1.0  # one squared level: less is the same colour
+    gain = cv2.divide(gain, cv2.merge([length] * 3))
+    start = cv2.transform(cv2.multiply(outer, gain), _SUM)
+    start[~(has_inner & has_outer)] = np.nan
+
+    pixel = np.flatnonzero(grown.view(np.bool_))
+    row = pixel // mask.shape[1]
+    near = (row >> 1) * start.shape[1] + ((pixel - row * mask.shape[1]) >> 1)
+    product = colour.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
+    along = product[:, 0] + product[:, 1] + product[:, 2] - start.take(near)
+    mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no colour, it is not a number
+    share = np.where(mixed, np.minimum(np.maximum(along, 0.0), 1.0), mask.take(pixel))
+    return Coverage(pixel, share)
 
 
 def _local_mean(
-    colour: NDArray[np.float32], weight: NDArray[np.float32], size: int
+    colour: NDArray[np.float32], weight: NDArray[np.uint8]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the weighted mean colour about each pixel, and where there was any weight."""
-    weighted = cv2.multiply(colour, cv2.merge([weight, weight, weight]))
-    total = cv2.blur(weight, (size, size), borderType=cv2.BORDER_REPLICATE)
-    known = total > 1e-6
+    """Return the weighted mean colour about every two by two pixels, and where there was any weight."""
+    factor = weight.astype(np.float32)
+    half = (weight.shape[1] // 2, weight.shape[0] // 2)
+    weighted = cv2.resize(cv2.multiply(colour, cv2.merge([factor] * 3)), half)
+    weighted, total = cv2.blur(weighted, _REACH), cv2.blur(cv2.resize(factor, half), _REACH)
     divisor = np.maximum(total, 1e-6)
-    mean = cv2.blur(weighted, (size, size), borderType=cv2.BORDER_REPLICATE)
-    mean = cv2.divide(mean, cv2.merge([divisor, divisor, divisor]))
-    return np.asarray(mean, dtype=np.float32), known
+    return np.asarray(cv2.divide(weighted, cv2.merge([divisor] * 3)), dtype=np.float32), total > 1e-6

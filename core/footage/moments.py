@@ -19,6 +19,9 @@ FloatArray = NDArray[np.float64]
 PIXEL_VARIANCE = 1.0 / 12.0
 """Variance along each axis of a unit square of even weight, in px²."""
 
+MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
+"""Of a length, that the raw moments m00, m10, m01, m20, m11, m02 grow with."""
+
 
 class Characteristics(NamedTuple):
     """The characteristics of one or more regions; fields (...).

@@ -36,17 +36,18 @@ def join_pieces(
         (F,).
     """
     frames = len(path)
+    main = path[found.frame]  # (N,) of each region, the main one of its frame
+    gap = np.where(main >= 0, _box_gap(found.box, found.box[main]), np.inf)
+    taken = np.flatnonzero((main == np.arange(len(main))) | ((gap <= reach_px) & (cost <= most_cost)))
+    frame = found.frame[taken]
     moments, clipped = np.zeros((frames, 6)), np.zeros(frames, dtype=np.bool_)
-    certainty, share = np.zeros(frames), np.zeros(frames)
-    for frame in np.flatnonzero(path >= 0):
-        main = int(path[frame])
-        here = np.arange(found.start[frame], found.start[frame + 1])
-        gap = _box_gap(found.box[main], found.box[here])
-        taken = here[((gap <= reach_px) & (cost[here] <= most_cost)) | (here == main)]
-        moments[frame] = found.moments[taken].sum(axis=0)
-        clipped[frame] = found.clipped[taken].any()
-        certainty[frame] = np.average(found.certainty[taken], weights=found.area[taken])
-        share[frame] = found.area[main] / moments[frame, 0]
+    np.add.at(moments, frame, found.moments[taken])
+    np.logical_or.at(clipped, frame, found.clipped[taken])
+    area = np.where(moments[:, 0] > 0.0, moments[:, 0], 1.0)
+    certainty = np.bincount(frame, found.certainty[taken] * found.area[taken], minlength=frames) / area
+    share = np.zeros(frames)
+    seen = np.flatnonzero(path >= 0)
+    share[seen] = found.area[path[seen]] / area[seen]
     return moments, clipped, certainty, share
 
 
@@ -75,8 +76,8 @@ def region_quality(
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
 
 
-def _box_gap(box: FloatArray, others: FloatArray) -> FloatArray:
-    """Return the distance between a box (4,) and others (K, 4)."""
-    across = np.maximum(others[:, 0] - box[2], box[0] - others[:, 2])
-    down = np.maximum(others[:, 1] - box[3], box[1] - others[:, 3])
+def _box_gap(box: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the distances between boxes (N, 4) and others (N, 4)."""
+    across = np.maximum(other[:, 0] - box[:, 2], box[:, 0] - other[:, 2])
+    down = np.maximum(other[:, 1] - box[:, 3], box[:, 1] - other[:, 3])
     return np.asarray(np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -12,160 +12,187 @@ from numpy.typing import NDArray
 
 from .colour_model import ColourModel
 from .matting import coverage
-from .moments import raw_moments
-from .working_image import measuring_factor, reduce, searching_factor, smooth
+from .moments import MOMENT_POWERS, PIXEL_VARIANCE
+from .search import MARGIN, Box, boxes_to_measure, coloured_boxes
+from .sheet import Sheet, Window, lay_out
+from .working_image import halvings, searching_factor, searching_image, smooth
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 
 MOST_REGIONS: Final = 8
-"""Regions kept of each marker in a frame, the largest; a clip's memory is bounded by it."""
+"""Regions kept of each colour in a frame, the largest; a clip's memory is bounded by it."""
 _SURE: Final = 230
 """A region must hold pixels this sure (in 1/255) to be more than a blend of other colours."""
 _FEWEST_PIXELS: Final = 6
-_BORDER: Final = 2
-"""Half-width in grid pixels of the band in which edges are blurred, by optics and halved chroma."""
-_KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+_CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+_SQUARE: Final = np.ones((3, 3), dtype=np.uint8)
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """One connected region of a marker's colour.
+class Regions(NamedTuple):
+    """R connected regions of markers' colours in one image, by colour and from large to small.
 
     Attributes:
-        moments: (6,) raw moments m00, m10, m01, m20, m11, m02 in the image's pixels.
-        box: (4,) left, top, right, bottom in pixels.
-        certainty: mean probability of its pixels' colour in 0..1.
-        clipped: whether it touches the image's border.
+        colour: (R,) which colour each has.
+        moments: (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid.
+        box: (R, 4) left, top, right, bottom in its pixels.
+        certainty: (R,) mean probability of the pixels' colour in 0..1.
+        clipped: (R,) whether it touches the image's border.
     """
 
+    colour: IntArray
     moments: FloatArray
-    box: FloatArray
-    certainty: float
-    clipped: bool
+    box: IntArray
+    certainty: FloatArray
+    clipped: BoolArray
+
+    def part(self, first: int, end: int) -> Regions:
+        """Return the regions from `first` to before `end`."""
+        some = slice(first, end)
+        return Regions(
+            self.colour[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
+        )
 
 
-def find_regions(image: Image, model: ColourModel) -> list[list[Region]]:
-    """Return the regions of each marker's colour in an image (rows, columns, 3), the largest first.
+NO_REGIONS: Final = Regions(
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, 6)),
+    np.zeros((0, 4), dtype=np.int64),
+    np.zeros(0),
+    np.zeros(0, dtype=np.bool_),
+)
 
-    Regions are found on a coarse grid and measured on a finer one, in the windows that hold them.
+
+def find_regions(
+    images: Sequence[Image], times: int, model: ColourModel, before: Regions = NO_REGIONS
+) -> list[Regions]:
+    """Return the regions of the markers' colours in each of some successive images.
+
+    A coarse look at the whole image tells where to measure; only the windows there, and those in which there
+    were regions just before, are looked at closely. Some images together take less time than one by one.
+
+    Args:
+        images: (rows, columns, 3), all of one size, to be halved `times` to become the measuring grid.
+        times: how often.
+        model: the markers' colours.
+        before: the regions of the frame before.
     """
-    scale = measuring_factor((image.shape[1], image.shape[0]))
-    measuring = reduce(image, scale)
-    factor = searching_factor((measuring.shape[1], measuring.shape[0]))
-    label, probability = model.classify(smooth(reduce(measuring, factor)))
-    found: list[list[Region]] = []
-    for marker in range(len(model.distributions)):
-        boxes = _merged(_boxes(label, probability, marker, factor), 4 * factor)
-        regions = [region for box in boxes for region in _measure(measuring, model, marker, box, factor)]
-        regions.sort(key=lambda region: -region.moments[0])
-        found.append([_enlarged(region, scale) for region in regions[:MOST_REGIONS]])
-    return found
+    grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
+    factor = searching_factor(grid)
+    label = model.labels(np.concatenate([searching_image(image, factor << times) for image in images]))
+    followed: list[list[Box]] = [[] for _ in model.distributions]
+    for colour, (left, top, right, bottom) in zip(before.colour.tolist(), before.box.tolist(), strict=True):
+        followed[colour].append((left, top, right, bottom))
+    windows: list[Window] = []
+    for number, part in enumerate(np.split(label, len(images))):
+        for colour, boxes in enumerate(followed):
+            seen = coloured_boxes(part, colour, factor)
+            for left, top, right, bottom in boxes_to_measure(seen, boxes):
+                box = (left - MARGIN, top - MARGIN, right + MARGIN, bottom + MARGIN)
+                windows.append(Window(number, times, colour, *box))
+    if not windows:
+        return [NO_REGIONS] * len(images)
+    return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
 
 
 def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
-    """Return the coverage of each pixel by each marker's colour, (M, rows, columns) in 0..1, for previews."""
+    """Return the coverage of each pixel by each colour, (C, rows, columns) in 0..1, for previews."""
     height, width = image.shape[:2]
-    measuring = reduce(image, measuring_factor((width, height)))
-    label, probability = model.classify(smooth(measuring))
+    times = halvings((width, height))
     shares = []
-    for marker in range(len(model.distributions)):
-        components, stats = _clean(label == marker, probability)
-        shares.append(coverage(measuring, np.isin(components, stats[:, 0]), _BORDER))
-    if measuring.shape == image.shape:
-        return np.stack(shares)
-    return np.stack([np.asarray(cv2.resize(share, (width, height)), dtype=np.float32) for share in shares])
+    for colour in range(len(model.distributions)):
+        around = (-MARGIN, -MARGIN, (width >> times) + MARGIN, (height >> times) + MARGIN)
+        sheet = lay_out([image], [Window(0, times, colour, *around)])
+        covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
+        share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
+        share.ravel()[covered.pixel] = covered.share
+        share = share[MARGIN : MARGIN + (height >> times), MARGIN : MARGIN + (width >> times)]
+        shares.append(share if times == 0 else np.asarray(cv2.resize(share, (width, height))))
+    return np.stack(shares)
 
 
-def _enlarged(region: Region, scale: int) -> Region:
-    """Return a region of the measuring grid in the image's own pixels."""
-    powers = float(scale) ** np.array([2, 3, 3, 4, 4, 4])
-    return Region(region.moments * powers, region.box * scale, region.certainty, region.clipped)
+class _Components(NamedTuple):
+    """K connected regions of a sheet that are worth measuring.
 
-
-def _clean(
-    mask: NDArray[np.bool_], probability: NDArray[np.uint8]
-) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Close one-pixel holes and tell specks and regions without a sure core from the rest.
-
-    Returns:
-        The number of each pixel's connected region (rows, columns); and of the regions to keep the number,
-        left, top, width, height and area, (N, 6).
+    Attributes:
+        number: (rows, columns) uint16, which region each pixel is in, from 1; 0 for none.
+        box: (K, 4) left, top, right, bottom on the sheet.
+        certainty: (K,) mean probability of the pixels' colour in 0..1.
     """
-    closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, _KERNEL)
-    count, components, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
-    sure = np.bincount(components[mask & (probability >= _SURE)], minlength=count)
+
+    number: NDArray[np.uint16]
+    box: IntArray
+    certainty: FloatArray
+
+
+def _components(sheet: Sheet, model: ColourModel) -> _Components:
+    """Find each panel's regions of its colour, without one-pixel holes.
+
+    Specks and regions without a sure core are left out.
+    """
+    label, probability = model.classify(smooth(sheet.picture))
+    used = np.arange(len(label))[:, None] < sheet.height
+    mask = ((label == sheet.colour) & used).view(np.uint8)
+    closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, _CROSS)
+    count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
+    pixel = np.flatnonzero(closed.view(np.bool_))
+    region, sureness = number.take(pixel), probability.take(pixel)
+    sure = np.bincount(region[sureness >= _SURE], minlength=count)
     good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
     kept = np.flatnonzero(good)
-    return np.asarray(components, dtype=np.int32), np.column_stack([kept, stats[kept]])
-
-
-def _boxes(
-    label: NDArray[np.uint8], probability: NDArray[np.uint8], marker: int, factor: int
-) -> list[tuple[int, int, int, int]]:
-    """Return left, top, right, bottom of a marker's cleaned regions, in pixels of the measuring grid."""
-    mask = label == marker
-    x, y, columns, rows = cv2.boundingRect(mask.view(np.uint8))
-    if not columns:
-        return []
-    inside = np.s_[y : y + rows, x : x + columns]
-    _, stats = _clean(np.ascontiguousarray(mask[inside]), probability[inside])
-    _, left, top, width, height, area = stats.T
-    corners = np.stack([x + left, y + top, x + left + width, y + top + height], axis=-1) * factor
-    largest = np.argsort(-area)[: 2 * MOST_REGIONS]
-    return [(int(a), int(b), int(c), int(d)) for a, b, c, d in corners[largest]]
-
-
-def _merged(boxes: Sequence[tuple[int, int, int, int]], gap: int) -> list[tuple[int, int, int, int]]:
-    """Join boxes that overlap once grown by a gap, so that no pixel is measured twice."""
-    pending, merged = list(boxes), []
-    while pending:
-        a, b, c, d = pending.pop()
-        for other in pending:
-            if a - gap <= other[2] and other[0] <= c + gap and b - gap <= other[3] and other[1] <= d + gap:
-                pending.remove(other)
-                pending.append((min(a, other[0]), min(b, other[1]), max(c, other[2]), max(d, other[3])))
-                break
-        else:
-            merged.append((a, b, c, d))
-    return merged
+    certainty = np.bincount(region, weights=sureness, minlength=count)[kept] / 255.0
+    left, top, width, height, area = stats[kept].T.astype(np.int64)
+    renumbered = np.zeros(count, dtype=np.uint16)
+    renumbered[kept] = np.arange(1, len(kept) + 1)
+    box = np.stack([left, top, left + width, top + height], axis=-1)
+    return _Components(renumbered.take(np.asarray(number)), box, certainty / area)
 
 
 def _measure(
-    image: Image, model: ColourModel, marker: int, box: tuple[int, int, int, int], factor: int
-) -> list[Region]:
-    """Classify a window of the measuring grid anew and measure its regions, in pixels of that grid."""
-    height, width = image.shape[:2]
-    margin = 2 * _BORDER + factor
-    left, top = max(box[0] - margin, 0), max(box[1] - margin, 0)
-    right, bottom = min(box[2] + margin, width), min(box[3] + margin, height)
-    window = image[top:bottom, left:right]
-    label, probability = model.classify(smooth(window))
-    components, stats = _clean(label == marker, probability)
-    if not len(stats):
-        return []
-    inside = components == stats[0, 0] if len(stats) == 1 else np.isin(components, stats[:, 0])
-    share = coverage(window, inside, _BORDER)
-    owner = components if len(stats) == 1 else _nearest_component(np.where(inside, components, 0))
-    regions = []
-    for component, x, y, columns, rows, _ in stats.tolist():
-        weights = share if len(stats) == 1 else np.where(owner == component, share, 0.0)
-        corners = np.array([left + x, top + y, left + x + columns, top + y + rows], dtype=np.float64)
-        moments = raw_moments(weights, (left, top))
-        if moments[0] < _FEWEST_PIXELS:
-            continue
-        certainty = float(probability[components == component].mean()) / 255.0
-        clipped = bool(corners[0] <= 0 or corners[1] <= 0 or corners[2] >= width or corners[3] >= height)
-        regions.append(Region(moments, corners, certainty, clipped))
-    return regions
+    sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColourModel
+) -> list[Regions]:
+    """Measure the regions on a sheet, in pixels of the grid that images of a shape halved `times` make."""
+    found = _components(sheet, model)
+    covered = coverage(sheet.picture, np.minimum(found.number, 1).astype(np.uint8))
+    # What lies in the band beyond the edges belongs to the region beside it.
+    owner = np.asarray(cv2.dilate(found.number, _CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
+    row = covered.pixel // len(sheet.colour)
+    column = covered.pixel - row * len(sheet.colour)
+    x, y = column + sheet.shift[0].take(column), row + sheet.shift[1].take(column)
+    limits = np.array([shape[1], shape[0], shape[1], shape[0]])
+    right, bottom = limits[:2, None] // sheet.scale
+    inside = (x >= 0) & (y >= 0) & (x < right.take(column)) & (y < bottom.take(column))
+    moments = _moments(owner, covered.share * inside, x + 0.5, y + 0.5, len(found.certainty) + 1)[1:]
+    first = found.box[:, 0]
+    scale = sheet.scale[first] >> times
+    moments = moments * scale[:, None] ** MOMENT_POWERS
+    limits = limits >> times
+    box = np.clip((found.box + np.tile(sheet.shift[:, first].T, 2)) * scale[:, None], 0, limits)
+    clipped = (box[:, :2] <= 0).any(axis=1) | (box[:, 2:] > limits[2:] - scale[:, None]).any(axis=1)
+    image, colour = sheet.image[first], sheet.colour[first].astype(np.int64)
+    order = np.lexsort((-moments[:, 0], colour, image))
+    order = order[moments[order, 0] >= _FEWEST_PIXELS]
+    order = order[_rank(256 * image[order] + colour[order]) < MOST_REGIONS]
+    every = Regions(colour[order], moments[order], box[order], found.certainty[order], clipped[order])
+    start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
+    return [every.part(a, b) for a, b in itertools.pairwise(start)]
 
 
-def _nearest_component(components: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Give every pixel to the nearest component, to share out the coverage beyond their edges."""
-    outside = (components == 0).astype(np.uint8)
-    _, nearest = cv2.distanceTransformWithLabels(outside, cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_CCOMP)
-    inside = components > 0
-    translate = np.zeros(int(nearest.max()) + 1, dtype=np.int32)
-    translate[nearest[inside]] = components[inside]
-    return np.asarray(translate[nearest])
+def _moments(
+    owner: NDArray[np.uint16], weight: NDArray[np.float32], x: FloatArray, y: FloatArray, count: int
+) -> FloatArray:
+    """Return raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
+    weight_x, weight_y = weight * x, weight * y
+    terms = (weight, weight_x, weight_y, weight_x * x, weight_x * y, weight_y * y)
+    moments = np.stack([np.bincount(owner, term, minlength=count) for term in terms], axis=-1).astype(float)
+    moments[:, 3] += PIXEL_VARIANCE * moments[:, 0]
+    moments[:, 5] += PIXEL_VARIANCE * moments[:, 0]
+    return moments
+
+
+def _rank(ascending: IntArray) -> IntArray:
+    """Return each element's place among the equal ones of an ascending sequence."""
+    return np.arange(len(ascending)) - np.searchsorted(ascending, ascending)

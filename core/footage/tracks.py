@@ -27,6 +27,7 @@ class RegionTracks:
         clipped: (F, M), whether the region touches the image's border.
         time_s: (F,) time stamps of the frames in seconds, from the first frame.
         size: width and height of the image in px.
+        notes: sentences on what may be wrong with the tracks.
     """
 
     names: tuple[str, ...]
@@ -37,6 +38,7 @@ class RegionTracks:
     clipped: BoolArray
     time_s: FloatArray
     size: tuple[int, int]
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.

@@ -1,4 +1,8 @@
-"""The grids that markers are found and measured on, and the light smoothing all colour decisions share."""
+"""The grids that markers are searched and measured on, and the light smoothing all colour decisions share.
+
+A camera's picture is halved until it is fine enough to measure on and no finer: halving is what processors
+average fastest. Markers are searched on a coarse grid of a part of its pixels.
+"""
 
 from __future__ import annotations
 
@@ -10,37 +14,53 @@ from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
 
-_MEASURING_WIDTH: Final = 640
-"""Columns on which borders are measured to a third of a column, finer than any body model predicts them."""
-_SEARCHING_WIDTH: Final = 320
-"""Columns that are plenty to find markers by."""
+_MEASURING_COLUMNS: Final = 320
+"""Fewest on which borders are measured finer than any body model predicts them."""
+_LEARNING_COLUMNS: Final = 240
+"""Fewest on which the inside of a forearm is clear of its blurred border."""
+_SEARCHING_COLUMNS: Final = 160
+"""Fewest that a marker worth measuring does not slip through."""
 
 
-def measuring_factor(size: tuple[int, int]) -> int:
-    """Return the whole factor by which an image of (width, height) is reduced for measuring regions."""
-    return max(1, round(max(size) / _MEASURING_WIDTH))
+def halvings(size: tuple[int, int]) -> int:
+    """Return how often an image of (width, height) is halved for measuring."""
+    return _halvings(max(size), _MEASURING_COLUMNS)
 
 
-def searching_factor(size: tuple[int, int]) -> int:
-    """Return the further factor by which the measuring grid of (columns, rows) is reduced for the search."""
-    return max(1, round(max(size) / _SEARCHING_WIDTH))
+def measuring_image(image: Image, times: int) -> Image:
+    """Return an image halved `times`; odd last columns and rows are left out."""
+    for _ in range(times):
+        rows, columns = image.shape[0] // 2, image.shape[1] // 2
+        whole = image[: 2 * rows, : 2 * columns]
+        image = np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    return image
 
 
-def searching_image(image: Image) -> Image:
-    """Return an image as it is searched for markers."""
-    measuring = reduce(image, measuring_factor((image.shape[1], image.shape[0])))
-    return reduce(measuring, searching_factor((measuring.shape[1], measuring.shape[0])))
+def learning_image(measuring: Image) -> Image:
+    """Return a measuring image as colours are learned from it."""
+    return measuring_image(measuring, _halvings(max(measuring.shape[:2]), _LEARNING_COLUMNS))
 
 
-def reduce(image: Image, factor: int) -> Image:
-    """Return every factor-th pixel's neighbourhood; columns and rows that do not fill one are left out."""
-    if factor == 1:
-        return image
+def searching_factor(grid: tuple[int, int]) -> int:
+    """Return by how much the grid of the search is coarser than the measuring one of (rows, columns)."""
+    return 1 << _halvings(max(grid), _SEARCHING_COLUMNS)
+
+
+def searching_image(image: Image, factor: int) -> Image:
+    """Return the middle four pixels' mean of every square of `factor` by `factor`."""
     rows, columns = image.shape[0] // factor, image.shape[1] // factor
     whole = image[: rows * factor, : columns * factor]
-    return np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    return np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_LINEAR), dtype=np.uint8)
 
 
 def smooth(image: Image) -> Image:
     """Average about one pixel to each side: decoders hold chroma at half the resolution of luma anyway."""
     return np.asarray(cv2.GaussianBlur(image, (3, 3), 0.0), dtype=np.uint8)
+
+
+def _halvings(columns: int, fewest: int) -> int:
+    """Return how often some columns can be halved and leave no fewer than the fewest."""
+    times = 0
+    while columns >> (times + 1) >= fewest:
+        times += 1
+    return times

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.body.kinematics import Body
 from ...core.body.shapes import Piece, body_pieces, marker_parts
-from ...core.footage.markers import MarkerStyle
+from ...core.footage.marker_style import MarkerStyle
 from .actor_lengths import skeleton_bones
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.clip import Clip
-from ...core.footage.markers import MarkerStyle
+from ...core.footage.marker_style import MarkerStyle
 from ...core.progress import Job, Progress
 from ...core.take import Take
 from .actor_lengths import read_body

@@ -14,7 +14,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.shapes import body_pieces, marker_parts
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.markers import MarkerStyle
+from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.motion import Motion
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take import Take, write_take

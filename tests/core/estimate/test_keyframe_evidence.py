@@ -96,7 +96,7 @@ def test_keyframes_set_at_the_wrong_frame_are_recognised() -> None:
 
 
 def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
-    """Clutter in a marker's place for the whole clip costs that marker its weight, not the keyframes theirs."""
+    """Clutter in a marker's place all along costs that marker its weight, not the keyframes theirs."""
     tracks = film(MOTION, 0.2)
     rng = np.random.default_rng(6)
     centroid = tracks.centroid.copy()

@@ -85,7 +85,7 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
 
 
 def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:
-    """How strongly the stillness term pulls the first frame of a body that moves as a whole (3,) [m a frame]."""
+    """The stillness term's pull on the first frame of a body that moves as a whole (3,) [m a frame]."""
     term = StillnessTerm(CAMERA, points, np.full(FRAMES - 1, 1.0 / 30.0))
     deviation = np.zeros((FRAMES, DOFS))
     deviation[:, :3] = step_m * np.arange(FRAMES)[:, None]
@@ -212,7 +212,7 @@ def test_student_weights_fall_with_the_residual() -> None:
 
 
 def test_what_is_missing_of_a_region_widens_its_features() -> None:
-    """Nothing for a whole region, about a standard deviation of the region for half of it, and more for less."""
+    """Nothing for a whole region, about the region's own deviation for half of it, and more for less."""
     predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
     variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
     assert variance[0].max() == 0.0

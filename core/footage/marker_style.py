@@ -1,0 +1,53 @@
+"""What a marker is said to look like, and which markers look alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from .colour_learning import sample_distribution
+
+_ALIKE_DISTANCE: Final = 2.5
+"""Squared distance of two samples, in what one sample leaves open, below which light may make them equal."""
+
+
+@dataclass(frozen=True)
+class MarkerStyle:
+    """A coloured surface marker as the performer wears it.
+
+    Attributes:
+        name: the marker's name.
+        segment: the body segment it is bound to.
+        color_srgb: one eyedropper sample of the footage, (red, green, blue) in 0..255.
+    """
+
+    name: str
+    segment: str
+    color_srgb: tuple[int, int, int]
+
+
+def colour_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
+    """Return the indices of the markers by colour; those that no colour tells apart are together."""
+    groups: list[list[int]] = []
+    for index, style in enumerate(styles):
+        for group in groups:
+            if any(
+                _distance(style.color_srgb, styles[other].color_srgb) < _ALIKE_DISTANCE for other in group
+            ):
+                group.append(index)
+                break
+        else:
+            groups.append([index])
+    return groups
+
+
+def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> float:
+    """Return how far apart two samples are, squared, in standard deviations of their difference."""
+    one, other = sample_distribution(first), sample_distribution(second)
+    offset = one.mean - other.mean
+    squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))
+    light = (one.log_luma - other.log_luma) ** 2
+    return squared + light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)

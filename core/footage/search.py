@@ -1,0 +1,69 @@
+"""Where in a picture the markers may be: windows about whatever has their colours on a coarse grid."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Box = tuple[int, int, int, int]
+
+_MOST_BOXES: Final = 12
+"""Boxes kept of each colour in a frame, those with most of it."""
+MARGIN: Final = 6
+"""Pixels about a box when it is measured: border band, and background enough to know its colour."""
+
+
+def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[Box]:
+    """Return boxes (left, top, right, bottom) about all of a colour in pixels of the measuring grid.
+
+    Args:
+        label: (rows, columns) colour of each pixel of the coarse grid.
+        colour: which one.
+        factor: pixels of the measuring grid that one of the coarse grid spans.
+    """
+    mask = np.equal(label, colour).view(np.uint8)
+    x, y, columns, rows = cv2.boundingRect(mask)
+    if not columns:
+        return []
+    part = np.ascontiguousarray(mask[y : y + rows, x : x + columns])
+    _, _, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
+    stats = stats[1:]
+    if len(stats) > _MOST_BOXES:
+        stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")[:_MOST_BOXES]]
+    return [
+        ((x + a) * factor, (y + b) * factor, (x + a + c) * factor, (y + b + d) * factor)
+        for a, b, c, d, _ in stats.tolist()
+    ]
+
+
+def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
+    """Return boxes about what is to be measured; what would overlap with its margin shares one.
+
+    So no pixel is measured twice for a colour.
+
+    Args:
+        seen: where the colour is seen.
+        followed: where it was just before; of use where the coarse grid slips through what is left of it.
+    """
+    pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
+    boxes = []
+    while pending:
+        a, b, c, d = pending.pop()
+        for other in pending:
+            if _overlap((a, b, c, d), other, 2 * MARGIN):
+                pending.remove(other)
+                pending.append((min(a, other[0]), min(b, other[1]), max(c, other[2]), max(d, other[3])))
+                break
+        else:
+            boxes.append((a, b, c, d))
+    return boxes
+
+
+def _overlap(first: Box, second: Box, gap: int) -> bool:
+    """Tell whether two boxes lie less than a gap apart."""
+    across = first[0] - gap < second[2] and second[0] < first[2] + gap
+    return across and first[1] - gap < second[3] and second[1] < first[3] + gap

@@ -1,0 +1,92 @@
+"""Clips drawn in memory, whose coloured regions are known exactly."""
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.tracks import RegionTracks
+
+SIZE = (320, 240)
+RED, BLUE = (200, 45, 50), (55, 90, 215)
+STYLES = (MarkerStyle("red", "forearm.L", RED), MarkerStyle("blue", "forearm.R", BLUE))
+FINE = 4  # points drawn a pixel and axis
+
+
+@dataclass
+class Drawn:
+    """A clip drawn in memory, in the form of a decoder."""
+
+    images: list[np.ndarray]
+    fps: float = 30.0
+    passes: int = 0
+    size: tuple[int, int] = SIZE
+    frame_count: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Count the frames."""
+        self.frame_count = len(self.images)
+
+    def frames(self) -> Iterator[tuple[int, float, np.ndarray]]:
+        """Yield every frame; how often that is done is counted."""
+        self.passes += 1
+        for index, image in enumerate(self.images):
+            yield index, index / self.fps, image
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield every time."""
+        yield from (index / self.fps for index in range(self.frame_count))
+
+    def at(self, indices: list[int]) -> Iterator[tuple[int, np.ndarray]]:
+        """Yield some frames."""
+        yield from ((index, self.images[index]) for index in indices if index < self.frame_count)
+
+
+Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], float]
+
+
+def draw(
+    shapes: list[Ellipse], rng: np.random.Generator, noise: float = 2.0, light: float = 1.0
+) -> np.ndarray:
+    """Ellipses (colour, centre, half axes, degrees) with soft edges on a warm wall over a brown floor."""
+    fine = np.zeros((SIZE[1] * FINE, SIZE[0] * FINE, 3), dtype=np.uint8)
+    fine[:] = (176, 190, 200)
+    fine[170 * FINE :] = (92, 112, 130)
+    for colour, (x, y), (a, b), angle in shapes:
+        # OpenCV draws about the centres of pixels, with four bits of fraction.
+        centre = (round((x * FINE - 0.5) * 16), round((y * FINE - 0.5) * 16))
+        axes = (round(a * FINE * 16), round(b * FINE * 16))
+        cv2.ellipse(fine, centre, axes, angle, 0, 360, colour[::-1], -1, shift=4)
+    image = cv2.resize(fine, SIZE, interpolation=cv2.INTER_AREA).astype(np.float64)
+    return np.clip(image * light + rng.normal(0, noise, image.shape), 0, 255).astype(np.uint8)
+
+
+def clip_of(images: list[np.ndarray]) -> Clip:
+    """A clip of images in memory."""
+    return Clip(Path("drawn.mp4"), Drawn(images))
+
+
+def finish(job: Generator[float, None, RegionTracks]) -> RegionTracks:
+    """Drive the extraction to its end; its progress must rise from 0 to 1."""
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions[0] == 0.0 and fractions[-1] == pytest.approx(1.0)
+            assert fractions == sorted(fractions)
+            return stop.value
+
+
+def path(index: int) -> tuple[float, float]:
+    """Where the red ellipse is in a frame."""
+    return 60.3 + 3.1 * index, 90.7 + 20.0 * np.sin(index / 5.0)
+
+
+def moving(index: int) -> list[Ellipse]:
+    """Red wanders and turns, blue stands still."""
+    return [(RED, path(index), (16.0, 6.0), 5.0 * index), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]

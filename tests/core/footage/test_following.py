@@ -1,0 +1,182 @@
+"""Following markers through a clip longer than the stretch that their colours are learned from."""
+
+import cv2
+import numpy as np
+import pytest
+from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, moving, path
+from keymark.core.errors import InputError
+from keymark.core.footage import markers
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.markers import track_markers
+from keymark.core.footage.matting import coverage
+from keymark.core.footage.search import boxes_to_measure
+from keymark.core.footage.sheet import NO_COLOUR, Window, lay_out
+from keymark.core.footage.tracks import ExpectedRegions
+from keymark.core.footage.working_image import halvings, measuring_image, searching_factor
+
+STRETCH = 9
+
+
+@pytest.fixture
+def short_stretch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the colours be learned from the first nine frames of a drawn clip."""
+    monkeypatch.setattr(markers, "_STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
+
+
+def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The same centroids and areas whether the whole clip waits for its colours or a fifth of it."""
+    rng = np.random.default_rng(1)
+    images = [draw(moving(index), rng) for index in range(42)]
+    whole = finish(track_markers(clip_of(images), STYLES))
+    monkeypatch.setattr(markers, "_STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
+    drawn = Drawn(images)
+    followed = finish(track_markers(Clip(clip_of(images).path, drawn), STYLES))
+    assert drawn.passes == 1
+    assert np.abs(followed.centroid - whole.centroid).max() < 0.1
+    np.testing.assert_allclose(followed.area, whole.area, rtol=0.03)
+
+
+@pytest.mark.usefixtures("short_stretch")
+def test_a_marker_that_enters_late_is_found_from_its_first_frame_on() -> None:
+    """Red comes after the stretch that was learned from; only its sample is known until then."""
+    rng = np.random.default_rng(2)
+    images = [draw(moving(index)[1 if index < 20 else 0 :], rng) for index in range(60)]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    np.testing.assert_array_equal(tracks.visible[:, 0], np.arange(60) >= 20)
+    truth = np.array([path(index) for index in range(60)])
+    assert np.abs(tracks.centroid[20:, 0] - truth[20:]).max() < 0.3
+
+
+@pytest.mark.usefixtures("short_stretch")
+def test_a_lost_marker_is_found_where_it_comes_back() -> None:
+    """It comes back on the other side of the picture, in the very frame."""
+    rng = np.random.default_rng(3)
+    places = [(60.0 + 2.0 * index, 60.0) if index < 20 else (260.0 - index, 200.0) for index in range(50)]
+    images = []
+    for index, place in enumerate(places):
+        shapes = [(RED, place, (16.0, 6.0), 10.0), moving(index)[1]]
+        images.append(draw(shapes[1 if 20 <= index < 30 else 0 :], rng))
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    hidden = (np.arange(50) >= 20) & (np.arange(50) < 30)
+    np.testing.assert_array_equal(~tracks.visible[:, 0], hidden)
+    assert np.abs(tracks.centroid[~hidden, 0] - np.array(places)[~hidden]).max() < 0.3
+
+
+@pytest.mark.usefixtures("short_stretch")
+def test_a_marker_that_leaps_out_of_its_window_is_followed() -> None:
+    """More than its own length from frame to frame, there and back."""
+    rng = np.random.default_rng(4)
+    places = [(160.0 + 100.0 * np.sin(index * 0.5), 90.0 + 20.0 * np.cos(index * 0.4)) for index in range(48)]
+    images = [draw([(RED, place, (17.0, 7.0), 0.0)], rng) for place in places]
+    tracks = finish(track_markers(clip_of(images), (STYLES[0],)))
+    assert np.abs(np.diff(np.array(places)[:, 0])).max() > 45.0
+    assert tracks.visible.all()
+    assert np.abs(tracks.centroid[:, 0] - places).max() < 0.3
+
+
+@pytest.mark.usefixtures("short_stretch")
+def test_two_pieces_about_an_arm_are_one_marker_after_the_stretch_too() -> None:
+    """The arm comes before the marker's middle in the last frames."""
+    rng = np.random.default_rng(5)
+    images = []
+    for index in range(30):
+        image = draw([(RED, (150.0, 100.0), (30.0, 20.0), 0.0), moving(index)[1]], rng)
+        if index >= 18:
+            image[94:106] = rng.normal(45, 2, (12, 320, 3)).astype(np.uint8)
+        images.append(image)
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    assert np.abs(tracks.centroid[:, 0] - [150.0, 100.0]).max() < 0.5
+    assert (tracks.area[18:, 0] < 0.75 * tracks.area[0, 0]).all()
+
+
+def alike(index: int) -> list[tuple[float, float]]:
+    """Where two markers of one colour are: their paths cross in height, and the second rests at first."""
+    return [(60.0 + 4.0 * index, 60.0 + 2.0 * index), (240.0 - max(4.0 * (index - 10), 0.0), 140.0)]
+
+
+def test_the_expected_places_tell_markers_of_almost_one_colour_apart() -> None:
+    """Either keeps to its own path, and one note says that their colours do not tell them apart."""
+    rng = np.random.default_rng(6)
+    other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
+    styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))
+    images = [
+        draw([(RED, alike(index)[0], (14.0, 6.0), 0.0), (other, alike(index)[1], (6.0, 14.0), 0.0)], rng)
+        for index in range(40)
+    ]
+    truth = np.array([alike(index) for index in range(40)])
+    apart = np.abs(truth[:, 0, 0] - truth[:, 1, 0]) > 30.0
+    expected = ExpectedRegions(truth + [6.0, -5.0], np.full((40, 2), 60.0))
+    tracks = finish(track_markers(clip_of(images), styles, expected))
+    assert tracks.visible[apart].all()
+    assert np.abs(tracks.centroid[apart] - truth[apart]).max() < 0.5
+    assert len(tracks.notes) == 1
+    assert "left and right have almost the same colour; the keyframes tell" in tracks.notes[0]
+
+
+def test_markers_of_different_colours_need_no_note() -> None:
+    """Red and blue are told apart by what they are."""
+    rng = np.random.default_rng(7)
+    assert finish(track_markers(clip_of([draw(moving(i), rng) for i in range(12)]), STYLES)).notes == ()
+
+
+def test_a_marker_of_the_walls_colour_is_refused_with_the_reason() -> None:
+    """The sentence says that the surroundings have the colour, not that it was found nowhere."""
+    wall = (200, 190, 176)
+    rng = np.random.default_rng(8)
+    images = [draw([(wall, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
+    with pytest.raises(InputError, match=r"marker sleeve has the colour .* [67]\d % of the picture .* too"):
+        finish(track_markers(clip_of(images), (MarkerStyle("sleeve", "forearm.L", wall),)))
+
+
+def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> None:
+    """Of two images, one of them halved; columns between panels serve no colour."""
+    rng = np.random.default_rng(9)
+    images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
+    sheet = lay_out(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
+    np.testing.assert_array_equal(sheet.picture[:12, :10], images[0][6:18, 5:15])
+    half = measuring_image(images[1], 1)
+    np.testing.assert_array_equal(sheet.picture[:10, 13:21], half[10:20, :8])
+    np.testing.assert_array_equal(sheet.picture[:10, 11], half[10:20, 0])
+    np.testing.assert_array_equal(sheet.picture[10:12, 13:21], np.stack([half[19, :8]] * 2))
+    assert sheet.colour.tolist()[:21] == [NO_COLOUR] + [3] * 9 + [NO_COLOUR] * 2 + [4] * 9
+    assert sheet.image[0] == 0 and sheet.image[12] == 1 and sheet.scale[0] == 1 and sheet.scale[12] == 2
+    assert sheet.shift[:, 0].tolist() == [5, 6] and sheet.shift[:, 11].tolist() == [-13, 10]
+    assert sheet.picture.shape[0] % 2 == 0 and sheet.picture.shape[1] % 2 == 0
+
+
+def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
+    """A followed box counts only where nothing is seen."""
+    assert boxes_to_measure([(0, 0, 10, 10), (18, 4, 30, 12)], []) == [(0, 0, 30, 12)]
+    assert sorted(boxes_to_measure([(0, 0, 10, 10)], [(5, 5, 20, 20), (90, 0, 99, 9)])) == [
+        (0, 0, 10, 10),
+        (90, 0, 99, 9),
+    ]
+
+
+def test_the_share_of_a_border_pixel_is_what_the_region_covers_of_it() -> None:
+    """A disc drawn with known coverage, on a ground of another colour and of another light."""
+    fine = np.zeros((40 * 16, 60 * 16), dtype=np.uint8)
+    cv2.circle(fine, (30 * 16, 20 * 16), 10 * 16, 255, -1)
+    share = cv2.resize(fine, (60, 40), interpolation=cv2.INTER_AREA) / 255.0
+    image = share[..., None] * np.array(RED[::-1]) + (1.0 - share[..., None]) * np.array(BLUE[::-1])
+    covered = coverage(np.round(image).astype(np.uint8), (share >= 0.5).astype(np.uint8))
+    found = np.zeros(share.shape)
+    found.ravel()[covered.pixel] = covered.share
+    assert np.abs(found - share).max() < 0.03
+    assert found.sum() == pytest.approx(share.sum(), rel=0.002)
+
+
+@pytest.mark.parametrize(
+    ("size", "times", "factor"),
+    [((320, 240), 0, 2), ((640, 480), 1, 2), ((1280, 720), 2, 2), ((1920, 1080), 2, 2), ((3840, 2160), 3, 2)],
+)
+def test_pictures_of_every_size_are_measured_and_searched_on_like_grids(
+    size: tuple[int, int], times: int, factor: int
+) -> None:
+    """From 320 to 639 columns for measuring, where there are as many; from 160 to 319 for the search."""
+    assert halvings(size) == times
+    grid = (size[1] >> times, size[0] >> times)
+    assert searching_factor(grid) == factor
