@@ -12,16 +12,16 @@ from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
 from .footage.album import Album, watched
-from .footage.clip import Clip
 from .footage.markers import track_markers
 from .footage.reading import Reading
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
+from .notes import clip_notes, evidence_notes, marker_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
 from .progress import Job, Progress, within
-from .take import Take, check_frame_count, check_in_front, open_clip, rate_note
+from .take import Take, check_frame_count, check_in_front, open_clip
 
 Array = NDArray[np.float64]
 
@@ -88,11 +88,12 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion = baseline
     if method == "map":
-        motion = yield from _whole_clip(take, reading, prior, begun)
+        motion, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
+        notes += of_the_keyframes
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
     yield Progress("Done", 1.0)
-    notes += _notes(tracks)
+    notes += marker_notes(tracks)
     return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes)
 
 
@@ -109,7 +110,7 @@ def _read(take: Take) -> Job[tuple[Reading, tuple[str, ...]]]:
         "Following the markers", track_markers(filmed, take.markers, expected), 0.0, EXTRACTION_SHARE
     )
     check_frame_count(take, tracks.frame_count)
-    return Reading(tracks, album), _clip_notes(take, clip, tracks)
+    return Reading(tracks, album), clip_notes(take, clip, tracks)
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
@@ -139,7 +140,9 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
     return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
-def _whole_clip(take: Take, reading: Reading, prior: Posture, begun: float) -> Job[Motion]:
+def _whole_clip(
+    take: Take, reading: Reading, prior: Posture, begun: float
+) -> Job[tuple[Motion, tuple[str, ...]]]:
     tracks = reading.tracks
     estimate = estimate_whole_clip(
         take.body,
@@ -154,9 +157,13 @@ def _whole_clip(take: Take, reading: Reading, prior: Posture, begun: float) -> J
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
-        "posing_scale": np.array(result.posing_scale),
+        "posing_scale": np.array(result.evidence.posing_scale),
+        "timing_frames": np.array(result.evidence.timing_frames),
+        "lens_mm": np.array(result.evidence.model.camera.lens_mm),
+        "distrust": result.evidence.distrust,
     }
-    return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    return motion, evidence_notes(take, result.evidence)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
@@ -207,27 +214,3 @@ def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
         jacobian = body.points_jacobian(body.pose(posture[frame]))  # (F, P, 3, D)
         spread[frame] = jacobian @ covariance[frame, None] @ np.swapaxes(jacobian, -1, -2)
     return spread
-
-
-def _clip_notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
-    """Sentences on what may be wrong with the clip."""
-    rate = rate_note(take, clip)
-    notes = [] if rate is None else [rate]
-    if tracks.frame_count < clip.frame_count:
-        notes.append(
-            f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
-            "decoded; it may be cut off"
-        )
-    return tuple(notes)
-
-
-def _notes(tracks: RegionTracks) -> tuple[str, ...]:
-    """Sentences on what may have gone wrong with the markers."""
-    notes = list(tracks.notes)
-    for marker, name in enumerate(tracks.names):
-        seen = int(tracks.visible[:, marker].sum())
-        if seen < 0.5 * tracks.frame_count:
-            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
-    if tracks.variable_frame_rate:
-        notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
-    return tuple(notes)

@@ -71,10 +71,8 @@ class WholeClipResult:
     """A batch of F postures."""
     covariance: Array
     """(F, D, D) of the posture's own tangent."""
-    posing_scale: float
-    """Estimated size of the keyframes' error, relative to a person's usual one."""
-    placements: tuple[MarkerPlacement, ...]
-    """Where the markers were found to sit."""
+    evidence: KeyframeEvidence
+    """What the footage at the keyframes told: how they were posed, how the markers sit, the lens."""
     residual_px: Array
     """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
 
@@ -117,7 +115,10 @@ def estimate_whole_clip(
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     pace = float(np.median(step_s)) if len(step_s) else REFERENCE_STEP_S
-    parts: list[tuple[Posture, Array, Array]] = []
+    parts: list[Posture] = []
+    dofs = body.skeleton.dof_count
+    covariance = np.empty((len(frame), dofs, dofs))
+    residual_px = np.empty(observed.quality.shape)
     for window in windows(len(frame), round(options.window_s / pace), round(options.margin_s / pace)):
         inside = (index >= window.first) & (index < window.last)
         problem = _Problem(
@@ -137,15 +138,10 @@ def estimate_whole_clip(
         )
         for done in problem.solve():
             yield (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
-        parts.append(problem.kept(window))
-    postures, covariances, residuals = zip(*parts, strict=True)
-    return WholeClipResult(
-        Posture.concatenate(list(postures)),
-        np.concatenate(covariances),
-        evidence.posing_scale,
-        evidence.model.placements,
-        np.concatenate(residuals),
-    )
+        kept = slice(window.keep_first, window.keep_last)
+        posture, covariance[kept], residual_px[kept] = problem.kept(window)
+        parts.append(posture)
+    return WholeClipResult(Posture.concatenate(parts), covariance, evidence, residual_px)
 
 
 @dataclass(eq=False)

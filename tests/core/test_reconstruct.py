@@ -53,6 +53,17 @@ def test_a_clip_read_before_gives_the_same_motion_without_the_clip(take: Take, t
         run(reconstruct(replace(take, frame_count=25), "map", found))
 
 
+def test_a_misstated_lens_is_told_and_made_good(take: Take) -> None:
+    """The sentence names both lenses; with the right one nothing is said."""
+    stated = replace(take.camera, lens_mm=1.09 * take.camera.lens_mm)
+    right, wrong = (run(reconstruct(replace(take, camera=camera))) for camera in (take.camera, stated))
+    assert not any("lens" in note for note in right.notes)
+    assert any(f"not the {stated.lens_mm:.1f} mm stated" in note for note in wrong.notes)
+    truth = BODY.points(BODY.pose(true_postures(24)))
+    errors = [np.linalg.norm(result.motion.points - truth, axis=-1).mean() for result in (right, wrong)]
+    assert errors[1] < errors[0] + 0.005
+
+
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
     """A cancelled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))

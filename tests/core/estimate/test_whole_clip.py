@@ -59,7 +59,7 @@ def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: Whole
 
 def test_exact_keyframes_are_recognised_and_kept(exact: WholeClipResult) -> None:
     """The size of the posing error is found small, and the keyframes stay where they were posed."""
-    assert exact.posing_scale < 0.3
+    assert exact.evidence.posing_scale < 0.3
     kept = point_error_m(exact.posture[np.array(POSED)], TRUTH[np.array(POSED)])
     assert kept.mean() < 0.004
 
@@ -80,7 +80,7 @@ def test_carelessly_posed_keyframes_are_recognised_and_corrected(seed: int) -> N
     posed = posed_by_hand(seed)
     prior = prior_from(posed)
     result = solve(prior, film(TRUTH, 0.3, seed))
-    assert 0.4 < result.posing_scale < 2.0
+    assert 0.4 < result.evidence.posing_scale < 2.0
     assert point_error_m(result.posture, TRUTH).mean() < 0.75 * point_error_m(prior, TRUTH).mean()
     at_keyframes = point_error_m(result.posture[np.array(POSED)], TRUTH[np.array(POSED)]).mean()
     assert at_keyframes < 0.9 * point_error_m(posed, TRUTH[np.array(POSED)]).mean()

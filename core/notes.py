@@ -1,0 +1,66 @@
+"""What a person should know of a take and its result, one sentence each."""
+
+from .estimate.keyframe_evidence import KeyframeEvidence
+from .footage.clip import Clip
+from .footage.tracks import RegionTracks
+from .take import Take, rate_note
+
+DOUBTED_LENS = 0.03
+"""Share by which the lens found must differ from the one stated for a person to be told."""
+DOUBTED_TIMING_FRAMES = 1.0
+DOUBTED_POSING = 2.0
+"""In usual errors of posing."""
+DOUBTED_MARKER = 3.0
+"""In usual errors of regions."""
+
+
+def clip_notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may be wrong with the clip."""
+    rate = rate_note(take, clip)
+    notes = [] if rate is None else [rate]
+    if tracks.frame_count < clip.frame_count:
+        notes.append(
+            f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
+            "decoded; it may be cut off"
+        )
+    return tuple(notes)
+
+
+def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may have gone wrong with the markers."""
+    notes = list(tracks.notes)
+    for marker, name in enumerate(tracks.names):
+        seen = int(tracks.visible[:, marker].sum())
+        if seen < 0.5 * tracks.frame_count:
+            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+    if tracks.variable_frame_rate:
+        notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
+    return tuple(notes)
+
+
+def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
+    """Sentences on what the footage at the keyframes says against the take."""
+    notes = []
+    lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
+    if abs(lens / stated - 1.0) > DOUBTED_LENS:
+        notes.append(
+            f"the keyframes fit the footage through a lens of {lens:.1f} mm, not the {stated:.1f} mm stated; "
+            "the estimate used the former"
+        )
+    if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
+        notes.append(
+            f"keyframes seem to be set about {evidence.timing_frames:.0f} frames early or late; "
+            "look at them again"
+        )
+    if evidence.posing_scale > DOUBTED_POSING:
+        notes.append(
+            "the keyframes lie far from what the footage shows, much farther than a person usually poses; "
+            "check the camera, the actor's lengths and the markers' segments"
+        )
+    for marker, doubt in zip(take.markers, evidence.distrust, strict=True):
+        if doubt > DOUBTED_MARKER:
+            notes.append(
+                f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
+                "something else may have its colour"
+            )
+    return tuple(notes)
