@@ -2,8 +2,9 @@
 
 A foot that hardly moves in the image, and is not the higher one, stands: it is pulled to rest, along the line
 of sight too, where the image sees no motion. One that moves in the image is left alone, and no floor is
-assumed: a foot that slides (a treadmill, a dance) moves, and is released. This is the Geman-McClure kernel on
-the velocity, c² v² / (c² + v²), whose weight falls to nothing for speeds well past c.
+assumed: a foot that slides (a treadmill, a dance) moves, and is released. Each row is multiplied by the weight
+of Geman and McClure's (1987) kernel, (1 + v² / c²)⁻², which falls to nothing for speeds well past c; once for
+the speed and once for the height.
 """
 
 from dataclasses import dataclass
@@ -28,11 +29,11 @@ class StillnessTerm:
     step_s: Array
     """(F - 1,) time between frames [s]."""
     release_speed_m_s: float = 0.2
-    """Speed across the line of sight at which a point is half released."""
+    """Speed across the line of sight, c, at which a point's rows count a quarter."""
     depth_share: float = 0.3
     """How much motion along the line of sight counts to that speed."""
     release_height_m: float = 0.04
-    """Height above the lowest of the points at which a point is half released."""
+    """Height above the lowest of the points at which a point's rows count a quarter."""
     std_m: float = 0.003
     """How far a standing ankle wanders from frame to frame [m]."""
 
