@@ -2,9 +2,9 @@
 
 A foot that hardly moves in the image, and is not the higher one, stands: it is pulled to rest, along the line
 of sight too, where the image sees no motion. One that moves in the image is left alone, and no floor is
-assumed: a foot that slides (a treadmill, a dance) moves, and is released. Each row is multiplied by the weight
-of Geman and McClure's (1987) kernel, (1 + v² / c²)⁻², which falls to nothing for speeds well past c; once for
-the speed and once for the height.
+assumed: a foot that slides (a treadmill, a dance) moves, and is released. Each row is multiplied by the
+weight of Geman and McClure's (1987) kernel, (1 + v² / c²)⁻², which falls to nothing for speeds well past c;
+once for the speed and once for the height.
 """
 
 from dataclasses import dataclass
