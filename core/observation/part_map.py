@@ -30,24 +30,22 @@ def part_map(parts: Covers, frame: int, size: tuple[int, int], factor: float) ->
         (rows, columns) index of the part seen, -1 where none is.
     """
     labels = np.full((size[1], size[0]), NOWHERE, dtype=np.uint8)
+    outlines = _outlines(parts, frame) / factor - 0.5
+    whole = np.isfinite(outlines).all(axis=(1, 2))
+    corners = np.round(np.where(whole[:, None, None], outlines, 0.0) * 2**FINENESS).astype(np.int32)
     for part in np.argsort(-parts.depth[frame].mean(-1)):
-        ends = np.stack([parts.start[frame, part], parts.end[frame, part]])
-        if not np.isfinite(ends).all():
-            continue
-        for polygon in _outline(ends, parts.half_width[frame, part], parts.overshoot[frame, part]):
-            corners = np.round((polygon / factor - 0.5) * 2**FINENESS).astype(np.int32)
-            cv2.fillConvexPoly(labels, corners, (int(part),), cv2.LINE_8, FINENESS)
+        if whole[part]:
+            hull = cv2.convexHull(corners[part])
+            cv2.fillConvexPoly(labels, hull, (int(part),), cv2.LINE_8, FINENESS)
     return labels.view(np.int8)
 
 
-def _outline(ends: Array, half_width: Array, overshoot: Array) -> list[Array]:
-    """The wall between two ends (2, 2) and both elliptical ends, as polygons [px]."""
-    along = ends[1] - ends[0]
-    along = along / max(float(np.hypot(*along)), 1e-6)
-    across = np.array([-along[1], along[0]])
-    sides = half_width[:, None] * across
-    caps = [
-        ends[i] + half_width[i] * np.outer(CIRCLE[0], across) + overshoot[i] * np.outer(CIRCLE[1], along)
-        for i in range(2)
-    ]
-    return [np.stack([ends[0] + sides[0], ends[1] + sides[1], ends[1] - sides[1], ends[0] - sides[0]]), *caps]
+def _outlines(parts: Covers, frame: int) -> Array:
+    """(O, corners, 2) the elliptical ends of all parts; a part's outline is their hull [px]."""
+    ends = np.stack([parts.start[frame], parts.end[frame]], axis=1)  # (O, 2, 2)
+    along = ends[:, 1] - ends[:, 0]
+    along = along / np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-6)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+    out = (parts.half_width[frame][..., None, None] * CIRCLE[0, :, None]) * across[:, None, None]
+    past = (parts.overshoot[frame][..., None, None] * CIRCLE[1, :, None]) * along[:, None, None]
+    return np.asarray((ends[:, :, None] + out + past).reshape(len(ends), -1, 2))
