@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Pose
 from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
-from ..observation.cover import Covers, outline_depth, visible_share
+from ..observation.cover import HIDDEN_DEPTH_M, Covers, outline_depth
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -63,28 +63,44 @@ def find_edges(
         factor: Pixels of the camera to one of the pictures.
         appearance: How parts and background look in them.
     """
-    parts = model.covers(pose, frame)
-    behind, open_view = _surroundings(model, predicted, parts, factor)
+    behind, shown = _surroundings(model, predicted, model.covers(pose, frame), factor)
     offset = np.arange(-REACH, REACH + 1.0)
-    places = predicted.pixel[..., None, :] / factor + offset[:, None] * predicted.normal[..., None, :]
     rows, columns = pictures.shape[1:3]
-    inside = ((places >= 0.0) & (places < [columns, rows])).all(axis=(-1, -2))
-    within = np.where(inside[..., None, None], places, 0.0).astype(np.intp)
-    column, row = within[..., 0], within[..., 1]
-    seen = pictures[np.arange(len(frame))[:, None, None], row, column]
-    own = appearance.part(model.part_of[:, None], seen)
-    other = np.where(
-        behind[..., None] >= 0,
-        appearance.part(behind[..., None], seen),
-        appearance.background(row, column, seen),
+    middle = predicted.pixel / factor
+    reach = REACH * np.abs(predicted.normal)
+    shown &= ((middle >= reach) & (middle + reach < [columns, rows])).all(axis=-1)
+    # From here on only what is there to be seen, E samples: about half of all.
+    picture, sample = np.nonzero(shown)
+    places = middle[shown][:, None] + offset[:, None] * predicted.normal[shown][:, None]
+    column, row = np.moveaxis(places.astype(np.intp), -1, 0)
+    evidence, judged = _evidence(
+        appearance, model.part_of[sample], behind[shown], row, column, pictures[picture[:, None], row, column]
     )
-    evidence = np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE)
     mean, variance = _edge(evidence, offset)
+    found = judged & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
+    edges = Edges(np.zeros(shown.shape), np.full(shown.shape, np.inf))
+    edges.distance[picture[found], sample[found]] = mean[found] * factor
+    edges.variance[picture[found], sample[found]] = variance[found] * factor**2
+    return edges
+
+
+def _evidence(
+    appearance: Appearance,
+    part: NDArray[np.intp],
+    behind: NDArray[np.intp],
+    row: NDArray[np.intp],
+    column: NDArray[np.intp],
+    seen: Image,
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Log likelihood ratios (E, K) of parts against what lies behind them, and whether both are known (E,)."""
+    own = appearance.part(part[:, None], seen)
+    other = np.empty_like(own)
+    covered, free = behind >= 0, behind < 0
+    other[covered] = appearance.part(behind[covered, None], seen[covered])
+    other[free] = appearance.background(row[free], column[free], seen[free])
     # What a background looks like that was never free is a guess, and a guess would draw edges outwards.
-    judged = (behind >= 0) | appearance.known[row, column][..., offset > 0.0].all(axis=-1)
-    found = open_view & inside & judged & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
-    scale = float(factor)
-    return Edges(np.where(found, mean * scale, 0.0), np.where(found, variance * scale**2, np.inf))
+    judged = covered | appearance.known[row, column][:, REACH + 1 :].all(axis=-1)
+    return np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE), judged
 
 
 def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
@@ -106,9 +122,11 @@ def _surroundings(
 ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Which part lies behind each contour sample, -1 for none, and whether its edge is there to be seen."""
     normal = factor * predicted.normal
-    inner = (predicted.pixel - INNER * normal)[:, :, None]
     own = np.eye(len(model.parts.segments), dtype=bool)[model.part_of]
-    shown = visible_share(inner, predicted.depth[:, :, None], parts, own)[..., 0] > 0.5
+    before = (
+        outline_depth(predicted.pixel - INNER * normal, parts) + HIDDEN_DEPTH_M < predicted.depth[..., None]
+    )
+    shown = ~(before & ~own).any(axis=-1)
     covering = outline_depth(predicted.pixel + OUTER * normal, parts)  # (F, N, O), infinite outside
     joined = (np.isfinite(covering) & model.adjoining).any(axis=-1)
     covering = np.where(model.adjoining, np.inf, covering)

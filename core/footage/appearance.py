@@ -75,17 +75,20 @@ class Appearance:
 
     def background(self, row: IntArray, column: IntArray, pixels: Image) -> FloatArray:
         """Return the log density of pixels (..., 3) as the background at rows and columns (...)."""
-        anywhere = np.asarray(self.parts[-1, _cells(pixels)])
-        usual, deviation = self.colour[row, column], self.deviation[row, column]
-        seen = pixels.astype(np.float64)
-        power = np.maximum(np.sum(usual**2, axis=-1), 1.0)
-        light = np.clip(np.sum(usual * seen, axis=-1) / power, _DARKEST, _BRIGHTEST)
-        squared = np.sum((seen - light[..., None] * usual) ** 2, axis=-1) / deviation**2
+        anywhere = self.parts[-1, _cells(pixels)]
+        deviation = self.deviation[row, column]
+        # Channel by channel: sums over an axis of three are slow.
+        usual = [self.colour[..., channel][row, column] for channel in range(3)]
+        seen = [pixels[..., channel].astype(np.float32) for channel in range(3)]
+        power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
+        light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
+        light = np.clip(light / np.maximum(power, 1.0), _DARKEST, _BRIGHTEST)
+        squared = sum((s - light * u) ** 2 for s, u in zip(seen, usual, strict=True)) / deviation**2
         squared += ((light - 1.0) / _LIGHT_DEVIATION) ** 2
-        here = -0.5 * squared - 3.0 * np.log(deviation) - 1.5 * np.log(2.0 * np.pi)
-        mixed = np.logaddexp(np.log(1.0 - _CHANGED) + here, np.log(_CHANGED) + anywhere)
+        here = np.exp(-0.5 * squared) / (deviation**3 * (2.0 * np.pi) ** 1.5)
+        mixed = (1.0 - _CHANGED) * here + _CHANGED * np.exp(anywhere)
         # Blends at an edge are as strange to either side, and must speak for none.
-        mixed = np.logaddexp(np.log(1.0 - _UNSEEN) + mixed, _STRANGE)
+        mixed = np.log((1.0 - _UNSEEN) * mixed + np.exp(_STRANGE))
         return np.where(self.known[row, column], mixed, anywhere)
 
 
@@ -144,7 +147,7 @@ def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, Float
     colour = _median(stack, free)
     distance = _median(np.stack([cv2.absdiff(image, colour) for image in stack]), free)
     largest = np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2])
-    return colour.astype(np.float64), np.asarray(1.48 * largest)
+    return colour.astype(np.float32), 1.48 * largest.astype(np.float32)
 
 
 def _median(stack: Image, free: BoolArray) -> Image:
