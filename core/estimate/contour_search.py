@@ -92,7 +92,7 @@ def _evidence(
     column: NDArray[np.intp],
     seen: Image,
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Log likelihood ratios (E, K) of parts against what lies behind them, and whether both are known (E,)."""
+    """Log likelihood ratios (E, K) of parts to what lies behind them, and whether both are known (E,)."""
     own = appearance.part(part[:, None], seen)
     other = np.empty_like(own)
     covered, free = behind >= 0, behind < 0
