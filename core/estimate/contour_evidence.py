@@ -4,8 +4,6 @@ From some frames it is learned how the parts of the body and the background look
 the posture is known best, how thick the parts are and where they sit; then edges are measured everywhere.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -69,11 +67,18 @@ def read_contours(
         frame: (F,) their places in the clip.
         keyframes: Those of the stretch, counted from its start, whose posture is known best.
     """
-    for _ in range(ROUNDS if len(keyframes) else 0):
-        known = [_look(model, album, appearance, posture[k], frame[k]) for k in _chunks(keyframes)]
-        model = model.with_shape(_fitted_shape(model, known, album.factor))
-    parts = list(_measured(model, album, appearance, posture, frame))
-    edge, normal, variance = (np.concatenate(rows) for rows in zip(*parts, strict=True))
+    if len(keyframes):
+        model = _fitted(model, album, appearance, posture[keyframes], frame[keyframes])
+    edge = np.full((len(frame), len(model.part_of), 2), np.nan)
+    normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
+    for chunk in _chunks(np.arange(len(frame))):
+        pictures = _pictures(album, frame[chunk])
+        predicted, edges = _look(model, album, appearance, posture[chunk], frame[chunk], pictures)
+        found = np.isfinite(edges.variance)
+        place = predicted.pixel + edges.distance[..., None] * predicted.normal
+        edge[chunk] = np.where(found[..., None], place, np.nan)
+        normal[chunk] = predicted.normal
+        variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
     return ContourTerm(model, edge, normal, variance)
 
 
@@ -91,24 +96,36 @@ def _learn(model: ContourModel, album: Album, posture: Posture, frame: NDArray[n
     return learn_appearance(images, labels, len(model.parts.segments))
 
 
+def _pictures(album: Album, frame: NDArray[np.intp]) -> NDArray[np.uint8]:
+    return np.stack([album.picture(int(index)) for index in frame])
+
+
 def _look(
-    model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
+    model: ContourModel,
+    album: Album,
+    appearance: Appearance,
+    posture: Posture,
+    frame: NDArray[np.intp],
+    pictures: NDArray[np.uint8],
 ) -> tuple[ContourPrediction, Edges]:
     pose = model.body.pose(posture)
     predicted = model.evaluate(pose, frame)
-    pictures = np.stack([album.picture(int(index)) for index in frame])
     return predicted, find_edges(model, predicted, pose, frame, pictures, album.factor, appearance)
 
 
-def _measured(
+def _fitted(
     model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
-) -> Iterator[tuple[Array, Array, Array]]:
-    """Edges, normals and variances of one chunk after the other."""
-    for chunk in _chunks(np.arange(len(frame))):
-        predicted, edges = _look(model, album, appearance, posture[chunk], frame[chunk])
-        edge = predicted.pixel + edges.distance[..., None] * predicted.normal
-        edge[~np.isfinite(edges.variance)] = np.nan
-        yield edge, predicted.normal, edges.variance + (PIXEL_STD * album.factor) ** 2
+) -> ContourModel:
+    """The model with shapes that explain the edges of postures known best."""
+    chunks = _chunks(np.arange(len(frame)))
+    pictures = [_pictures(album, frame[k]) for k in chunks]
+    for _ in range(ROUNDS):
+        known = [
+            _look(model, album, appearance, posture[k], frame[k], seen)
+            for k, seen in zip(chunks, pictures, strict=True)
+        ]
+        model = model.with_shape(_fitted_shape(model, known, album.factor))
+    return model
 
 
 def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: int) -> Array:

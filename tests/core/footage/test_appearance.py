@@ -54,3 +54,17 @@ def test_colours_are_likelier_as_what_they_are() -> None:
     assert learned.part(part, red) > learned.background(row, column, red) + 3.0
     assert learned.part(part, usual) < learned.background(row, column, usual) - 3.0
     assert learned.part(part, shaded) < learned.background(row, column, shaded) - 3.0
+
+
+@pytest.mark.parametrize("frames", [1, 2, 5, 12, 31, 32])
+def test_the_usual_colour_is_the_lower_median_of_what_is_free(frames: int) -> None:
+    """Of any number of pictures, as plain sorting finds it, pixel by pixel."""
+    rng = np.random.default_rng(frames)
+    images = rng.integers(0, 255, size=(frames, 8, 64, 3), dtype=np.uint8)
+    labels = np.full((frames, 8, 64), NOTHING, dtype=np.int8)
+    labels[0, :, :20] = 0
+    learned = learn_appearance(list(images), list(labels), 1)
+    for column, free in ((5, images[1:]), (50, images)):
+        if len(free):
+            expected = np.sort(free[:, 3, column], axis=0)[(len(free) - 1) // 2]
+            np.testing.assert_array_equal(learned.colour[3, column], expected)
