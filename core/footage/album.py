@@ -38,7 +38,7 @@ class Album:
         """Keep a frame (rows, columns, 3)."""
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
-        _, packed = cv2.imencode(".jpg", smooth(small), [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
         self._pictures[index] = packed
 
     def every(self, step: int) -> Album:
@@ -56,7 +56,7 @@ class Album:
         Raises:
             KeyError: the frame was never read.
         """
-        return np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
+        return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
 
 
 @dataclass(eq=False)
