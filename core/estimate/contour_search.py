@@ -29,8 +29,6 @@ INNER, OUTER = 2.0, 2.5
 """Places inside and outside the contour that decide what is seen there."""
 MOST_EVIDENCE = 4.0
 """No pixel's colours speak more than this for either side, as a log likelihood ratio."""
-INDEPENDENT = 0.5
-"""Share of pixels whose colours are independent of their neighbours'."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +104,7 @@ def _evidence(
 def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
     """Mean and variance (...) of the edge's distance that evidence (..., K) at offsets (K,) adds."""
     between = offset + 0.5
-    likelihood = 2.0 * INDEPENDENT * np.cumsum(evidence, axis=-1)
+    likelihood = np.cumsum(evidence, axis=-1)  # of the edge after each place, but for a constant
     log = likelihood - 0.5 * (between / BELIEF) ** 2
     weight = np.exp(log - log.max(axis=-1, keepdims=True))
     weight /= weight.sum(axis=-1, keepdims=True)
