@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
 SMALLEST_DEVIATION_PX = 0.6
-AREA_TOLERANCE = 0.15
+AREA_TOLERANCE = 0.25
 """Share of an area that may be missing for other reasons than that something is before it."""
 
 
