@@ -11,14 +11,13 @@ from takes import ROOT, load_project
 from trials import Trial
 
 load_project()
-# Whichever folder of tools/ films takes is the one that knows how people err.
-sys.path += [str(file.parent) for file in ROOT.glob("tools/*/posing.py")]
+sys.path.append(str(ROOT / "tools"))  # the studio that films takes knows how people err
 
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.speed import marker_speed, propose_keyframes  # noqa: E402
-from posing import ERROR_RMS_M, pose_by_hand  # noqa: E402
+from studio.posing import ERROR_RMS_M, pose_by_hand  # noqa: E402
 
 Array = NDArray[np.float64]
 
