@@ -63,6 +63,10 @@ class ClipState:
         """(F, D, D) takes Jacobians by a posture's own tangent to Jacobians by the unknowns z."""
         return np.asarray(self.prior.plus_jacobian(self.deviation) @ self.factor)
 
+    def bare(self) -> "ClipState":
+        """The same without what was computed from it on the way, which a long clip has no room to keep."""
+        return replace(self)
+
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and how far its postures moved.
 

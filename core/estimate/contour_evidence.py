@@ -4,6 +4,8 @@ From some frames it is learned how the parts of the body and the background look
 the posture is known best, how thick the parts are and where they sit; then edges are measured everywhere.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +24,8 @@ Array = NDArray[np.float64]
 
 LEARNED_FRAMES = 32
 CHUNK_FRAMES = 50
+MOST_KEYFRAMES = 60
+"""Of more keyframes, this many, evenly spread, show the shapes."""
 ROUNDS = 3
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """How far a performer's parts are from average ones: thickness at both ends, and place."""
@@ -30,56 +34,62 @@ FEWEST_EDGES = 20
 DEGREES = 4.0
 
 
-def learn_scene(
-    body: Body, camera: Camera, album: Album, posture: Posture, frame: NDArray[np.intp]
-) -> Appearance | None:
-    """Learn how performer and background look in a stretch of F frames; None where that cannot be trusted.
+@dataclass(frozen=True, eq=False)
+class ContourEvidence:
+    """What is needed to find the contours in any of a clip's frames."""
+
+    album: Album
+    """Pictures of the frames."""
+    appearance: Appearance
+    """How performer and background look."""
+    model: ContourModel
+    """The contours of the performer's own parts."""
+
+    def term(self, posture: Posture, frame: NDArray[np.intp]) -> ContourTerm:
+        """Measure the edges near the contours of F postures, as far as they are known.
+
+        Args:
+            posture: The F postures.
+            frame: (F,) their places in the clip.
+        """
+        model, album = self.model, self.album
+        edge = np.full((len(frame), len(model.part_of), 2), np.nan)
+        normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
+        for chunk in _chunks(np.arange(len(frame))):
+            pictures = _pictures(album, frame[chunk])
+            predicted, edges = _look(model, album, self.appearance, posture[chunk], frame[chunk], pictures)
+            found = np.isfinite(edges.variance)
+            place = predicted.pixel + edges.distance[..., None] * predicted.normal
+            edge[chunk] = np.where(found[..., None], place, np.nan)
+            normal[chunk] = predicted.normal
+            variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
+        return ContourTerm(model, edge, normal, variance)
+
+
+def learn_contours(
+    body: Body, camera: Camera, album: Album, posture: Posture, keyframes: NDArray[np.intp]
+) -> ContourEvidence | None:
+    """Learn how performer and background look, and the shapes of the performer's parts.
 
     Args:
         body: The actor's body.
         camera: The camera.
-        album: Pictures of the frames.
-        posture: The F postures as far as they are known.
-        frame: (F,) their places in the clip.
+        album: Pictures of the clip's frames.
+        posture: The postures of all F frames as far as they are known.
+        keyframes: Frames whose posture is known best.
+
+    Returns:
+        None where no background can be trusted: before a moving camera, or where pictures are missing.
     """
+    frame = np.arange(posture.batch[0])
     if camera.is_moving or not all(int(index) in album for index in frame):
         return None
     model = ContourModel.average(body, camera)
     appearance = _learn(model, album, posture, frame)
-    return appearance if appearance.steady else None
-
-
-def read_contours(
-    model: ContourModel,
-    album: Album,
-    appearance: Appearance,
-    posture: Posture,
-    frame: NDArray[np.intp],
-    keyframes: NDArray[np.intp],
-) -> ContourTerm:
-    """Fit the contours' shapes and measure the edges of a stretch of F frames.
-
-    Args:
-        model: The contours to start from.
-        album: Pictures of the frames.
-        appearance: How performer and background look.
-        posture: The F postures as far as they are known.
-        frame: (F,) their places in the clip.
-        keyframes: Those of the stretch, counted from its start, whose posture is known best.
-    """
-    if len(keyframes):
-        model = _fitted(model, album, appearance, posture[keyframes], frame[keyframes])
-    edge = np.full((len(frame), len(model.part_of), 2), np.nan)
-    normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
-    for chunk in _chunks(np.arange(len(frame))):
-        pictures = _pictures(album, frame[chunk])
-        predicted, edges = _look(model, album, appearance, posture[chunk], frame[chunk], pictures)
-        found = np.isfinite(edges.variance)
-        place = predicted.pixel + edges.distance[..., None] * predicted.normal
-        edge[chunk] = np.where(found[..., None], place, np.nan)
-        normal[chunk] = predicted.normal
-        variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
-    return ContourTerm(model, edge, normal, variance)
+    if not appearance.steady:
+        return None
+    known = keyframes[np.linspace(0, len(keyframes) - 1, min(len(keyframes), MOST_KEYFRAMES)).astype(np.intp)]
+    return ContourEvidence(album, appearance, _fitted(model, album, appearance, posture[known], known))
 
 
 def _chunks(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:

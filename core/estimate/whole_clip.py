@@ -19,11 +19,10 @@ from ..footage.album import Album
 from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation import depths
-from ..observation.contours import ContourModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from .clip_state import ClipState
-from .contour_evidence import learn_scene, read_contours
+from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.depths import DepthTerm
 from .terms.limits import LimitTerm
@@ -115,13 +114,11 @@ def estimate_whole_clip(
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     pace = float(np.median(step_s)) if len(step_s) else REFERENCE_STEP_S
-    parts: list[Posture] = []
-    dofs = body.skeleton.dof_count
-    covariance = np.empty((len(frame), dofs, dofs))
-    residual_px = np.empty(observed.quality.shape)
-    for window in windows(len(frame), round(options.window_s / pace), round(options.margin_s / pace)):
+    spans = list(windows(len(frame), round(options.window_s / pace), round(options.margin_s / pace)))
+
+    def problem(window: Window, start: ClipState | None) -> _Problem:
         inside = (index >= window.first) & (index < window.last)
-        problem = _Problem(
+        return _Problem(
             body,
             camera,
             evidence,
@@ -134,14 +131,38 @@ def estimate_whole_clip(
             np.flatnonzero(inside),
             index[inside] - window.first,
             options,
-            album,
+            start,
         )
-        for done in problem.solve():
-            yield (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
-        kept = slice(window.keep_first, window.keep_last)
-        posture, covariance[kept], residual_px[kept] = problem.kept(window)
-        parts.append(posture)
-    return WholeClipResult(Posture.concatenate(parts), covariance, evidence, residual_px)
+
+    def share(window: Window, done: float) -> float:
+        return (window.keep_first + done * (window.keep_last - window.keep_first)) / len(frame)
+
+    # All windows by their markers first: what is learned from the whole clip then joins them without a seam.
+    states: list[ClipState] = []
+    for window in spans:
+        part = problem(window, None)
+        for done in part.follow_markers():
+            yield MARKERS_SHARE * share(window, done)
+        states.append(part.state.bare())
+    contours = None
+    if album is not None:
+        kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+        known = evidence.model.camera  # with the lens that was found
+        contours = learn_contours(body, known, album, Posture.concatenate(kept), index)
+    postures: list[Posture] = []
+    dofs = body.skeleton.dof_count
+    covariance = np.empty((len(frame), dofs, dofs))
+    residual_px = np.empty(observed.quality.shape)
+    for window in spans:
+        part = problem(window, states.pop(0))
+        if contours is not None:
+            for done in part.follow_contours(contours):
+                yield MARKERS_SHARE + (1.0 - MARKERS_SHARE) * share(window, done)
+        inner = slice(window.keep_first, window.keep_last)
+        posture, covariance[inner], residual_px[inner] = part.kept(window)
+        postures.append(posture)
+    yield 1.0
+    return WholeClipResult(Posture.concatenate(postures), covariance, evidence, residual_px)
 
 
 @dataclass(eq=False)
@@ -163,12 +184,13 @@ class _Problem:
     keyframe_frames: NDArray[np.intp]
     """Their places in the window."""
     options: WholeClipOptions
-    album: Album | None
+    start: ClipState | None
+    """Where to go on from; None for the prior."""
 
     def __post_init__(self) -> None:
         skeleton = self.body.skeleton
         frames, biases = len(self.frame), self.observed.quality.shape[1] * FEATURES
-        self.state = ClipState(
+        self.state = self.start or ClipState(
             self.body,
             self.prior,
             self.frame,
@@ -195,27 +217,15 @@ class _Problem:
             StillnessTerm(self.camera, feet, self.step_s),
         ]
 
-    def solve(self) -> Generator[float, None, None]:
-        """Gauss-Newton with annealed image noise, then with contours too; yields the fraction done."""
-        for done in self._descend(TEMPERATURES):
-            yield done * MARKERS_SHARE
-        if self.album is not None:
-            for done in self._follow_contours(self.album):
-                yield MARKERS_SHARE + done * (1.0 - MARKERS_SHARE)
-        yield 1.0
+    def follow_markers(self) -> Generator[float, None, None]:
+        """Gauss-Newton with annealed image noise; yields the fraction done."""
+        yield from self._descend(TEMPERATURES)
 
-    def _follow_contours(self, album: Album) -> Generator[float, None, None]:
-        """Let the contours join in where the background can be trusted; yields the fraction done."""
-        camera = self.evidence.model.camera  # with the lens that was found
-        scene = learn_scene(self.body, camera, album, self.state.posture, self.frame)
-        if scene is None:
-            return
-        model = ContourModel.average(self.body, camera)
+    def follow_contours(self, contours: ContourEvidence) -> Generator[float, None, None]:
+        """Go on with the contours, looked for anew each time; yields the fraction done."""
         others = list(self.terms)
         for look in range(LOOKS):
-            posture = self.state.posture
-            contours = read_contours(model, album, scene, posture, self.frame, self.keyframe_frames)
-            self.terms = [*others, contours]
+            self.terms = [*others, contours.term(self.state.posture, self.frame)]
             for done in self._descend(REFINEMENTS):
                 yield (look + done) / LOOKS
 

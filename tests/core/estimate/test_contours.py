@@ -9,11 +9,10 @@ from _filmed import photograph
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.contour_evidence import learn_scene, read_contours
+from keymark.core.estimate.contour_evidence import learn_contours
 from keymark.core.estimate.terms.contours import ContourTerm
 from keymark.core.estimate.whole_clip import estimate_whole_clip
 from keymark.core.footage.album import Album
-from keymark.core.observation.contours import ContourModel
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 
@@ -31,9 +30,9 @@ def album() -> Album:
 
 def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
     """What is measured from roughly known postures."""
-    scene = learn_scene(BODY, CAMERA, album(), posture, FRAME)
-    assert scene is not None
-    return read_contours(ContourModel.average(BODY, CAMERA), album(), scene, posture, FRAME, keyframes)
+    contours = learn_contours(BODY, CAMERA, album(), posture, keyframes)
+    assert contours is not None
+    return contours.term(posture, FRAME)
 
 
 def solve(pictures: Album | None) -> Posture:
@@ -85,12 +84,5 @@ def test_a_shaken_camera_changes_nothing() -> None:
 def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
     """No contours are read where a picture's background cannot be the others'."""
     moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
-    assert learn_scene(BODY, moving, album(), TRUTH, FRAME) is None
-    assert learn_scene(BODY, CAMERA, Album(), TRUTH, FRAME) is None
-
-
-def test_a_stretch_without_keyframes_keeps_average_shapes() -> None:
-    """Windows of a long clip may hold none."""
-    term = measure(TRUTH, POSED[:0])
-    assert not term.model.shape.any()
-    assert np.isfinite(term.edge[..., 0]).mean() > 0.2
+    assert learn_contours(BODY, moving, album(), TRUTH, POSED) is None
+    assert learn_contours(BODY, CAMERA, Album(), TRUTH, POSED) is None
