@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from .body.kinematics import Body
 from .body.posture import Posture
@@ -77,6 +78,12 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
+    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return (yield from _reconstruct(take, method, reading))
+
+
+def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
         reading, of_the_clip = yield from _read(take)

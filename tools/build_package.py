@@ -23,6 +23,7 @@ DIST = ROOT / "dist"
 # The distributions that no Blender brings; numpy it does bring, and a second one would clash.
 COMPILED = "scipy"  # a wheel for each Python
 STABLE = "opencv-python-headless"  # one wheel for every Python (abi3)
+PURE = "threadpoolctl"  # one wheel for everything
 PYTHONS = {"linux-x64": ("311", "313", "314"), "windows-x64": ("311", "313"), "macos-arm64": ("311", "313")}
 # 314: Debian's own Blender; a package that names any Python is refused by one that it does not name.
 TAGS = {
@@ -42,6 +43,7 @@ def wheels_for(platform: str) -> list[Path]:
     """The wheels of one platform, downloaded into wheels/ where they are not there yet."""
     requirement = pins()
     found = [download(requirement[STABLE], platform, PYTHONS[platform][0], "abi3")]
+    found.append(download(requirement[PURE], platform, PYTHONS[platform][0], "none"))
     for python in PYTHONS[platform]:
         found.append(download(requirement[COMPILED], platform, python, f"cp{python}"))
     return found
@@ -58,7 +60,7 @@ def download(requirement: str, platform: str, python: str, abi: str) -> Path:
     with tempfile.TemporaryDirectory(dir=WHEELS) as folder:
         command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
         command += ["--only-binary=:all:", "--no-deps", "--dest", folder, "--implementation", "cp"]
-        command += ["--python-version", python, "--abi", f"cp{python}", "--abi", "abi3"]
+        command += ["--python-version", python, "--abi", f"cp{python}", "--abi", "abi3", "--abi", "none"]
         for tag in TAGS[platform]:
             command += ["--platform", tag]
         subprocess.run([*command, requirement], check=True)

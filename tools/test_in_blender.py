@@ -14,7 +14,13 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-MODULES = {"cv2": "opencv-python-headless", "hypothesis": "hypothesis", "pytest": "pytest", "scipy": "scipy"}
+MODULES = {
+    "cv2": "opencv-python-headless",
+    "hypothesis": "hypothesis",
+    "pytest": "pytest",
+    "scipy": "scipy",
+    "threadpoolctl": "threadpoolctl",
+}
 QUESTION = f"""
 import importlib.util, json, sys
 missing = [name for name in {sorted(MODULES)!r} if importlib.util.find_spec(name) is None]

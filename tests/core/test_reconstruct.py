@@ -16,6 +16,7 @@ from keymark.core.progress import Progress, run
 from keymark.core.reconstruct import METHODS, Reconstruction, reconstruct
 from keymark.core.score import read_truth, score_points
 from keymark.core.take import Take, read_take
+from threadpoolctl import threadpool_info, threadpool_limits
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +63,21 @@ def test_a_misstated_lens_is_told_and_made_good(take: Take) -> None:
     truth = BODY.points(BODY.pose(true_postures(24)))
     errors = [np.linalg.norm(result.motion.points - truth, axis=-1).mean() for result in (right, wrong)]
     assert errors[1] < errors[0] + 0.005
+
+
+def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(take: Take) -> None:
+    """A guest in somebody's Blender changes nothing for good, not even when it is closed midway."""
+
+    def threads() -> set[int]:
+        return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        before = threads()
+        job = reconstruct(take)
+        next(job)
+        assert threads() == {1}
+        job.close()
+        assert threads() == before
 
 
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
