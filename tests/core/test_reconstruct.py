@@ -75,7 +75,7 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
         before = threads()
         job = reconstruct(take)
         next(job)
-        assert threads() == {1}
+        assert threads() <= {1}  # none where the libraries know nothing of threads
         job.close()
         assert threads() == before
 
