@@ -9,14 +9,16 @@ REPEATS = 3
 STATUS = Path("/proc/self/status")
 
 
+def processor_time(work: Callable[[], object]) -> float:
+    """The processor's time for some work [s]."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
 def least_time(work: Callable[[], object]) -> float:
     """The shortest processor time of a few runs [s]: what else the machine does lengthens it least."""
-    times = []
-    for _ in range(REPEATS):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
+    return min(processor_time(work) for _ in range(REPEATS))
 
 
 def peak_memory_mb() -> float:

@@ -11,11 +11,11 @@ import json
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import cv2
 import numpy as np
+from clock import processor_time
 from takes import ROOT, load_project
 
 LARGE = (1280, 720)
@@ -96,13 +96,6 @@ def decode(path: Path) -> None:
     capture.release()
 
 
-def seconds(work: Callable[[], object]) -> float:
-    """The processor's time for some work."""
-    start = time.process_time()
-    work()
-    return time.process_time() - start
-
-
 class LearningTime:
     """How long the colours took to learn, as the extraction goes on; a context that measures all of it."""
 
@@ -112,7 +105,7 @@ class LearningTime:
         self._learn = ClipColours._learn
 
         def learn(colours: ClipColours) -> None:
-            self.seconds += seconds(lambda: self._learn(colours))
+            self.seconds += processor_time(lambda: self._learn(colours))
 
         ClipColours._learn = learn
         return self
@@ -130,9 +123,9 @@ def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:
         scale, left = write_large(take / "clip.mp4", path, frames)
         decoding, extracting, learning = [], [], []
         for _ in range(repeats):  # in turns, as whatever else the computer does comes and goes
-            decoding.append(seconds(lambda: decode(path)))
+            decoding.append(processor_time(lambda: decode(path)))
             with LearningTime() as learned:
-                extracting.append(seconds(lambda: extract(Clip.open(path), styles)))
+                extracting.append(processor_time(lambda: extract(Clip.open(path), styles)))
             learning.append(learned.seconds)
         tracks = extract(Clip.open(path), styles)
     alone, total, learnt = (
