@@ -193,25 +193,35 @@ def _whole_areas(ratio: Array) -> Array:
 
 def _most_likely_sizes(seen: _Differences, weight: Array) -> tuple[float, float]:
     """Means over the posterior of the posing error's size and of the timing error."""
-    logarithm = np.empty((len(SCALES), len(TIMINGS)))
-    for i, scale in enumerate(SCALES):
-        for j, timing in enumerate(TIMINGS):
-            belief = -0.5 * (np.log(scale / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 - timing / TIMING_MEAN
-            logarithm[i, j] = belief + _log_likelihood(seen, seen.noise(weight, scale, timing))
+    logarithm = np.stack([_log_likelihoods(seen, seen.noise(weight, scale, 0.0)) for scale in SCALES])
+    logarithm -= 0.5 * (np.log(SCALES[:, None] / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 + TIMINGS / TIMING_MEAN
     probability = np.exp(logarithm - logarithm.max())
     probability /= probability.sum()
     scale = np.exp(probability.sum(axis=1) @ np.log(SCALES))
     return float(scale), float(probability.sum(axis=0) @ TIMINGS)
 
 
-def _log_likelihood(seen: _Differences, noise: Array) -> float:
-    """Of all rows, whatever the placements are: Woodbury's identity spares the dense matrix of all rows."""
+def _log_likelihoods(seen: _Differences, noise: Array) -> Array:
+    """Of all rows with each of `TIMINGS` (T,) added to a noise without timing error, whatever is fitted.
+
+    Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
+    """
     inverse, information, right = _gather(seen, noise)
     _, determinants = np.linalg.slogdet(noise)
-    _, determinant = np.linalg.slogdet(information)
     misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
-    misfit -= right @ np.linalg.solve(information, right)
-    return float(-0.5 * (misfit + determinants.sum() + determinant))
+    moved = (inverse @ seen.moved[..., None])[..., 0]
+    gain = np.sum(seen.moved * moved, axis=-1)
+    along = (np.swapaxes(seen.slopes, -1, -2) @ moved[..., None])[..., 0]  # (J, X)
+    against = np.sum(moved * seen.residual, axis=-1)
+    result = np.empty(len(TIMINGS))
+    for i, timing in enumerate(TIMINGS):
+        share = timing**2 / (1.0 + timing**2 * gain)
+        known = information - (along.T * share) @ along
+        pull = right - along.T @ (share * against)
+        rest = misfit - share @ against**2 - pull @ np.linalg.solve(known, pull)
+        spread = determinants.sum() + np.log1p(timing**2 * gain).sum() + np.linalg.slogdet(known)[1]
+        result[i] = -0.5 * (rest + spread)
+    return result
 
 
 def _gather(seen: _Differences, noise: Array) -> tuple[Array, Array, Array]:
