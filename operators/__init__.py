@@ -7,7 +7,10 @@ from importlib import import_module
 from types import ModuleType
 
 MODULES = (
-    "ui.properties",
+    "ui.properties.marker",
+    "ui.properties.take",
+    "ui.properties.progress",
+    "ui.properties.scene",
     "open_take",
     "save_take",
     "load_footage",
@@ -20,7 +23,12 @@ MODULES = (
     "store_keyframe",
     "reconstruct",
     "show_action",
-    "ui.panels",
+    "ui.panels.main",
+    "ui.panels.footage",
+    "ui.panels.markers",
+    "ui.panels.actor",
+    "ui.panels.keyframes",
+    "ui.panels.reconstruct",
     "command",
 )
 """What is registered, in this order: properties before the operators and panels that use them."""

@@ -2,7 +2,8 @@
 
 import bpy
 
-from .ui.properties import SEGMENTS
+from .takes import ensure_take
+from .ui.properties.marker import SEGMENTS
 
 USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The five that serve best, in the order in which they are offered."""
@@ -17,7 +18,7 @@ class KEYMARK_OT_add_marker(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add it and make it the active one."""
-        settings = context.scene.keymark
+        settings = ensure_take(context.scene)
         taken = {marker.segment for marker in settings.markers}
         free = [segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in taken]
         if not free:

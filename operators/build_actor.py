@@ -4,6 +4,7 @@ import bpy
 
 from .failures import reported
 from .requirements import all_met, idle, object_mode_possible
+from .takes import ensure_take, find_take
 
 
 class KEYMARK_OT_build_actor(bpy.types.Operator):
@@ -29,7 +30,9 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Take the height from the panel."""
-        self.stature = context.scene.keymark.stature
+        take = find_take(context.scene)
+        if take is not None:
+            self.stature = take.stature
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -39,8 +42,10 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
             from ..core.body.kinematics import Body
             from .new_actor import add_actor
 
-            add_actor(context, Body(Actor.from_stature(self.stature)))
-            context.scene.keymark.stature = self.stature
+            body = Body(Actor.from_stature(self.stature))
+            take = ensure_take(context.scene)
+            add_actor(context, take, body)
+            take.stature = self.stature
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .proposals import proposals
+from .takes import find_take
 
 
 class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
@@ -28,7 +28,7 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be proposals."""
-        if proposals(context.scene):
+        if _proposed(context.scene):
             return True
         cls.poll_message_set("Propose keyframes first")
         return False
@@ -36,8 +36,9 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Go there; at the end, stay and say so."""
         scene = context.scene
-        ahead = [frame for frame in proposals(scene) if frame > scene.frame_current]
-        behind = [frame for frame in proposals(scene) if frame < scene.frame_current]
+        proposed = _proposed(scene)
+        ahead = [frame for frame in proposed if frame > scene.frame_current]
+        behind = [frame for frame in proposed if frame < scene.frame_current]
         if self.direction == "NEXT" and ahead:
             scene.frame_set(ahead[0])
         elif self.direction == "PREVIOUS" and behind:
@@ -46,6 +47,12 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
             self.report({"INFO"}, f"There is no {self.direction.lower()} proposed keyframe")
             return {"CANCELLED"}
         return {"FINISHED"}
+
+
+def _proposed(scene: bpy.types.Scene) -> list[int]:
+    """The proposed scene frames, in order."""
+    take = find_take(scene)
+    return sorted({proposal.frame for proposal in take.proposals}) if take else []
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

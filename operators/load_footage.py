@@ -6,6 +6,7 @@ import bpy
 
 from .failures import reported
 from .requirements import all_met, idle
+from .takes import add_take, find_take, free_camera
 
 VIDEOS = "*.mp4;*.mov;*.avi;*.mkv;*.webm;*.m4v;*.mpg;*.mts;*.png;*.jpg;*.jpeg;*.tif;*.tiff"
 
@@ -38,7 +39,13 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         with reported(self):
             from .bridge.scene_footage import attach_footage
 
-            clip = attach_footage(context.scene, Path(bpy.path.abspath(self.filepath)))
+            scene = context.scene
+            path = Path(bpy.path.abspath(self.filepath))
+            take = find_take(scene)
+            camera = free_camera(scene, take)
+            clip, camera = attach_footage(scene, path, camera)
+            take = take or add_take(scene, path.stem)
+            take.clip, take.camera = clip, camera
             self.report(
                 {"INFO"},
                 f"Loaded {clip.name}: {clip.frame_duration} frames of {clip.size[0]} x {clip.size[1]}",

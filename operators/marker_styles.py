@@ -10,8 +10,8 @@ if TYPE_CHECKING:
 FULL_SCALE = 255
 
 
-def marker_styles(scene: bpy.types.Scene) -> "tuple[MarkerStyle, ...]":
-    """The scene's markers.
+def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
+    """A take's markers.
 
     Raises:
         InputError: Two markers have one name or one segment.
@@ -20,7 +20,7 @@ def marker_styles(scene: bpy.types.Scene) -> "tuple[MarkerStyle, ...]":
     from ..core.footage.marker_style import MarkerStyle
 
     styles = tuple(
-        MarkerStyle(marker.name, marker.segment, _to_bytes(marker.color)) for marker in scene.keymark.markers
+        MarkerStyle(marker.name, marker.segment, _to_bytes(marker.color)) for marker in take.markers
     )
     for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
         twice = next((value for value in values if values.count(value) > 1), None)

@@ -6,17 +6,16 @@ from ..core.body.kinematics import Body
 from .bridge.armature import build_armature
 
 
-def add_actor(context: bpy.types.Context, body: Body) -> bpy.types.Object:
-    """Build the armature; it becomes the scene's actor, without keyframes or motion yet."""
+def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
+    """Build the armature; it becomes the take's actor, without keyframes or motion yet."""
     scene, layer = context.scene, context.view_layer
     for selected in list(layer.objects.selected):
         selected.select_set(False, view_layer=layer)
     armature_object = build_armature(scene, body)
     armature_object.select_set(True, view_layer=layer)
     layer.objects.active = armature_object
-    settings = scene.keymark
-    settings.armature = armature_object
-    settings.keyframe_action = settings.motion_action = None
+    take.armature = armature_object
+    take.keyframe_action = take.motion_action = None
     return armature_object
 
 

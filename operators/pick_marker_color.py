@@ -1,16 +1,15 @@
 """Pick the active marker's colour from the footage."""
 
 import bpy
-import numpy as np
-from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from .failures import reported
 from .marker_styles import set_marker_color
 from .requirements import all_met, footage, idle, markers
+from .takes import active_take, footage_of
 
 
 class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
-    """Click on the marker in the footage, seen through the camera, to take its color from there"""
+    """Click on the marker in the footage to take its color from there"""
 
     bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
@@ -29,10 +28,13 @@ class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
         return all_met(cls, context, footage, markers, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click in a viewport that looks through the camera."""
-        if not any(_looks_through_camera(area) for area in context.screen.areas):
+        """Wait for a click on the footage."""
+        from .ui.footage_view import shows_footage
+
+        if not shows_footage(context, active_take(context.scene)):
             self.report(
-                {"ERROR"}, "Look through the camera first (Numpad 0), so that the footage can be seen"
+                {"ERROR"},
+                "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
             )
             return {"CANCELLED"}
         context.window.cursor_modal_set("EYEDROPPER")
@@ -46,19 +48,15 @@ class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
             self.cancel(context)
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            pixel = _pixel_under(context, event.mouse_x, event.mouse_y)
+            from .ui.footage_view import pixel_under
+
+            pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
             self.cancel(context)
             if pixel is None:
-                self.report(
-                    {"ERROR"}, "That is not on the footage; look through the camera and click on a marker"
-                )
+                self.report({"ERROR"}, "That is not on the footage; click on a marker in it")
                 return {"CANCELLED"}
-            with reported(self):
-                from .bridge.footage_color import footage_pixel
-
-                self.pixel = footage_pixel(context.scene, pixel)
-                return self.execute(context)
-            return {"CANCELLED"}
+            self.pixel = pixel
+            return self.execute(context)
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -71,53 +69,13 @@ class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
         with reported(self):
             from .bridge.footage_color import footage_color
 
-            settings = context.scene.keymark
-            color = footage_color(context.scene, self.pixel)
-            marker = settings.markers[min(settings.active_marker, len(settings.markers) - 1)]
+            take = active_take(context.scene)
+            color = footage_color(footage_of(context.scene, take), self.pixel)
+            marker = take.markers[min(take.active_marker, len(take.markers) - 1)]
             set_marker_color(marker, color)
             self.report({"INFO"}, f"Marker {marker.name} has the color {color}")
             return {"FINISHED"}
         return {"CANCELLED"}
-
-
-def _looks_through_camera(area: bpy.types.Area) -> bool:
-    return area.type == "VIEW_3D" and area.spaces.active.region_3d.view_perspective == "CAMERA"
-
-
-def _pixel_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> tuple[float, float] | None:
-    """The footage's pixel under a place in the window, or None where there is none."""
-    for area in context.screen.areas:
-        inside = area.x <= mouse_x < area.x + area.width and area.y <= mouse_y < area.y + area.height
-        if not (inside and _looks_through_camera(area)):
-            continue
-        region = next(region for region in area.regions if region.type == "WINDOW")
-        share = _frame_share(context.scene, region, area.spaces.active.region_3d, mouse_x, mouse_y)
-        if share is not None and 0.0 <= min(share) and max(share) < 1.0:
-            width, height = context.scene.active_clip.size
-            return share[0] * width, share[1] * height
-    return None
-
-
-def _frame_share(
-    scene: bpy.types.Scene,
-    region: bpy.types.Region,
-    view: bpy.types.RegionView3D,
-    mouse_x: int,
-    mouse_y: int,
-) -> tuple[float, float] | None:
-    """Shares of the camera frame's width from the left and height from the top."""
-    camera = scene.camera
-    matrix = camera.matrix_world.normalized()
-    # Top right, bottom right, bottom left, top left.
-    corners = [
-        location_3d_to_region_2d(region, view, matrix @ corner)
-        for corner in camera.data.view_frame(scene=scene)
-    ]
-    if any(corner is None for corner in corners):
-        return None
-    top_left, bottom_right = np.array(corners[3]), np.array(corners[1])
-    share = (np.array([mouse_x - region.x, mouse_y - region.y]) - top_left) / (bottom_right - top_left)
-    return float(share[0]), float(share[1])
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

@@ -6,15 +6,15 @@ import bpy
 
 from .job_operator import JobOperator
 from .marker_styles import marker_styles
-from .proposals import set_proposals
 from .requirements import all_met, footage, idle, markers
+from .takes import active_take, footage_of
 
 if TYPE_CHECKING:
     from ..core.progress import Job
 
 
 class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
-    """Follow the markers through the footage and mark the frames that are best posed on the timeline"""
+    """Follow the markers through the footage and propose the frames that are best posed"""
 
     bl_idname = "keymark.propose_keyframes"
     bl_label = "Propose Keyframes"
@@ -27,27 +27,25 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[int]]":
         """Find the frames."""
-        from ..core.footage.clip import Clip
         from ..core.footage.markers import track_markers
         from ..core.prior.speed import marker_speed, propose_keyframes
         from ..core.progress import within
         from .bridge.frame_times import scene_frames
-        from .bridge.scene_footage import clip_rate
-        from .bridge.scene_take import clip_path
 
-        styles = marker_styles(scene)
-        clip, count = scene.active_clip, scene.keymark.keyframe_count or None
-        rate = clip_rate(clip, scene.render.fps / scene.render.fps_base)
-        first = clip.frame_start - clip.frame_offset
-        source = Clip.open(clip_path(clip), fps=rate)
-        tracks = yield from within("Following the markers", track_markers(source, styles), 0.0, 1.0)
-        chosen = propose_keyframes(marker_speed(tracks), count)
-        return [round(float(frame)) for frame in scene_frames(tracks.time_s, first, rate)[chosen]]
+        take = active_take(scene)
+        footage, styles = footage_of(scene, take), marker_styles(take)
+        tracks = yield from within("Following the markers", track_markers(footage.open(), styles), 0.0, 1.0)
+        chosen = propose_keyframes(marker_speed(tracks), take.keyframe_count or None)
+        frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)[chosen]
+        return [round(float(frame)) for frame in frames]
 
     def finish(self, scene: bpy.types.Scene, result: list[int]) -> None:
-        """Mark them on the timeline."""
-        set_proposals(scene, result)
-        self.report({"INFO"}, f"{len(result)} keyframes proposed, marked on the timeline")
+        """Keep them with the take."""
+        proposals = active_take(scene).proposals
+        proposals.clear()
+        for frame in result:
+            proposals.add().frame = frame
+        self.report({"INFO"}, f"{len(result)} keyframes proposed")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

@@ -8,6 +8,7 @@ import bpy
 from .job_operator import JobOperator, stretch
 from .marker_styles import marker_styles
 from .requirements import actor, all_met, footage, idle, keyframes, markers
+from .takes import active_take, footage_of
 
 if TYPE_CHECKING:
     from ..core.motion import Motion
@@ -43,9 +44,11 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         from ..core.reconstruct import reconstruct
         from .bridge.scene_take import read_scene_take
 
-        settings = scene.keymark
+        settings = active_take(scene)
         method = settings.method
-        reading = read_scene_take(scene, settings.armature, settings.keyframe_action, marker_styles(scene))
+        reading = read_scene_take(
+            footage_of(scene, settings), settings.armature, settings.keyframe_action, marker_styles(settings)
+        )
         take, notes = yield from stretch(reading, 0.0, READING_SHARE)
         result = yield from stretch(reconstruct(take, method), READING_SHARE, 1.0)
         return Outcome(result.motion, take.fps, (*notes, *result.notes))
@@ -55,7 +58,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         from .bridge.fcurves import write_motion
         from .bridge.frame_times import scene_frames
 
-        settings, motion = scene.keymark, result.motion
+        settings, motion = active_take(scene), result.motion
         frames = scene_frames(motion.time_s, motion.frame_start, result.rate)
         settings.motion_action = write_motion(
             settings.armature, motion, settings.motion_action, settings.keyframe_action, frames

@@ -3,6 +3,7 @@
 import bpy
 
 from .requirements import all_met, markers
+from .takes import active_take
 
 
 class KEYMARK_OT_remove_marker(bpy.types.Operator):
@@ -19,7 +20,7 @@ class KEYMARK_OT_remove_marker(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it; the one before becomes active."""
-        settings = context.scene.keymark
+        settings = active_take(context.scene)
         index = min(settings.active_marker, len(settings.markers) - 1)
         settings.markers.remove(index)
         settings.active_marker = max(0, index - 1)

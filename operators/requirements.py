@@ -5,35 +5,41 @@ from collections.abc import Callable
 import bpy
 
 from .job_operator import job_is_running
+from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context], str | None]
 
 
 def footage(context: bpy.types.Context) -> str | None:
     """A clip is loaded."""
-    return None if context.scene.active_clip else "Load the footage or open a take first"
+    take = find_take(context.scene)
+    return None if take and take.clip else "Load the footage or open a take first"
 
 
 def actor(context: bpy.types.Context) -> str | None:
     """The scene has an actor."""
-    armature_object = context.scene.keymark.armature
+    take = find_take(context.scene)
+    armature_object = take.armature if take else None
     there = armature_object is not None and armature_object.name in context.scene.objects
     return None if there else "Build the actor first, or choose its armature"
 
 
 def markers(context: bpy.types.Context) -> str | None:
     """There are markers."""
-    return None if len(context.scene.keymark.markers) else "Add the markers that the performer wears first"
+    take = find_take(context.scene)
+    return None if take and len(take.markers) else "Add the markers that the performer wears first"
 
 
 def keyframes(context: bpy.types.Context) -> str | None:
     """There is an Action with keyframes."""
-    return None if context.scene.keymark.keyframe_action else "Pose the actor and store a keyframe first"
+    take = find_take(context.scene)
+    return None if take and take.keyframe_action else "Pose the actor and store a keyframe first"
 
 
 def motion(context: bpy.types.Context) -> str | None:
     """There is a reconstructed motion."""
-    return None if context.scene.keymark.motion_action else "Reconstruct the motion first"
+    take = find_take(context.scene)
+    return None if take and take.motion_action else "Reconstruct the motion first"
 
 
 def object_mode_possible(context: bpy.types.Context) -> str | None:

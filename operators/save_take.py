@@ -7,6 +7,7 @@ import bpy
 from .failures import reported
 from .marker_styles import marker_styles
 from .requirements import actor, all_met, footage, idle, markers
+from .takes import active_take, footage_of
 
 
 class KEYMARK_OT_save_take(bpy.types.Operator):
@@ -40,10 +41,13 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
             from ..core.take import write_take
             from .bridge.scene_take import read_scene_take
 
-            settings = context.scene.keymark
+            scene_take = active_take(context.scene)
             take, notes = run(
                 read_scene_take(
-                    context.scene, settings.armature, settings.keyframe_action, marker_styles(context.scene)
+                    footage_of(context.scene, scene_take),
+                    scene_take.armature,
+                    scene_take.keyframe_action,
+                    marker_styles(scene_take),
                 )
             )
             folder = Path(bpy.path.abspath(self.directory))

@@ -4,6 +4,7 @@ import bpy
 
 from .failures import reported
 from .requirements import actor, all_met
+from .takes import active_take
 
 
 class KEYMARK_OT_show_action(bpy.types.Operator):
@@ -28,7 +29,7 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Assign the Action."""
-        settings = context.scene.keymark
+        settings = active_take(context.scene)
         action = settings.keyframe_action if self.which == "KEYFRAMES" else settings.motion_action
         if action is None:
             self.report({"ERROR"}, f"There is no {self.which.lower()} Action yet")

@@ -4,6 +4,7 @@ import bpy
 
 from .failures import reported
 from .requirements import actor, all_met, idle
+from .takes import active_take
 
 
 class KEYMARK_OT_store_keyframe(bpy.types.Operator):
@@ -29,15 +30,16 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             from .new_actor import new_keyframe_action
 
             scene = context.scene
-            settings, armature_object = scene.keymark, scene.keymark.armature
+            take = active_take(scene)
+            armature_object = take.armature
             reading = read_posture(armature_object, read_body(armature_object, HUMAN))
-            if settings.keyframe_action is None:
-                settings.keyframe_action = new_keyframe_action(armature_object)
+            if take.keyframe_action is None:
+                take.keyframe_action = new_keyframe_action(armature_object)
             frame = scene.frame_current_final
-            store_pose(armature_object, settings.keyframe_action, HUMAN, frame)
+            store_pose(armature_object, take.keyframe_action, HUMAN, frame)
             data = armature_object.animation_data
             if data is None or data.action is None:
-                assign_action(armature_object, settings.keyframe_action)
+                assign_action(armature_object, take.keyframe_action)
             if reading.furthest_m > NOTICEABLE_M:
                 self.report(
                     {"WARNING"},

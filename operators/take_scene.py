@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from ..core.take import Take, check_frame_count, open_clip, rate_note, read_take
 from .bridge.actions import assign_action
+from .bridge.footage import clip_rate
 from .bridge.frame_times import scene_frames
 from .bridge.keyframes import write_keyframes
-from .bridge.scene_footage import clip_rate, load_footage, show_footage
+from .bridge.scene_footage import load_footage, show_footage
 from .marker_styles import set_marker_color
 from .new_actor import add_actor, new_keyframe_action
+from .takes import add_take
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +49,7 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
 
 
 def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
-    """Put a take into the scene: footage, camera, actor, markers, keyframes; returns the armature object.
+    """Add a take to the scene: footage, camera, actor, markers, keyframes; returns the armature object.
 
     Raises:
         InputError: Blender cannot read the clip; the scene is as before then.
@@ -55,11 +57,11 @@ def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Objec
     take, scene = opened.take, context.scene
     rate = clip_rate(load_footage(take.clip), take.fps)
     frames = scene_frames(opened.time_s, take.frame_start, rate)
-    show_footage(scene, take.camera, take.clip, rate, take.frame_start, len(frames), frames)
-    armature_object = add_actor(context, take.body)
-    settings = scene.keymark
+    camera_object = show_footage(scene, take.camera, take.clip, rate, take.frame_start, len(frames), frames)
+    settings = add_take(scene, take.folder.name)
+    settings.clip, settings.camera = scene.active_clip, camera_object
+    armature_object = add_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m
-    settings.markers.clear()
     for style in take.markers:
         marker = settings.markers.add()
         marker.name, marker.segment = style.name, style.segment

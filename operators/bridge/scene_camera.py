@@ -1,11 +1,14 @@
 """The footage's camera read from a scene: core's camera from Blender's camera and movie clip."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
 from ...core.footage.camera import Camera
+from .footage import Footage
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
@@ -15,21 +18,26 @@ STILL = 1e-6
 """Largest change of the camera's matrix [m or 1] that still counts as rounding."""
 
 
-def read_camera(scene: bpy.types.Scene, frames: Array) -> Camera:
-    """The scene's camera as it saw the footage.
+def read_camera(footage: Footage, frames: Array) -> Camera:
+    """The camera as it saw the footage.
 
     Args:
-        scene: A scene with a perspective camera; its active clip gives size and lens distortion.
+        footage: A clip, which gives size and lens distortion, and its perspective camera.
         frames: (F,) scene frames of the footage, at which a moving camera is read.
 
     Raises:
         InputError: There is no camera or clip, or the camera is of a kind that no footage has.
     """
-    camera_object, clip = scene.camera, scene.active_clip
-    if camera_object is None or camera_object.type != "CAMERA":
-        raise InputError(f"scene '{scene.name}' has no camera; add one where the footage was taken from")
-    if clip is None:
-        raise InputError(f"scene '{scene.name}' has no footage; load a clip first")
+    return replace(read_lens(footage), matrix_world=_poses(footage.scene, footage.camera, frames))
+
+
+def read_lens(footage: Footage) -> Camera:
+    """The camera's lens alone, as if it stood at the world's origin; nothing is evaluated.
+
+    Raises:
+        InputError: There is no camera or clip, or the camera is of a kind that no footage has.
+    """
+    scene, camera_object, clip = footage.scene, footage.camera, footage.clip
     data = camera_object.data
     if data.type != "PERSP":
         raise InputError(
@@ -46,7 +54,7 @@ def read_camera(scene: bpy.types.Scene, frames: Array) -> Camera:
         lens_mm=float(data.lens),
         sensor_width_mm=sensor_width,
         resolution=(width, height),
-        matrix_world=_poses(scene, camera_object, frames),
+        matrix_world=np.eye(4),
         shift_x=data.shift_x * unit / width,
         shift_y=data.shift_y * unit / width,
         distortion=_distortion(clip),

@@ -18,8 +18,9 @@ from ...core.take import Take
 from .armature import build_armature
 from .body_mesh import build_body_mesh
 from .fcurves import write_motion
+from .footage import clip_rate
 from .frame_times import scene_frames
-from .scene_footage import clip_rate, load_footage, show_footage
+from .scene_footage import load_footage, show_footage
 
 VIEW_TRANSFORM = "Standard"
 """Shows colours as they are given, so that markers look as in the footage; the default, AgX, does not."""

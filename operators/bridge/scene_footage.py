@@ -12,6 +12,7 @@ from ...core.errors import InputError
 from ...core.footage.camera import Camera
 from ...core.footage.image_sequence import find_images
 from .actions import assign_action, channelbag_for
+from .footage import clip_rate, set_scene_range
 from .keys import add_generated_keys
 
 Array = NDArray[np.float64]
@@ -47,11 +48,11 @@ def show_footage(
     frame_start: int,
     frame_count: int,
     frames: Array | None = None,
+    camera_object: bpy.types.Object | None = None,
 ) -> bpy.types.Object:
     """Put a clip behind a camera that stands where the footage's camera stood.
 
     The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame.
-    A camera that the scene has from an earlier call is used again.
 
     Args:
         scene: The scene to change.
@@ -61,6 +62,7 @@ def show_footage(
         frame_start: Scene frame of the clip's first frame.
         frame_count: Number of its frames.
         frames: (F,) scene frames at which a moving camera has its poses; one after the other by default.
+        camera_object: The camera to use; a new one by default.
 
     Returns:
         The camera object, which is the scene's camera now.
@@ -72,7 +74,7 @@ def show_footage(
     clip.frame_start = frame_start
     set_scene_range(scene, camera.resolution, clip_rate(clip, fps), frame_start, frame_count)
     set_tracking_camera(clip, camera)
-    camera_object = _camera_object(scene)
+    camera_object = camera_object or _new_camera(scene)
     _set_lens(camera_object.data, camera)
     if frames is None:
         frames = frame_start + np.arange(len(camera.matrix_world), dtype=np.float64)
@@ -83,10 +85,19 @@ def show_footage(
     return camera_object
 
 
-def attach_footage(scene: bpy.types.Scene, path: Path) -> bpy.types.MovieClip:
-    """Put a clip behind the scene's camera and give the scene the clip's size, rate and range.
+def attach_footage(
+    scene: bpy.types.Scene, path: Path, camera_object: bpy.types.Object | None = None
+) -> tuple[bpy.types.MovieClip, bpy.types.Object]:
+    """Put a clip behind a camera and give the scene the clip's size, rate and range.
 
-    A scene without a camera gets one at eye height, four metres in front of the world's origin.
+    Args:
+        scene: The scene to change.
+        path: The clip.
+        camera_object: The camera; by default a new one at eye height, four metres in front of the world's
+            origin.
+
+    Returns:
+        The clip and the camera, which are the scene's own now.
 
     Raises:
         InputError: Blender cannot read the clip.
@@ -94,39 +105,15 @@ def attach_footage(scene: bpy.types.Scene, path: Path) -> bpy.types.MovieClip:
     clip = load_footage(path)
     rate = clip_rate(clip, scene.render.fps / scene.render.fps_base)
     size, count = (clip.size[0], clip.size[1]), clip.frame_duration
-    if scene.camera is None:
+    if camera_object is None:
         stand = np.array(
             [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, -4.0], [0.0, 1.0, 0.0, 1.2], [0.0, 0.0, 0.0, 1.0]]
         )
-        show_footage(scene, Camera(35.0, 36.0, size, stand), path, rate, clip.frame_start, count)
-        return clip
+        return clip, show_footage(scene, Camera(35.0, 36.0, size, stand), path, rate, clip.frame_start, count)
     set_scene_range(scene, size, rate, clip.frame_start, count)
-    set_background(scene.camera.data, clip)
-    scene.active_clip = clip
-    return clip
-
-
-def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
-    """Frames per second by which Blender places the clip's frames on the time line.
-
-    For clips of variable rate Blender reckons its own mean rate and shows frames by their time, so keys
-    belong at `frame_start + time * clip.fps`. Image sequences have no rate, and `fps` holds.
-    """
-    return float(clip.fps) if clip.source == "MOVIE" and clip.fps > 0.0 else fps
-
-
-def set_scene_range(
-    scene: bpy.types.Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
-) -> None:
-    """Give the scene a clip's size in pixels, frames per second and range of frames."""
-    render = scene.render
-    render.resolution_x, render.resolution_y = size
-    render.resolution_percentage = 100
-    render.pixel_aspect_x = render.pixel_aspect_y = 1.0
-    render.fps = max(1, round(fps))
-    render.fps_base = render.fps / fps
-    scene.frame_start = frame_start
-    scene.frame_end = frame_start + frame_count - 1
+    set_background(camera_object.data, clip)
+    scene.camera, scene.active_clip = camera_object, clip
+    return clip, camera_object
 
 
 def set_tracking_camera(clip: bpy.types.MovieClip, camera: Camera) -> None:
@@ -155,11 +142,7 @@ def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> 
     camera_data.show_background_images = True
 
 
-def _camera_object(scene: bpy.types.Scene) -> bpy.types.Object:
-    """The scene's own footage camera, or a new one; another camera of the animator's is left alone."""
-    found = scene.camera
-    if found is not None and found.type == "CAMERA" and found.name.startswith(CAMERA_NAME):
-        return found
+def _new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
     camera_object = bpy.data.objects.new(CAMERA_NAME, bpy.data.cameras.new(CAMERA_NAME))
     scene.collection.objects.link(camera_object)
     return camera_object

@@ -1,1 +1,1 @@
-"""Properties and panels. Panels show what is there and never compute."""
+"""Properties, panels and what is drawn over the editors."""

@@ -8,6 +8,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import Progress
 from keymark.operators.job_operator import JobOperator
+from keymark.operators.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -138,7 +139,7 @@ def test_a_reconstruction_that_is_cancelled_leaves_the_scene(tiny_take) -> None:
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     scene = bpy.context.scene
     scene.frame_set(6)
-    actor = scene.keymark.armature
+    actor = active_take(scene).armature
     before = actor.animation_data.action, len(bpy.data.actions), scene.frame_current
     for steps in (1, 10, 20, 30):
         job = KEYMARK_OT_reconstruct.start(SimpleNamespace(), scene)
@@ -146,4 +147,4 @@ def test_a_reconstruction_that_is_cancelled_leaves_the_scene(tiny_take) -> None:
             next(job, None)
         job.close()
         assert (actor.animation_data.action, len(bpy.data.actions), scene.frame_current) == before
-    assert scene.keymark.motion_action is None
+    assert active_take(scene).motion_action is None

@@ -13,7 +13,8 @@ from keymark.core.motion import Motion
 from keymark.core.take import Take, read_take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.ui.properties import SEGMENTS
+from keymark.operators.takes import active_take
+from keymark.operators.ui.properties.marker import SEGMENTS
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -32,7 +33,7 @@ def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
 
 def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:
     """Footage, actor of the right sizes, markers with their colours, keyframes on the actor."""
-    settings = opened.keymark
+    settings = active_take(opened)
     assert opened.active_clip.frame_duration == 13
     lengths = read_body(settings.armature, HUMAN).actor.segments_m
     assert dict(lengths) == pytest.approx(dict(tiny_take.body.actor.segments_m), rel=1e-5)
@@ -68,8 +69,8 @@ def test_from_an_empty_scene_to_a_motion(
 ) -> None:
     """Load, build, mark, pose, reconstruct: the result lies near the truth, keyframes stay."""
     scene = bpy.context.scene
-    settings = scene.keymark
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    settings = active_take(scene)
     camera = scene.camera
     camera.matrix_world = np.array(tiny_take.camera.matrix_world).T.tolist()
     camera.data.lens, camera.data.sensor_width = 35.0, 36.0
@@ -95,7 +96,7 @@ def test_from_an_empty_scene_to_a_motion(
 
 def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scene) -> None:
     """No second Action, no doubled keys."""
-    settings = opened.keymark
+    settings = active_take(opened)
     settings.method = "interpolation"
     bpy.ops.keymark.reconstruct()
     first, count = settings.motion_action, len(bpy.data.actions)
@@ -106,22 +107,21 @@ def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scen
 
 def test_reading_for_a_reconstruction_leaves_the_frame(opened: bpy.types.Scene) -> None:
     """The animator stays where they are."""
-    opened.keymark.method = "interpolation"
+    active_take(opened).method = "interpolation"
     opened.frame_set(9)
     bpy.ops.keymark.reconstruct()
     assert opened.frame_current == 9
 
 
-def test_proposals_become_timeline_markers_and_can_be_jumped_to(opened: bpy.types.Scene) -> None:
-    """The animator's own timeline markers stay, a second run replaces proposals only."""
-    opened.timeline_markers.new("Clap", frame=3)
-    opened.keymark.keyframe_count = 4
+def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
+    """A second run replaces the first's; the first and last frames are among them."""
+    take = active_take(opened)
+    take.keyframe_count = 4
     for _ in range(2):
         bpy.ops.keymark.propose_keyframes()
-        frames = sorted(m.frame for m in opened.timeline_markers if m.name == "Pose")
+        frames = [proposal.frame for proposal in take.proposals]
         assert len(frames) == 4
         assert (frames[0], frames[-1]) == (1, 13)
-    assert len(opened.timeline_markers) == 5
     opened.frame_set(1)
     bpy.ops.keymark.jump_to_proposal(direction="NEXT")
     assert opened.frame_current == frames[1]
@@ -132,7 +132,7 @@ def test_proposals_become_timeline_markers_and_can_be_jumped_to(opened: bpy.type
 
 def test_a_colour_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
     """Where the trunk is, the active marker gets nearly the colour that was drawn."""
-    settings = opened.keymark
+    settings = active_take(opened)
     settings.active_marker = 0
     settings.markers[0].color = (0.0, 0.0, 0.0)
     hips = tiny_take.keyframes[0].posture.translation + [0.0, 0.0, 0.25]
@@ -150,7 +150,7 @@ def test_a_pixel_outside_the_footage_is_refused(opened: bpy.types.Scene) -> None
 
 def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
     """A sixth marker takes a part that has none; removing it makes the one before active."""
-    settings = opened.keymark
+    settings = active_take(opened)
     bpy.ops.keymark.add_marker()
     assert settings.markers[5].segment not in {marker.segment for marker in settings.markers[:5]}
     bpy.ops.keymark.remove_marker()
@@ -159,7 +159,7 @@ def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
 
 def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
     """Each marker needs its own body part."""
-    opened.keymark.markers[1].segment = "trunk"
+    active_take(opened).markers[1].segment = "trunk"
     with pytest.raises(RuntimeError, match="two markers have the segment 'trunk'"):
         bpy.ops.keymark.reconstruct()
 
@@ -187,14 +187,14 @@ def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
     """As Blender's own Add operators do; its predecessor's keyframes are not taken over."""
     bpy.ops.keymark.build_actor(stature=1.6)
     layer = bpy.context.view_layer
-    assert list(layer.objects.selected) == [opened.keymark.armature] == [layer.objects.active]
-    assert opened.keymark.keyframe_action is None
-    assert read_body(opened.keymark.armature, HUMAN).actor.stature_m == pytest.approx(1.6, rel=1e-4)
+    assert list(layer.objects.selected) == [active_take(opened).armature] == [layer.objects.active]
+    assert active_take(opened).keyframe_action is None
+    assert read_body(active_take(opened).armature, HUMAN).actor.stature_m == pytest.approx(1.6, rel=1e-4)
 
 
 def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.Scene) -> None:
     """The animator's pose is kept as it is."""
-    forearm = opened.keymark.armature.pose.bones["forearm.L"]
+    forearm = active_take(opened).armature.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.5, 0.0, 0.6)
     opened.frame_set(4)
     forearm.rotation_euler = (0.5, 0.0, 0.6)

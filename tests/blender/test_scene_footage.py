@@ -9,6 +9,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
 from keymark.core.take import Take
+from keymark.operators.bridge.footage import Footage
 from keymark.operators.bridge.scene_camera import read_camera
 from keymark.operators.bridge.scene_footage import attach_footage, load_footage, show_footage
 from mathutils import Vector
@@ -40,6 +41,12 @@ def turned(camera: Camera) -> Camera:
     return replace(camera, matrix_world=turn @ camera.matrix_world, shift_x=0.07, shift_y=-0.04, lens_mm=41.0)
 
 
+def shown_footage() -> Footage:
+    """The scene's clip and camera."""
+    scene = bpy.context.scene
+    return Footage(scene, scene.active_clip, scene.camera)
+
+
 def test_blenders_camera_sees_points_where_cores_does(tiny_take: Take, turned: Camera) -> None:
     """Lens, sensor, shifts and pose agree to a hundredth of a pixel."""
     camera_object = show(tiny_take, turned)
@@ -51,7 +58,7 @@ def test_the_camera_is_read_back(tiny_take: Take, turned: Camera) -> None:
     """Core's camera -> scene -> core's camera, distortion included."""
     distorted = replace(turned, distortion=(-0.1, 0.02, -0.003))
     show(tiny_take, distorted)
-    read = read_camera(bpy.context.scene, FRAMES)
+    read = read_camera(shown_footage(), FRAMES)
     assert not read.is_moving
     assert read.distortion == pytest.approx(distorted.distortion, abs=1e-6)
     assert read.project(POINTS)[0] == pytest.approx(distorted.project(POINTS)[0], abs=0.01)
@@ -73,7 +80,7 @@ def test_any_sensor_fit_is_read(
 
     sensor = scene_camera._horizontal_sensor(camera_object.data, *size)
     read = replace(
-        read_camera(bpy.context.scene, FRAMES),
+        read_camera(shown_footage(), FRAMES),
         resolution=size,
         sensor_width_mm=sensor[0],
         shift_x=camera_object.data.shift_x * sensor[1] / size[0],
@@ -89,7 +96,7 @@ def test_a_moving_camera_is_animated_and_read_back(tiny_take: Take, camera: Came
     moving = replace(camera, matrix_world=poses)
     show(tiny_take, moving)
     bpy.context.scene.frame_set(5)
-    read = read_camera(bpy.context.scene, FRAMES)
+    read = read_camera(shown_footage(), FRAMES)
     assert read.matrix_world == pytest.approx(poses, abs=1e-5)
     assert bpy.context.scene.frame_current == 5
 
@@ -107,10 +114,11 @@ def test_the_scene_takes_size_rate_and_range(tiny_take: Take, camera: Camera) ->
     assert scene.camera.data.show_background_images
 
 
-def test_a_second_take_uses_the_same_camera_again(tiny_take: Take, camera: Camera, turned: Camera) -> None:
-    """Opening twice leaves one camera with one background."""
+def test_a_take_uses_its_camera_again(tiny_take: Take, camera: Camera, turned: Camera) -> None:
+    """Shown twice behind one camera, the clip is its only background."""
     first = show(tiny_take, camera)
-    assert show(tiny_take, turned) == first
+    again = show_footage(bpy.context.scene, turned, tiny_take.clip, tiny_take.fps, 1, 13, camera_object=first)
+    assert again == first
     assert len(first.data.background_images) == 1
     assert len([o for o in bpy.data.objects if o.type == "CAMERA"]) == 1
 
@@ -122,7 +130,7 @@ def test_the_animators_camera_keeps_its_lens(tiny_take: Take) -> None:
     mine = bpy.data.objects.new("Mine", data)
     bpy.context.collection.objects.link(mine)
     bpy.context.scene.camera = mine
-    clip = attach_footage(bpy.context.scene, tiny_take.clip)
+    clip, _ = attach_footage(bpy.context.scene, tiny_take.clip, mine)
     assert bpy.context.scene.camera == mine
     assert data.lens == 77.0
     assert data.background_images[0].clip == clip
@@ -151,4 +159,4 @@ def test_what_no_footage_can_have_is_refused(tiny_take: Take, camera: Camera, ch
     show(tiny_take, camera)
     change(bpy.context.scene)
     with pytest.raises(InputError, match=sentence):
-        read_camera(bpy.context.scene, FRAMES)
+        read_camera(shown_footage(), FRAMES)

@@ -1,0 +1,121 @@
+"""A take's footage in a scene: its clip, the camera it was taken with, and where its frames lie in time."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+
+if TYPE_CHECKING:
+    from ...core.footage.clip import Clip
+
+
+@dataclass(frozen=True, eq=False)
+class Footage:
+    """A clip and its camera in a scene."""
+
+    scene: bpy.types.Scene
+    movie_clip: bpy.types.MovieClip | None
+    camera_object: bpy.types.Object | None
+
+    @property
+    def clip(self) -> bpy.types.MovieClip:
+        """The movie clip.
+
+        Raises:
+            InputError: There is none.
+        """
+        if self.movie_clip is None:
+            raise InputError(f"the take in scene '{self.scene.name}' has no footage; load a clip first")
+        return self.movie_clip
+
+    @property
+    def camera(self) -> bpy.types.Object:
+        """The camera object.
+
+        Raises:
+            InputError: There is none.
+        """
+        if self.camera_object is None or self.camera_object.type != "CAMERA":
+            raise InputError(
+                f"the take in scene '{self.scene.name}' has no camera; "
+                "add one where the footage was taken from"
+            )
+        return self.camera_object
+
+    @property
+    def rate(self) -> float:
+        """Frames per second by which Blender places the clip's frames on the time line."""
+        return clip_rate(self.clip, self.scene.render.fps / self.scene.render.fps_base)
+
+    @property
+    def first_frame(self) -> int:
+        """Scene frame of the clip's first decoded frame."""
+        return self.clip.frame_start - self.clip.frame_offset
+
+    @property
+    def path(self) -> Path:
+        """The clip's file.
+
+        Raises:
+            InputError: There is no clip, or its file is gone.
+        """
+        return clip_path(self.clip)
+
+    def open(self) -> "Clip":
+        """Open the clip's file.
+
+        Raises:
+            InputError: There is no clip, its file is gone or cannot be decoded.
+        """
+        # Takes are looked at while the extension registers, when OpenCV may be missing.
+        from ...core.footage.clip import Clip
+
+        return Clip.open(self.path, fps=self.rate)
+
+    def set_scene_range(self) -> None:
+        """Give the scene the clip's size, rate and range.
+
+        Raises:
+            InputError: There is no clip.
+        """
+        size = (self.clip.size[0], self.clip.size[1])
+        if self.clip.frame_duration:
+            set_scene_range(self.scene, size, self.rate, self.first_frame, self.clip.frame_duration)
+
+
+def clip_path(clip: bpy.types.MovieClip) -> Path:
+    """The file of a movie clip.
+
+    Raises:
+        InputError: The file is gone.
+    """
+    path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
+    if not path.exists():
+        raise InputError(f"{path}: the footage is not there; load it again from where it is now")
+    return path
+
+
+def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
+    """Frames per second by which Blender places the clip's frames on the time line.
+
+    For clips of variable rate Blender reckons its own mean rate and shows frames by their time, so keys
+    belong at `frame_start + time * clip.fps`. Image sequences have no rate, and `fps` holds.
+    """
+    return float(clip.fps) if clip.source == "MOVIE" and clip.fps > 0.0 else fps
+
+
+def set_scene_range(
+    scene: bpy.types.Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
+) -> None:
+    """Give the scene a clip's size in pixels, frames per second and range of frames."""
+    render = scene.render
+    render.resolution_x, render.resolution_y = size
+    render.resolution_percentage = 100
+    render.pixel_aspect_x = render.pixel_aspect_y = 1.0
+    render.fps = max(1, round(fps))
+    render.fps_base = render.fps / fps
+    scene.frame_start = frame_start
+    scene.frame_end = frame_start + frame_count - 1

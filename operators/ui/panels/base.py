@@ -1,0 +1,35 @@
+"""What Keymark's panels share."""
+
+import bpy
+
+from ...takes import find_take
+
+
+class SidebarPanel:
+    """Where all of Keymark's panels are."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Keymark"
+
+
+class SubPanel(SidebarPanel):
+    """A panel inside the main one, with properties in Blender's two columns."""
+
+    bl_parent_id = "KEYMARK_PT_main"
+    layout: bpy.types.UILayout
+
+    def column(self) -> bpy.types.UILayout:
+        """The panel's column of properties."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class TakePanel(SubPanel):
+    """A step of the work on the active take; there is none to show without a take."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is a take."""
+        return find_take(context.scene) is not None

@@ -1,0 +1,41 @@
+"""Keymark's part of a scene: its takes, and which of them is worked on."""
+
+import bpy
+
+from ...takes import bring_forward
+from .take import KEYMARK_PG_take
+
+VERSION = 1
+"""Version of these properties; a file says by which it was written."""
+
+
+def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    bring_forward(settings.id_data)
+
+
+class KEYMARK_PG_settings(bpy.types.PropertyGroup):
+    """Keymark's part of a scene."""
+
+    version: bpy.props.IntProperty(
+        name="Version", description="Version of Keymark's properties in this file", options={"HIDDEN"}
+    )
+    takes: bpy.props.CollectionProperty(type=KEYMARK_PG_take)
+    active_take: bpy.props.IntProperty(
+        name="Active Take",
+        description="The take that is worked on; its footage and camera become the scene's",
+        default=0,
+        min=0,
+        update=_active_take_changed,
+    )
+
+
+def register() -> None:
+    """Add the properties to scenes."""
+    bpy.utils.register_class(KEYMARK_PG_settings)
+    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=KEYMARK_PG_settings)
+
+
+def unregister() -> None:
+    """Take them away."""
+    del bpy.types.Scene.keymark
+    bpy.utils.unregister_class(KEYMARK_PG_settings)

@@ -1,0 +1,84 @@
+"""One take: a performer in a clip, with all that the animator says and Keymark finds of it."""
+
+import bpy
+
+from .marker import KEYMARK_PG_marker
+
+METHODS = (
+    ("map", "Whole Clip", "Estimate all frames at once; the most accurate"),
+    ("ekf", "Fuzzy Kalman Filter", "The published filter, frame after frame; for comparison"),
+    ("interpolation", "Keyframes Only", "Interpolate the keyframes without looking at the footage"),
+)
+
+
+def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "ARMATURE")
+
+
+def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "CAMERA")
+
+
+class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
+    """A frame worth posing."""
+
+    frame: bpy.props.IntProperty(name="Frame", description="The scene frame that is proposed")
+
+
+class KEYMARK_PG_take(bpy.types.PropertyGroup):
+    """A performer in a clip."""
+
+    name: bpy.props.StringProperty(name="Name", description="What you call this take", default="Take")
+    identifier: bpy.props.StringProperty(
+        name="Identifier", description="Tells takes apart whatever they are called", options={"HIDDEN"}
+    )
+    clip: bpy.props.PointerProperty(
+        name="Clip", description="The footage of the performer", type=bpy.types.MovieClip
+    )
+    camera: bpy.props.PointerProperty(
+        name="Camera",
+        description="The camera that the footage was taken with; if it moves, it is used as it moves",
+        type=bpy.types.Object,
+        poll=_is_camera,
+    )
+    armature: bpy.props.PointerProperty(
+        name="Actor",
+        description="The performer's armature",
+        type=bpy.types.Object,
+        poll=_is_armature,
+    )
+    stature: bpy.props.FloatProperty(
+        name="Height",
+        description="The performer's body height, from which an actor of average proportions is built",
+        subtype="DISTANCE",
+        precision=3,
+        default=1.75,
+        min=0.5,
+        max=3.0,
+    )
+    markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
+    active_marker: bpy.props.IntProperty(name="Active Marker", default=0, min=0)
+    keyframe_action: bpy.props.PointerProperty(
+        name="Keyframes",
+        description="The Action that holds the keyframes you pose",
+        type=bpy.types.Action,
+    )
+    keyframe_count: bpy.props.IntProperty(
+        name="Count",
+        description="How many keyframes to propose; 0 for 10 in 100 frames",
+        default=0,
+        min=0,
+        soft_max=100,
+    )
+    proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
+    method: bpy.props.EnumProperty(
+        name="Method", description="How the frames between the keyframes are found", items=METHODS
+    )
+    motion_action: bpy.props.PointerProperty(
+        name="Motion",
+        description="The Action that holds the reconstructed motion",
+        type=bpy.types.Action,
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_proposal, KEYMARK_PG_take))
