@@ -1,6 +1,6 @@
 """The whole way from a take to a motion: one generator that the operator, command line and tests share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -13,19 +13,21 @@ from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
 from .footage.album import Album, watched
-from .footage.markers import track_markers
+from .footage.markers import sight_markers, still_hold, tell_markers
 from .footage.reading import Reading
+from .footage.reading_key import of_same_footage, reading_key
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
 from .notes import clip_notes, evidence_notes, marker_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
-from .progress import Job, Progress, within
+from .progress import Job, Progress, stretch, within
 from .take import Take, check_frame_count, check_in_front, open_clip
 
 Array = NDArray[np.float64]
 
+FOLLOWING = "Following the markers"
 METHODS = ("map", "ekf", "interpolation")
 EXPECTED_RADIUS_M = 0.45
 """How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
@@ -60,8 +62,8 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
     Args:
         take: A validated take with at least two keyframes.
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        reading: What an earlier reconstruction has read of the same clip; it is then not opened again, and no
-            note speaks of it.
+        reading: What `read_footage` or an earlier reconstruction has read of the same clip, which is then not
+            opened again.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -86,10 +88,11 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
 def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
-        reading, of_the_clip = yield from _read(take)
-        notes, begun = notes + of_the_clip, EXTRACTION_SHARE
+        reading = yield from stretch(read_footage(take), 0.0, EXTRACTION_SHARE)
+        begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
+    notes += reading.notes
     tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
@@ -104,20 +107,46 @@ def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Recons
     return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes)
 
 
-def _read(take: Take) -> Job[tuple[Reading, tuple[str, ...]]]:
-    """What is to be read of the take's clip, and what a person should know of the clip."""
+def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
+    """Read what is to be read of a take's clip.
+
+    Args:
+        take: A take; keyframes tell where its markers are looked for first, and are not needed.
+        kept: What was read before, of whatever clip. Where it still holds, the clip is not read again: whole,
+            if everything it was read from is as it was; but for which regions are the markers', if only the
+            keyframes have changed and the colours they help to learn have not.
+
+    Yields:
+        Progress.
+
+    Returns:
+        The same as without `kept`.
+
+    Raises:
+        InputError: The clip cannot be used, or a colour matches nothing in it.
+    """
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
-    expected = expected_regions(take, clip.frame_count)
+    expected = expected_regions(take, take.frame_count or clip.frame_count) if take.keyframes else None
     # Before a camera that moves, no background stands still to tell the performer from.
     album = None if take.camera.is_moving else Album()
+    key = reading_key(take.clip, take.fps, take.markers, expected, album is not None)
+    if kept is not None and kept.key == key:
+        return kept
+    if (
+        kept is not None
+        and kept.sightings is not None
+        and of_same_footage(kept.key, key)
+        and still_hold(kept.sightings, take.markers, expected)
+    ):
+        return replace(kept, tracks=tell_markers(kept.sightings, take.markers, expected), key=key)
     filmed = clip if album is None else watched(clip, album)
-    tracks = yield from within(
-        "Following the markers", track_markers(filmed, take.markers, expected), 0.0, EXTRACTION_SHARE
-    )
+    seen = yield from within(FOLLOWING, sight_markers(filmed, take.markers, expected), 0.0, 1.0)
+    yield Progress(FOLLOWING, 1.0)
+    tracks = tell_markers(seen, take.markers, expected)
     check_frame_count(take, tracks.frame_count)
-    return Reading(tracks, album), clip_notes(take, clip, tracks)
+    return Reading(tracks, album, seen, clip_notes(take, clip, tracks), key)
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
@@ -139,6 +168,8 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
         centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
+    # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
+    centre, radius = np.round(64.0 * centre) / 64.0, np.round(64.0 * radius) / 64.0
     return ExpectedRegions(centre, np.repeat(radius[:, None], len(placements), axis=1))
 
 
