@@ -12,10 +12,8 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
-from .footage.album import Album, watched
-from .footage.markers import sight_markers, still_hold, tell_markers
+from .footage.read_clip import read_clip
 from .footage.reading import Reading
-from .footage.reading_key import of_same_footage, reading_key
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
 from .notes import clip_notes, evidence_notes, marker_notes
@@ -112,9 +110,7 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
 
     Args:
         take: A take; keyframes tell where its markers are looked for first, and are not needed.
-        kept: What was read before, of whatever clip. Where it still holds, the clip is not read again: whole,
-            if everything it was read from is as it was; but for which regions are the markers', if only the
-            keyframes have changed and the colours they help to learn have not.
+        kept: What was read before, of whatever clip; it is used as far as it still holds (see `read_clip`).
 
     Yields:
         Progress.
@@ -130,23 +126,12 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     check_in_front(take)
     expected = expected_regions(take, take.frame_count or clip.frame_count) if take.keyframes else None
     # Before a camera that moves, no background stands still to tell the performer from.
-    album = None if take.camera.is_moving else Album()
-    key = reading_key(take.clip, take.fps, take.markers, expected, album is not None)
-    if kept is not None and kept.key == key:
-        return kept
-    if (
-        kept is not None
-        and kept.sightings is not None
-        and of_same_footage(kept.key, key)
-        and still_hold(kept.sightings, take.markers, expected)
-    ):
-        return replace(kept, tracks=tell_markers(kept.sightings, take.markers, expected), key=key)
-    filmed = clip if album is None else watched(clip, album)
-    seen = yield from within(FOLLOWING, sight_markers(filmed, take.markers, expected), 0.0, 1.0)
-    yield Progress(FOLLOWING, 1.0)
-    tracks = tell_markers(seen, take.markers, expected)
-    check_frame_count(take, tracks.frame_count)
-    return Reading(tracks, album, seen, clip_notes(take, clip, tracks), key)
+    with_album = not take.camera.is_moving
+    reading = yield from within(
+        FOLLOWING, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0
+    )
+    check_frame_count(take, reading.tracks.frame_count)
+    return replace(reading, notes=clip_notes(take, clip, reading.tracks))
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:

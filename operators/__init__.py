@@ -11,6 +11,7 @@ MODULES = (
     "ui.properties.take",
     "ui.properties.progress",
     "ui.properties.scene",
+    "results",
     "open_take",
     "save_take",
     "load_footage",

@@ -24,7 +24,6 @@ def reading_key(
     fps: float,
     styles: Sequence[MarkerStyle],
     expected: ExpectedRegions | None,
-    with_album: bool,
 ) -> str:
     """Return a key that changes with everything a reading depends on.
 
@@ -33,7 +32,6 @@ def reading_key(
         fps: frames per second of an image sequence.
         styles: the markers.
         expected: where they are looked for first.
-        with_album: whether pictures of the frames are kept.
 
     Raises:
         InputError: the clip is not there or cannot be read.
@@ -44,7 +42,7 @@ def reading_key(
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
     places = None if expected is None else (expected.centre, expected.radius)
-    return f"{_PREFIX}-{digest(_FORMAT, footage, wanted, with_album)}-{digest(places)}"
+    return f"{_PREFIX}-{digest(_FORMAT, footage, wanted)}-{digest(places)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:
