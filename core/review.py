@@ -1,42 +1,28 @@
-"""What a person looks at to judge a motion: outlines, points, confidence, and frames worth another keyframe."""
+"""What a person judges a motion by: outlines, points, confidence, and frames worth another keyframe."""
 
 from dataclasses import dataclass, fields
-from enum import StrEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .body.kinematics import Pose
+from .estimate.confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
+from .estimate.fuzzy import Memberships, keyframe_distance
+from .estimate.terms.regions import RegionNoise, limb_widths
+from .estimate.weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
+from .footage.ellipse import ellipse_outline
+from .observation.regions import RegionModel
+from .observation.silhouette import CORNERS, silhouettes
+from .reconstruct import CHUNK_FRAMES, Reconstruction
+from .take import Take
+
 Array = NDArray[np.float64]
+
+__all__ = ["Reason", "Review", "WeakFrame", "review"]
 
 COMPACT = ("observed", "predicted")
 """Large rows that are only looked at: kept as single precision."""
-
-
-class Reason(StrEnum):
-    """Why a frame is worth another keyframe."""
-
-    HIDDEN = "hidden"
-    """A marker is hidden there."""
-    FAST = "fast"
-    """The performer moves fast there."""
-    FAR = "far"
-    """The next keyframe is far."""
-    FOOTAGE = "footage"
-    """The markers are not where the motion puts them."""
-
-
-@dataclass(frozen=True)
-class WeakFrame:
-    """A frame worth another keyframe."""
-
-    index: int
-    """Place in the clip, from 0."""
-    reason: Reason
-    strength: float
-    """How much it is worth, 0 to 1."""
-    marker: int | None = None
-    """The marker that is hidden or misplaced, where one is the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +42,7 @@ class Review:
     points: Array
     """(F, 13, 3) principal points in the world [m]."""
     image_points: Array
-    """(F, 13, 2) the same in the picture [px]."""
+    """(F, 13, 2) the same in the picture, through the lens that was found [px]."""
     sigma_m: Array
     """(F, 13) square root of the trace of each point's covariance [m]; NaN for a method without."""
     reprojection_px: Array
@@ -122,3 +108,66 @@ class Review:
             weak_frames=weak,
             **plain,
         )
+
+
+def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Review:
+    """Gather what there is to see of a reconstruction.
+
+    Args:
+        take: The take.
+        reconstruction: What `reconstruct` made of it.
+        scene_frames: (F,) scene frame of each frame of the clip.
+    """
+    motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
+    frame = np.arange(tracks.frame_count)
+    pose = take.body.pose(motion.posture)
+    predicted, offset = _predictions(model, pose, tracks.centroid)
+    noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
+    variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
+    misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
+    moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
+    expected = expected_covariance(motion.point_covariance, moved, misfit)
+    believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
+    squared = np.trace(expected, axis1=-2, axis2=-1).mean(axis=1)
+    index = np.array(motion.keyframe_indices, dtype=np.intp)
+    evidence = FrameEvidence(
+        np.where(np.isfinite(squared), squared, 1.0),
+        believed,
+        np.where(tracks.visible, tracks.quality, 0.0),
+        misfit,
+        reconstruction.speed,
+    )
+    return Review(
+        frames=np.asarray(scene_frames, dtype=np.float64),
+        size=tracks.size,
+        marker_names=tracks.names,
+        point_names=take.body.skeleton.point_names,
+        observed=ellipse_outline(tracks.centroid, tracks.second_moment),
+        predicted=predicted,
+        points=motion.points,
+        image_points=model.camera.project(motion.points, frame[:, None])[0],
+        sigma_m=motion.sigma_m,
+        reprojection_px=offset,
+        nearness=Memberships().near(keyframe_distance(len(frame), index)),
+        speed=reconstruction.speed,
+        confidence=believed,
+        keyframe_indices=index,
+        weak_frames=find_weak_frames(evidence, index),
+    )
+
+
+def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> tuple[Array, Array]:
+    """Outlines (F, M, K', 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
+    outlines, distance = (
+        np.full((*centroid.shape[:2], CORNERS, 2), np.nan),
+        np.full(centroid.shape[:2], np.nan),
+    )
+    for first in range(0, len(centroid), CHUNK_FRAMES):
+        chunk = slice(first, first + CHUNK_FRAMES)
+        frame = np.arange(len(centroid))[chunk]
+        predicted = model.evaluate(pose[chunk], frame)
+        seen = predicted.visible > RegionNoise().least_visible
+        outlines[chunk] = np.where(seen[..., None, None], silhouettes(model, pose[chunk], frame), np.nan)
+        apart = np.linalg.norm(predicted.centroid - centroid[chunk], axis=-1)
+        distance[chunk] = np.where(seen, apart, np.nan)
+    return outlines, distance
