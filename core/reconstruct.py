@@ -47,6 +47,8 @@ class Reconstruction:
     """(F,) V_sum of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """What a person should know of the result, one sentence each."""
+    model: RegionModel
+    """What the motion predicts of the markers: calibrated on the keyframes, or average placements."""
 
     @property
     def tracks(self) -> RegionTracks:
@@ -94,15 +96,15 @@ def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Recons
     tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion = baseline
+    motion, model = baseline, _average_model(take)
     if method == "map":
-        motion, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
+        motion, model, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
         notes += of_the_keyframes
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes)
+    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model)
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
@@ -146,16 +148,21 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     """Where the interpolated keyframes put each marker, with a generous radius."""
     prior = interpolate(take.keyframes, frame_count)
-    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
-    model = RegionModel(take.body, take.camera, placements)
-    centre = np.empty((frame_count, len(placements), 2))
+    model = _average_model(take)
+    centre = np.empty((frame_count, len(take.markers), 2))
     for frame in _chunks(frame_count):
         centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
     centre, radius = np.round(64.0 * centre) / 64.0, np.round(64.0 * radius) / 64.0
-    return ExpectedRegions(centre, np.repeat(radius[:, None], len(placements), axis=1))
+    return ExpectedRegions(centre, np.repeat(radius[:, None], len(take.markers), axis=1))
+
+
+def _average_model(take: Take) -> RegionModel:
+    """The markers as they sit on an average performer."""
+    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
+    return RegionModel(take.body, take.camera, placements)
 
 
 def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
@@ -165,7 +172,7 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 def _whole_clip(
     take: Take, reading: Reading, prior: Posture, begun: float
-) -> Job[tuple[Motion, tuple[str, ...]]]:
+) -> Job[tuple[Motion, RegionModel, tuple[str, ...]]]:
     tracks = reading.tracks
     estimate = estimate_whole_clip(
         take.body,
@@ -186,7 +193,7 @@ def _whole_clip(
         "distrust": result.evidence.distrust,
     }
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
-    return motion, evidence_notes(take, result.evidence)
+    return motion, result.evidence.model, evidence_notes(take, result.evidence)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

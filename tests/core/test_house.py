@@ -26,6 +26,7 @@ HEIGHTS = {
     "core.motion": 6,
     "core.reconstruct": 7,
     "core.report": 8,
+    "core.review": 8,
     "operators.bridge": 9,
     "operators": 10,
 }
