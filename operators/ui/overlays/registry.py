@@ -28,7 +28,10 @@ class Overlay:
     phase: str = "POST_PIXEL"
 
 
-OVERLAYS: tuple[Overlay, ...] = ()
+OVERLAYS = (
+    Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
+    Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
+)
 """All of them; those of one place are drawn in this order."""
 
 _handlers: list[tuple[Overlay, Any]] = []

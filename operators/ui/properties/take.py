@@ -3,6 +3,7 @@
 import bpy
 
 from .marker import KEYMARK_PG_marker
+from .turntable import KEYMARK_PG_turntable
 
 METHODS = (
     ("map", "Whole Clip", "Estimate all frames at once; the most accurate"),
@@ -79,6 +80,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         description="The Action that holds the reconstructed motion",
         type=bpy.types.Action,
     )
+    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_proposal, KEYMARK_PG_take))
