@@ -8,8 +8,7 @@ from .takes import active_take
 
 
 class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
-    """Add cameras that look at the actor from the front, from a side and from all around, in a collection of
-    their own; done again, it replaces them"""
+    """Add cameras that see the actor from the front, from a side and all around; again, it replaces them"""
 
     bl_idname = "keymark.set_up_turntable"
     bl_label = "Set Up Turntable"
