@@ -33,13 +33,13 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_skeleton: bpy.props.BoolProperty(
         name="Skeleton",
-        description="Draw the reconstructed body: left limbs solid, right limbs hollow, uncertain points as rings",
+        description="Draw the body: left limbs solid, right ones hollow, uncertain points as rings",
         default=True,
         update=_changed,
     )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
-        description="Draw the way of chosen points: past solid, future dashed, a dot a frame, diamonds at keyframes",
+        description="Draw the ways of chosen points: past solid, future dashed, diamonds at keyframes",
         default=False,
         update=_changed,
     )
@@ -75,7 +75,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     uncertain_beyond: bpy.props.FloatProperty(
         name="Uncertain Beyond",
-        description="A point with a larger standard deviation is drawn as a ring within a circle of that size",
+        description="A point of larger standard deviation is drawn as a ring within a circle of that size",
         subtype="DISTANCE",
         default=0.05,
         min=0.001,

@@ -42,6 +42,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         type=bpy.types.Object,
         poll=_is_camera,
     )
+    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
         name="Actor",
         description="The performer's armature",
@@ -80,7 +81,6 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         description="The Action that holds the reconstructed motion",
         type=bpy.types.Action,
     )
-    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_proposal, KEYMARK_PG_take))
