@@ -2,8 +2,6 @@
 
 import bpy
 
-from ...bridge.turntable import show_reference
-
 VIEWS = (
     ("FRONT", "Front", "The view of the actor's face"),
     ("SIDE", "Side", "The view of one of the actor's sides"),
@@ -26,6 +24,9 @@ def _reference_changed(turntable: bpy.types.PropertyGroup, _context: bpy.types.C
 
 def show_chosen_reference(turntable: bpy.types.PropertyGroup) -> None:
     """Show the reference clip behind the view that was chosen for it, and behind no other."""
+    # Registering must not need the libraries that the bridge does.
+    from ...bridge.turntable import show_reference
+
     take = _take_of(turntable)
     first = 1 if take is None or take.clip is None else take.clip.frame_start - take.clip.frame_offset
     for view, camera in (
