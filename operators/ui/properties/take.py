@@ -3,6 +3,7 @@
 import bpy
 
 from .marker import KEYMARK_PG_marker
+from .turntable import KEYMARK_PG_turntable
 
 METHODS = (
     ("map", "Whole Clip", "Estimate all frames at once; the most accurate"),
@@ -47,6 +48,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         type=bpy.types.Object,
         poll=_is_camera,
     )
+    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
         name="Actor",
         description="The performer's armature",
