@@ -15,7 +15,7 @@ from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search import MARGIN, Box, boxes_to_measure, coloured_boxes
 from .sheet import Sheet, Window, lay_out
-from .working_image import halvings, searching_factor, searching_image, smooth
+from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -97,20 +97,29 @@ def find_regions(
     return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
 
 
-def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
-    """Return the coverage of each pixel by each colour, (C, rows, columns) in 0..1, for previews."""
+def colour_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
+    """Return the coverage of each pixel of the measuring grid by each colour, (C, rows, columns) in 0..1.
+
+    For previews: it is what the extraction measures, clutter of the markers' colours included.
+
+    Args:
+        image: (rows, columns, 3) of the clip's size.
+        model: the markers' colours, C of them.
+    """
     height, width = image.shape[:2]
     times = halvings((width, height))
-    shares = []
-    for colour in range(len(model.distributions)):
-        around = (-MARGIN, -MARGIN, (width >> times) + MARGIN, (height >> times) + MARGIN)
-        sheet = lay_out([image], [Window(0, times, colour, *around)])
+    grid = measuring_image(image, times)
+    rows, columns = grid.shape[:2]
+    inside = (slice(MARGIN, MARGIN + rows), slice(MARGIN, MARGIN + columns))
+    masks = np.zeros((len(model.distributions), rows, columns), dtype=np.float32)
+    for colour, mask in enumerate(masks):
+        window = Window(0, 0, colour, -MARGIN, -MARGIN, columns + MARGIN, rows + MARGIN)
+        sheet = lay_out([grid], [window])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
-        share = share[MARGIN : MARGIN + (height >> times), MARGIN : MARGIN + (width >> times)]
-        shares.append(share if times == 0 else np.asarray(cv2.resize(share, (width, height))))
-    return np.stack(shares)
+        mask[:] = share[inside]
+    return masks
 
 
 class _Components(NamedTuple):
