@@ -40,6 +40,10 @@ class FrameSource(Protocol):
         """Yield the frames of ascending indices, as far as they exist."""
         ...
 
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield time in seconds and image of the frames from about one on."""
+        ...
+
 
 @dataclass(frozen=True)
 class Clip:

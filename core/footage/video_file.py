@@ -96,6 +96,24 @@ class VideoFile:
                 if decoded:
                     yield index, _as_image(picture)
 
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield time in seconds and image of the frames from about one on.
+
+        The file is searched where that is quicker; at a variable rate another frame may be found, but the
+        times are its own.
+        """
+        with self._capture() as capture:
+            index, previous = 0, -np.inf
+            if first > _FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
+                index = first
+            while capture.grab():
+                previous = self._stamp(capture, index, previous)
+                if index >= first:
+                    decoded, picture = capture.retrieve()
+                    if decoded:
+                        yield previous, _as_image(picture)
+                index += 1
+
     def _run_through(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         wanted = set(indices)
         with self._capture() as capture:

@@ -10,7 +10,6 @@ import pytest
 from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving
 from keymark.core.footage.clip import Clip
 from keymark.core.footage.clip_samples import sample_clip
-from keymark.core.footage.frame_reader import FrameReader
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
@@ -185,28 +184,3 @@ def test_large_images_are_previewed_on_the_measuring_grid() -> None:
     masks = colour_masks(large[2], result.model)
     assert masks.shape == (2, 240, 320)
     assert masks[0].mean() == pytest.approx(result.readouts[0].area_share, rel=0.06)
-
-
-def test_stepping_forward_decodes_each_frame_once() -> None:
-    """Steps, short jumps, the same frame again and going back all give the frame that was asked for."""
-
-    class Counted(Drawn):
-        """Counts what is decoded."""
-
-        decoded = 0
-
-        def at(self, indices: Sequence[int]):  # noqa: ANN202
-            """Count."""
-            for found in super().at(list(indices)):
-                self.decoded += 1
-                yield found
-
-    source = Counted([np.full((2, 2, 3), index, dtype=np.uint8) for index in range(60)])
-    reader = FrameReader(Clip(Path("counted"), source))
-    for index in range(20):
-        assert reader.image(index)[0, 0, 0] == index
-    assert source.decoded == 20
-    for index in (19, 22, 5, 59, 58):
-        assert reader.image(index)[0, 0, 0] == index
-    assert source.decoded == 20 + 3 + 3
-    assert reader.image(60) is None and reader.image(-1) is None and reader.image(3)[0, 0, 0] == 3
