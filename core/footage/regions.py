@@ -106,19 +106,20 @@ def colour_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
         image: (rows, columns, 3) of the clip's size.
         model: the markers' colours, C of them.
     """
-    height, width = image.shape[:2]
-    times = halvings((width, height))
-    grid = measuring_image(image, times)
-    rows, columns = grid.shape[:2]
-    inside = (slice(MARGIN, MARGIN + rows), slice(MARGIN, MARGIN + columns))
-    masks = np.zeros((len(model.distributions), rows, columns), dtype=np.float32)
+    grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
+    label = model.labels(smooth(grid))
+    masks = np.zeros((len(model.distributions), *grid.shape[:2]), dtype=np.float32)
     for colour, mask in enumerate(masks):
-        window = Window(0, 0, colour, -MARGIN, -MARGIN, columns + MARGIN, rows + MARGIN)
-        sheet = lay_out([grid], [window])
+        left, top, columns, rows = cv2.boundingRect(np.equal(label, colour).view(np.uint8))
+        if not columns:
+            continue
+        around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
+        sheet = lay_out([grid], [Window(0, 0, colour, *around)])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
-        mask[:] = share[inside]
+        a, b, c, d = np.clip(around, 0, (*grid.shape[1::-1], *grid.shape[1::-1])).tolist()
+        mask[b:d, a:c] = share[b - around[1] : d - around[1], a - around[0] : c - around[0]]
     return masks
 
 

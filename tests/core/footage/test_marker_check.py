@@ -14,6 +14,7 @@ from keymark.core.footage.marker_check import MarkerCheck, check_markers
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
+from keymark.core.footage.mask_outlines import mask_outlines
 from keymark.core.footage.regions import colour_masks
 from keymark.core.footage.tracks import ExpectedRegions
 
@@ -184,3 +185,16 @@ def test_large_images_are_previewed_on_the_measuring_grid() -> None:
     masks = colour_masks(large[2], result.model)
     assert masks.shape == (2, 240, 320)
     assert masks[0].mean() == pytest.approx(result.readouts[0].area_share, rel=0.06)
+
+
+def test_outlines_run_along_the_edge_of_what_is_covered() -> None:
+    """An ellipse of 24 by 10 px and one of 6 by 6, on a grid half as fine as the image."""
+    mask = draw([((255, 255, 255), (60.0, 50.0), (12.0, 5.0), 0.0)], np.random.default_rng(0), 0.0)
+    bright = (mask.min(axis=2) > 220).astype(np.float32)
+    bright[100:106, 200:206] = 1.0
+    long, short = mask_outlines(bright, 2.0)
+    radius = np.hypot((long[:, 0] - 120.0) / 24.0, (long[:, 1] - 100.0) / 10.0)
+    assert np.abs(radius - 1.0).max() < 0.15 and len(long) > len(short)
+    assert short.min(axis=0) == pytest.approx([400.0, 200.0], abs=1.1)
+    assert short.max(axis=0) == pytest.approx([412.0, 212.0], abs=1.1)
+    assert mask_outlines(np.zeros((4, 4), dtype=np.float32), 1.0) == []
