@@ -101,6 +101,10 @@ class _WatchedSource:
         """Yield the frames of ascending indices."""
         return self.source.at(indices)
 
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield the frames from about one on."""
+        return self.source.onward(first)
+
 
 def watched(clip: Clip, album: Album) -> Clip:
     """Return the clip as one that fills an album while its frames are read in order."""

@@ -117,23 +117,19 @@ class ClipColours:
             InputError: a marker's colour matches nothing in the clip; the sentence names colours that are
                 there, or says that the surroundings have it too.
         """
-        missing = self._missing
-        if self._learned is None or not missing.size:
-            return
-        style = self._styles[self.groups[int(missing[0])][0]]
-        colour, counts = list(style.color_srgb), self._learned.background_counts
-        share = share_of_colour(counts, style.color_srgb)
-        if share > _COMMON_COLOUR:
-            raise InputError(
-                f"{self._path}: marker {style.name} has the colour {colour}, which {100.0 * share:.0f} % of "
-                "the picture around the markers have too, so nothing tells it from them; wear a colour that "
-                "the surroundings do not have"
-            )
-        nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
-        raise InputError(
-            f"{self._path}: marker {style.name} has the colour {colour}, which matches nothing in the clip; "
-            f"pick it on the marker in a frame (the nearest colours found are {nearest})"
-        )
+        for sentence in self.complaints().values():
+            raise InputError(f"{self._path}: marker {sentence}")
+
+    def complaints(self) -> dict[int, str]:
+        """Return of each marker that was found nowhere, by index, a sentence that begins with its name."""
+        if self._learned is None:
+            return {}
+        counts = self._learned.background_counts
+        return {
+            marker: _complaint(self._styles[marker], counts)
+            for colour in self._missing.tolist()
+            for marker in self.groups[colour]
+        }
 
     @property
     def _missing(self) -> NDArray[np.intp]:
@@ -177,3 +173,19 @@ class ClipColours:
 def _mean_colour(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
     red, green, blue = np.round(np.mean([style.color_srgb for style in styles], axis=0)).astype(int).tolist()
     return red, green, blue
+
+
+def _complaint(style: MarkerStyle, counts: NDArray[np.float64]) -> str:
+    """Say why a colour cannot be found among the background's, (CELL_COUNT,) pixels of each colour cell."""
+    colour = list(style.color_srgb)
+    share = share_of_colour(counts, style.color_srgb)
+    if share > _COMMON_COLOUR:
+        return (
+            f"{style.name} has the colour {colour}, which {100.0 * share:.0f} % of the picture around the "
+            "markers have too, so nothing tells it from them; wear a colour that the surroundings do not have"
+        )
+    nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
+    return (
+        f"{style.name} has the colour {colour}, which matches nothing in the clip; "
+        f"pick it on the marker in a frame (the nearest colours found are {nearest})"
+    )

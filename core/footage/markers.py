@@ -9,21 +9,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .association import (
-    Candidates,
-    candidates,
-    main_path,
-    region_costs,
-    rivals_costs,
-    still_clutter,
-    typical_area,
-)
+from .association import candidates, main_path
 from .clip import Clip
 from .clip_colours import ClipColours
-from .colour_model import ColourModel
 from .marker_style import MarkerStyle, colour_groups
 from .moments import centroid_and_second_moment
-from .pieces import join_pieces, region_quality
+from .own_regions import own_regions
+from .pieces import region_quality
 from .regions import NO_REGIONS, Regions, find_regions
 from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
@@ -35,28 +27,6 @@ _STRETCH_BYTES: Final = 100_000_000
 """Memory for the images that wait until the colours are learned: five seconds of video and more."""
 _TOGETHER: Final = 4
 """Images that are looked at together: enough to make little of the cost of every step."""
-_SAMPLED_FRAMES: Final = 12
-_DEAREST_PIECE: Final = 10.0
-
-
-def learn_model(
-    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
-) -> ColourModel:
-    """Learn the markers' colours from frames spread over a clip, for previews of its masks.
-
-    Args:
-        clip: the footage.
-        styles: the markers, M of them.
-        expected: where they may be, to learn from the marker rather than from clutter of its colour.
-
-    Raises:
-        InputError: a marker's colour matches nothing in the clip; the sentence names colours that are there.
-    """
-    colours = ClipColours(clip.path, clip.size, styles, expected)
-    times = halvings(clip.size)
-    colours.learn([measuring_image(image, times) for _, image in clip.sample(_SAMPLED_FRAMES)])
-    colours.check_found()
-    return colours.model
 
 
 def track_markers(
@@ -166,26 +136,9 @@ def _tracks(
 ) -> RegionTracks:
     """Tell which regions are the markers', over the whole clip at once."""
     found = [candidates(regions, colour, 2.0 ** halvings(size)) for colour in range(len(groups))]
-    alone = [len(group) == 1 for group in groups]
-    clutter = [
-        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
-        for one, single in zip(found, alone, strict=True)
-    ]
-    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
-    reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
-    joined = {}
-    for colour, group in enumerate(groups):
-        one = found[colour]
-        length = _length(one, clutter[colour], usual[colour])
-        taken = np.zeros(len(one.frame), dtype=np.bool_)
-        for marker in group:
-            cost = region_costs(one, clutter[colour], usual[colour], expected, marker)
-            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
-            path = main_path(one, cost, length)
-            joined[marker] = join_pieces(one, path, cost, reach, _DEAREST_PIECE)
-            taken[path[path >= 0]] = True
+    joined = own_regions(found, groups, expected, main_path)
     rows = [joined[marker] for marker in range(len(styles))]
-    moments = np.stack([row[0] for row in rows], axis=1)  # (F, M, 6)
+    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
     area = moments[..., 0]
     return RegionTracks(
@@ -193,8 +146,8 @@ def _tracks(
         centroid=centroid,
         second_moment=second,
         area=np.where(area > 0.0, area, np.nan),
-        quality=np.stack([region_quality(row[0][:, 0], row[1], row[2], row[3]) for row in rows], axis=1),
-        clipped=np.stack([row[1] for row in rows], axis=1),
+        quality=np.stack([region_quality(row) for row in rows], axis=1),
+        clipped=np.stack([row.clipped for row in rows], axis=1),
         time_s=time_s,
         size=size,
         notes=_notes(styles, groups, expected is not None),
@@ -209,12 +162,3 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
         for group in groups
         if len(group) > 1
     )
-
-
-def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
-    """Return the marker's length in px: the long axis of regions of the usual size."""
-    full = ~clutter & (found.area >= 0.7 * usual_area)
-    if not full.any():
-        return 1.0
-    _, second = centroid_and_second_moment(found.moments[full])
-    return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
