@@ -83,7 +83,7 @@ def track_markers(
     colours = ClipColours(clip.path, clip.size, styles, expected)
     regions, time_s = yield from _all_regions(clip, colours)
     colours.check_found()
-    tracks = _tracks(regions, styles, colours.groups, expected, time_s, clip.size)
+    tracks = tracks_of_regions(regions, styles, colours.groups, expected, time_s, clip.size)
     yield 1.0
     return tracks
 
@@ -134,7 +134,7 @@ def _regions_of_stretch(
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
-def _tracks(
+def tracks_of_regions(
     regions: Sequence[Regions],
     styles: Sequence[MarkerStyle],
     groups: Sequence[Sequence[int]],
