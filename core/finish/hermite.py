@@ -46,8 +46,11 @@ class Spline:
 
     def without_key(self, position: int) -> "Spline":
         """The spline without one of its inner keys."""
-        parts = (self.keys, self.values, self.slopes)
-        return Spline(*(np.delete(part, position, axis=0) for part in parts))
+        return Spline(
+            np.delete(self.keys, position),
+            np.delete(self.values, position, axis=0),
+            np.delete(self.slopes, position, axis=0),
+        )
 
     def columns(self, first: int, last: int) -> "Spline":
         """The keys of the curves `first` up to but without `last`."""
@@ -115,7 +118,7 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     for i in range(BAND + 1):
         np.add.at(right, 2 * piece + i, basis[:, i, None] * data[frame])
         for j in range(i, BAND + 1):
-            np.add.at(band, (BAND - (j - i), 2 * piece + j), basis[:, i] * basis[:, j])
+            np.add.at(band[BAND - (j - i)], 2 * piece + j, basis[:, i] * basis[:, j])
     own = _slopes(times, data, keys)
     band[BAND, 1::2] += SLOPE_TRUST**2
     right[1::2] += SLOPE_TRUST**2 * own

@@ -51,7 +51,7 @@ def reduce_keys(
     rig: Rig,
     times: Array,
     values: Sequence[Array],
-    tolerance_m: float,
+    tolerance_m: float | Array,
     exact: Indices,
     whole_pose: bool = False,
 ) -> Generator[float, None, ReducedKeys]:
@@ -61,7 +61,8 @@ def reduce_keys(
         rig: The bones that the values belong to.
         times: (F,) rising scene frames, at least two.
         values: For each bone of the rig its channels, (F, C), without jumps.
-        tolerance_m: Largest distance of any point from where the values put it, in any of the frames [m].
+        tolerance_m: Largest distance of any point from where the values put it, in any of the frames [m]; or
+            one for each frame and point, (F, P), in the order of `Rig.point_slices`.
         exact: Positions of frames that stay keys of every bone, with their values.
         whole_pose: Whether all bones are keyed together, as poses; by default each bone where it needs keys.
 
@@ -73,20 +74,21 @@ def reduce_keys(
     """
     bones = range(len(rig.bones))
     groups = [tuple(bones)] if whole_pose else [(bone,) for bone in bones]
-    body = KeyedBody(rig, times, values, np.unique(exact).astype(np.intp), groups)
-    for done in _add_keys(body, GENEROUS * tolerance_m):
+    allowed = np.broadcast_to(tolerance_m, (len(times), rig.point_slices[-1].stop))
+    body = KeyedBody(rig, times, values, allowed, np.unique(exact).astype(np.intp), groups)
+    for done in _add_keys(body):
         yield ADDING_SHARE * done
-    for done in _take_keys_away(body, MARGIN * tolerance_m):
+    for done in _take_keys_away(body):
         yield ADDING_SHARE + (1.0 - ADDING_SHARE) * done
     yield 1.0
-    return ReducedKeys(body.bone_splines(), float(body.distance().max()))
+    return ReducedKeys(body.bone_splines(), float(body.distance_m().max()))
 
 
-def _add_keys(body: KeyedBody, tolerance_m: float) -> Generator[float, None, None]:
+def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     """Add keys where the body is off, until it nowhere is; yields the fraction done."""
     most = 0
     for number in range(len(body.times)):
-        off = body.distance() > tolerance_m
+        off = body.strain() > GENEROUS
         count = int(off.any(axis=1).sum())
         if not count:
             return
@@ -114,7 +116,7 @@ def _places_for_keys(body: KeyedBody, off: NDArray[np.bool_]) -> list[Indices]:
     return places
 
 
-def _take_keys_away(body: KeyedBody, tolerance_m: float) -> Generator[float, None, None]:
+def _take_keys_away(body: KeyedBody) -> Generator[float, None, None]:
     """Take away keys while the tolerance holds, the least missed first; yields the fraction done."""
     waiting: list[tuple[float, int, int]] = []
     candidates = [
@@ -123,8 +125,8 @@ def _take_keys_away(body: KeyedBody, tolerance_m: float) -> Generator[float, Non
         for frame in np.setdiff1d(spline.keys[1:-1], body.exact)
     ]
     for number, (group, frame) in enumerate(candidates):
-        worst = body.without(group, frame).worst_m
-        if worst <= tolerance_m:
+        worst = body.without(group, frame).worst
+        if worst <= MARGIN:
             waiting.append((worst, group, frame))
         if number % TRIALS == 0:
             yield 0.5 * number / len(candidates)
@@ -134,9 +136,9 @@ def _take_keys_away(body: KeyedBody, tolerance_m: float) -> Generator[float, Non
         _, group, frame = heapq.heappop(waiting)
         trial = body.without(group, frame)
         number += 1
-        if trial.worst_m <= tolerance_m:
-            if waiting and trial.worst_m > SAME * waiting[0][0]:
-                heapq.heappush(waiting, (trial.worst_m, group, frame))
+        if trial.worst <= MARGIN:
+            if waiting and trial.worst > SAME * waiting[0][0]:
+                heapq.heappush(waiting, (trial.worst, group, frame))
             else:
                 body.accept(trial)
         if number % TRIALS == 0:

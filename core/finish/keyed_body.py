@@ -26,8 +26,8 @@ class Trial:
     frames: slice
     """Where it would show."""
     shown: Shown
-    worst_m: float
-    """The largest distance of any point from its goal there [m]."""
+    worst: float
+    """The largest distance of any point from its goal there, in units of its tolerance."""
 
 
 class KeyedBody:
@@ -38,6 +38,7 @@ class KeyedBody:
         rig: Rig,
         times: Array,
         values: Sequence[Array],
+        tolerance_m: Array,
         exact: Indices,
         groups: Sequence[tuple[int, ...]],
     ) -> None:
@@ -47,10 +48,12 @@ class KeyedBody:
             rig: The bones.
             times: (F,) rising times of the frames.
             values: For each bone its channels, (F, C): the goal.
+            tolerance_m: (F, P) how far each of the rig's points may be from its goal in each frame [m].
             exact: Positions of frames that stay keys, with their own values.
             groups: Positions of bones, each bone in one group.
         """
         self.rig, self.times, self.exact, self.groups = rig, times, exact, groups
+        self.tolerance_m = tolerance_m
         self.data = [np.concatenate([values[bone] for bone in group], axis=1) for group in groups]
         self._ends = [np.cumsum([values[bone].shape[1] for bone in group]) for group in groups]
         self.goal = rig.show(list(values))
@@ -65,9 +68,13 @@ class KeyedBody:
             values |= self._by_bone(group, spline.evaluate(self.times, 0, len(self.times) - 1))
         self.shown = self.rig.show([values[bone] for bone in range(len(self.rig.bones))])
 
-    def distance(self) -> Array:
+    def distance_m(self) -> Array:
         """(F, P) how far each point is from its goal [m]."""
         return np.asarray(np.linalg.norm(self.shown.points - self.goal.points, axis=-1))
+
+    def strain(self) -> Array:
+        """(F, P) the same in units of each point's tolerance."""
+        return self.distance_m() / self.tolerance_m
 
     def bone_splines(self) -> tuple[Spline, ...]:
         """The keys of each bone, in the order of the rig's."""
@@ -102,7 +109,7 @@ class KeyedBody:
         changed = self._by_bone(group, spline.evaluate(self.times, start, stop))
         shown = self.rig.show_changed(self.shown, frames, changed)
         distance = np.linalg.norm(shown.points - self.goal.points[frames], axis=-1)
-        return Trial(group, spline, frames, shown, float(distance.max()))
+        return Trial(group, spline, frames, shown, float((distance / self.tolerance_m[frames]).max()))
 
     def accept(self, trial: Trial) -> None:
         """Let what was tried be so."""
