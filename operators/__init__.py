@@ -8,9 +8,12 @@ from types import ModuleType
 
 MODULES = (
     "ui.properties.marker",
+    "ui.properties.turntable",
     "ui.properties.take",
     "ui.properties.progress",
+    "ui.properties.overlays",
     "ui.properties.scene",
+    "results",
     "open_take",
     "save_take",
     "load_footage",
@@ -23,12 +26,18 @@ MODULES = (
     "store_keyframe",
     "reconstruct",
     "show_action",
+    "set_up_turntable",
+    "remove_turntable",
+    "show_view",
     "ui.panels.main",
     "ui.panels.footage",
     "ui.panels.markers",
     "ui.panels.actor",
     "ui.panels.keyframes",
     "ui.panels.reconstruct",
+    "ui.panels.overlays",
+    "ui.panels.turntable",
+    "ui.overlays.registry",
     "command",
 )
 """What is registered, in this order: properties before the operators and panels that use them."""
