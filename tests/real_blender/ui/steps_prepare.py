@@ -20,6 +20,14 @@ def start_empty(person: Person) -> Steps[None]:
     yield from person.look("empty")
 
 
+def opened(person: Person) -> Steps[None]:
+    """The take opened from its files, for a session that begins at a later step."""
+    bpy.ops.keymark.open_take(filepath=str(person.known.folder))
+    person.step_done("Open the take")
+    yield from turns(3)
+    yield from look_through_camera(person)
+
+
 def footage(person: Person) -> Steps[None]:
     """Load the clip by the file browser, cancelled once, and set the camera up as it stood."""
     yield from person.changes_nothing("cancelling the file browser", lambda: _browse(person, "ESC"))
@@ -52,10 +60,9 @@ def look_through_camera(person: Person) -> Steps[None]:
 def markers(person: Person) -> Steps[None]:
     """Add the five markers, and pick each one's colour from the footage."""
     names = [style.segment for style in person.known.markers]
+    yield from person.undoable("adding a marker", lambda: person.hands.click_button("keymark.add_marker"))
     while len(person.take.markers) < len(names):
-        yield from person.undoable(
-            "adding a marker", lambda: person.hands.click_button("keymark.add_marker")
-        )
+        yield from person.hands.click_button("keymark.add_marker")
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
     yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
@@ -63,7 +70,10 @@ def markers(person: Person) -> Steps[None]:
         person.take.active_marker = number
         person.step_done(f"Choose {marker.name}")
         pixel = sleeve_pixel(person, number)
-        yield from person.undoable(f"picking {marker.name}", lambda pixel=pixel: _pick(person, pixel))
+        if number == 0:
+            yield from person.undoable("picking a color", lambda pixel=pixel: _pick(person, pixel))
+        else:
+            yield from _pick(person, pixel)
     yield from person.look("markers")
 
 
