@@ -9,6 +9,7 @@ from types import ModuleType
 MODULES = (
     "ui.properties.marker",
     "ui.properties.turntable",
+    "ui.properties.clip_state",
     "ui.properties.take",
     "ui.properties.progress",
     "ui.properties.overlays",
@@ -17,6 +18,12 @@ MODULES = (
     "open_take",
     "save_take",
     "load_footage",
+    "use_clip",
+    "relocate_clip",
+    "keep_lens",
+    "add_performer",
+    "remove_take",
+    "drop_files",
     "build_actor",
     "add_marker",
     "remove_marker",
@@ -39,6 +46,7 @@ MODULES = (
     "ui.panels.turntable",
     "ui.overlays.registry",
     "command",
+    "upgrade",
 )
 """What is registered, in this order: properties before the operators and panels that use them."""
 

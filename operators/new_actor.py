@@ -7,11 +7,11 @@ from .bridge.armature import build_armature
 
 
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
-    """Build the armature; it becomes the take's actor, without keyframes or motion yet."""
+    """Build the armature, named after the take; it becomes its actor, without keyframes or motion yet."""
     scene, layer = context.scene, context.view_layer
     for selected in list(layer.objects.selected):
         selected.select_set(False, view_layer=layer)
-    armature_object = build_armature(scene, body)
+    armature_object = build_armature(scene, body, take.name)
     armature_object.select_set(True, view_layer=layer)
     layer.objects.active = armature_object
     take.armature = armature_object

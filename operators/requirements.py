@@ -20,8 +20,11 @@ def actor(context: bpy.types.Context) -> str | None:
     """The scene has an actor."""
     take = find_take(context.scene)
     armature_object = take.armature if take else None
-    there = armature_object is not None and armature_object.name in context.scene.objects
-    return None if there else "Build the actor first, or choose its armature"
+    if armature_object is None or armature_object.name not in context.scene.objects:
+        return "Build the actor first, or choose its armature"
+    if armature_object.library is not None:
+        return "The actor is linked; make a library override of it first (Object > Library Override)"
+    return None
 
 
 def markers(context: bpy.types.Context) -> str | None:

@@ -12,6 +12,9 @@ SEGMENTS = (
 )
 """What a marker can be bound to."""
 
+UNPICKED = (0.5, 0.5, 0.5)
+"""The color of a marker that has not been given one."""
+
 
 def _title(segment: str) -> str:
     part, _, side = segment.partition(".")
@@ -34,7 +37,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         size=3,
         min=0.0,
         max=1.0,
-        default=(0.5, 0.5, 0.5),
+        default=UNPICKED,
     )
 
 

@@ -6,9 +6,6 @@ from ...takes import bring_forward
 from .overlays import KEYMARK_PG_overlays
 from .take import KEYMARK_PG_take
 
-VERSION = 1
-"""Version of these properties; a file says by which it was written."""
-
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     bring_forward(settings.id_data)

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ...takes import unique_name
+from .clip_state import KEYMARK_PG_clip_state
 from .marker import KEYMARK_PG_marker
 from .turntable import KEYMARK_PG_turntable
 
@@ -20,6 +22,25 @@ def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
     return bool(candidate.type == "CAMERA")
 
 
+def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    others = [other.name for other in take.id_data.keymark.takes if other != take]
+    free = unique_name(take.name.strip() or "Take", others)
+    if take.name != free:
+        take.name = free
+
+
+def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ...take_footage import clip_chosen
+
+    clip_chosen(take)
+
+
+def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ...take_footage import camera_chosen
+
+    camera_chosen(take)
+
+
 class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
     """A frame worth posing."""
 
@@ -35,18 +56,31 @@ class KEYMARK_PG_note(bpy.types.PropertyGroup):
 class KEYMARK_PG_take(bpy.types.PropertyGroup):
     """A performer in a clip."""
 
-    name: bpy.props.StringProperty(name="Name", description="What you call this take", default="Take")
+    name: bpy.props.StringProperty(
+        name="Name", description="What you call this take", default="Take", update=_renamed
+    )
     identifier: bpy.props.StringProperty(
         name="Identifier", description="Tells takes apart whatever they are called", options={"HIDDEN"}
     )
     clip: bpy.props.PointerProperty(
-        name="Clip", description="The footage of the performer", type=bpy.types.MovieClip
+        name="Clip",
+        description="The footage of the performer; the scene's size, rate and range follow it",
+        type=bpy.types.MovieClip,
+        update=_clip_chosen,
     )
+    clip_state: bpy.props.PointerProperty(type=KEYMARK_PG_clip_state)
     camera: bpy.props.PointerProperty(
         name="Camera",
         description="The camera that the footage was taken with; if it moves, it is used as it moves",
         type=bpy.types.Object,
         poll=_is_camera,
+        update=_camera_chosen,
+    )
+    guessed_lens_mm: bpy.props.FloatProperty(
+        name="Guessed Lens",
+        description="The focal length that was guessed as nobody had stated one; 0 for none",
+        min=0.0,
+        options={"HIDDEN"},
     )
     turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
