@@ -16,6 +16,7 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
 
     which: bpy.props.EnumProperty(
         name="Show",
+        description="Which of the take's Actions",
         items=[
             ("KEYFRAMES", "Keyframes", "Let the keyframes you posed animate the actor"),
             ("MOTION", "Motion", "Let the reconstructed motion animate the actor"),

@@ -99,7 +99,9 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         max=3.0,
     )
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
-    active_marker: bpy.props.IntProperty(name="Active Marker", default=0, min=0)
+    active_marker: bpy.props.IntProperty(
+        name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
     keyframe_action: bpy.props.PointerProperty(
         name="Keyframes",
         description="The Action that holds the keyframes you pose",
