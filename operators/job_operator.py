@@ -53,15 +53,18 @@ class JobOperator:
         if bpy.app.background:  # there are no timer events
             return self.execute(context)
         with reported(self):
-            self._job = self.start(context.scene)
-            self._scene_name = context.scene.name
-            manager = context.window_manager
-            self._timer = manager.event_timer_add(TIMER_S, window=context.window)
-            manager.modal_handler_add(self)
-            self._show(context, "Starting", 0.0)
-            self._slice_end = monotonic()
+            self.begin(context)
+            context.window_manager.modal_handler_add(self)
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
+
+    def begin(self, context: bpy.types.Context) -> None:
+        """Start the job and the timer that keeps it going; `modal` must be called from then on."""
+        self._job = self.start(context.scene)
+        self._scene_name = context.scene.name
+        self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
+        self._show(context, "Starting", 0.0)
+        self._slice_end = monotonic()
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Go on with the job, or stop it."""
@@ -109,10 +112,10 @@ class JobOperator:
 
 
 def redraw_sidebars(context: bpy.types.Context) -> None:
-    """Have every 3D viewport's sidebar drawn again."""
+    """Have every sidebar that shows a job's progress drawn again."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
+            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
                 for region in area.regions:
                     if region.type == "UI":
                         region.tag_redraw()
