@@ -31,6 +31,7 @@ MODULES = (
     "ui.panels.actor",
     "ui.panels.keyframes",
     "ui.panels.reconstruct",
+    "ui.overlays.registry",
     "command",
 )
 """What is registered, in this order: properties before the operators and panels that use them."""

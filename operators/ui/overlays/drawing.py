@@ -1,0 +1,170 @@
+"""Drawing into a region: lines, filled shapes, pictures and words, on Blender 4.5 to 5.2.
+
+To be called from a draw function of `registry`, which has switched blending on. Colours are red, green, blue
+and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first call: without a window a
+Blender has no shaders.
+"""
+
+from typing import Literal
+
+import blf
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+from numpy.typing import ArrayLike, NDArray
+
+from .figures import triangles
+
+Color = tuple[float, float, float, float]
+Array = NDArray[np.float64]
+
+HALO: Color = (0.0, 0.0, 0.0, 0.55)
+"""What sets lines off from footage of any brightness."""
+INK: Color = (1.0, 1.0, 1.0, 1.0)
+HALO_PX = 1.25
+"""How far a halo reaches beyond its line on each side."""
+FONT = 0
+TEXT_SIZE = 11.0
+OUTLINED_TEXT = 6
+"""The blur level that blf draws as an outline instead of a shadow."""
+ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
+
+
+def ui_scale() -> float:
+    """Pixels of the screen for one of a plain one: resolution scale and high-density screens."""
+    return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
+
+
+def faded(color: ArrayLike, opacity: float) -> Color:
+    """A colour of three or four numbers with its alpha multiplied by `opacity`."""
+    red, green, blue, *alpha = (float(value) for value in np.asarray(color, dtype=np.float64))
+    return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
+
+
+def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0.0) -> None:
+    """Draw straight segments.
+
+    Args:
+        segments: (S, 2, 2) region pixels, or (S, 2, 3) places of the space that is being drawn.
+        color: (4,) one for all, or (S, 4) one each.
+        width: Thickness, scaled with the user interface.
+        halo: Opacity of a dark edge on both sides, 0 to 1.
+    """
+    if not len(segments):
+        return
+    if halo > 0.0:
+        _polyline(segments, faded(HALO, halo), width + 2.0 * HALO_PX)
+    _polyline(segments, color, width)
+
+
+def _polyline(segments: Array, color: ArrayLike, width: float) -> None:
+    colors = np.asarray(color, dtype=np.float32)
+    each = colors.ndim > 1
+    shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR" if each else "POLYLINE_UNIFORM_COLOR")
+    content = {"pos": _positions(segments)}
+    if each:
+        content["color"] = np.repeat(colors, 2, axis=0)
+    batch = batch_for_shader(shader, "LINES", content)
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", width * ui_scale())
+    if not each:
+        shader.uniform_float("color", tuple(colors.tolist()))
+    batch.draw(shader)
+
+
+def polygons(corners: ArrayLike, color: ArrayLike) -> None:
+    """Fill convex polygons.
+
+    Args:
+        corners: (N, K, D) region pixels or places; a polygon that is not finite is left out.
+        color: (4,) one for all, or (N, 4) one each.
+    """
+    places = np.asarray(corners, dtype=np.float64)
+    if not len(places):
+        return
+    colors = np.asarray(color, dtype=np.float32)
+    whole = np.isfinite(places).all(axis=(-2, -1))
+    content = {"pos": _positions(triangles(places[whole]))}
+    if not len(content["pos"]):
+        return
+    if colors.ndim == 1:
+        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+        batch = batch_for_shader(shader, "TRIS", content)
+        shader.uniform_float("color", tuple(colors.tolist()))
+    else:
+        shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+        content["color"] = np.repeat(colors[whole], 3 * (places.shape[-2] - 2), axis=0)
+        batch = batch_for_shader(shader, "TRIS", content)
+    batch.draw(shader)
+
+
+def _positions(places: Array) -> NDArray[np.float32]:
+    """(V, 3): lines of varying thickness take no plane coordinates."""
+    flat = np.zeros((places.size // places.shape[-1], 3), dtype=np.float32)
+    flat[:, : places.shape[-1]] = places.reshape(-1, places.shape[-1])
+    return flat
+
+
+def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
+    """A picture on the graphics card; keep it, making one takes time.
+
+    Args:
+        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first.
+    """
+    rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
+    height, width, _ = rows.shape
+    data = gpu.types.Buffer("FLOAT", rows.size, rows.ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA8", data=data)
+
+
+def image(picture: gpu.types.GPUTexture, corners: ArrayLike, opacity: float = 1.0) -> None:
+    """Draw a picture into a four-sided place.
+
+    Args:
+        picture: What `texture` made.
+        corners: (4, 2) region pixels: bottom left, bottom right, top right, top left.
+        opacity: Its alpha is multiplied by this.
+    """
+    shader = gpu.shader.from_builtin("IMAGE_COLOR")
+    places = np.asarray(corners, dtype=np.float64)[[0, 1, 2, 0, 2, 3]]
+    ends = np.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]], dtype=np.float32)
+    batch = batch_for_shader(shader, "TRIS", {"pos": _positions(places), "texCoord": ends})
+    shader.uniform_sampler("image", picture)
+    shader.uniform_float("color", (1.0, 1.0, 1.0, opacity))
+    batch.draw(shader)
+
+
+def text(
+    words: str,
+    x: float,
+    y: float,
+    color: Color = INK,
+    size: float = TEXT_SIZE,
+    align: Literal["left", "middle", "right"] = "left",
+) -> None:
+    """Write one line of words, outlined so that it reads on any background.
+
+    Args:
+        words: What to write.
+        x: Where the part of the words named by `align` stands [region px].
+        y: Base line [region px].
+        color: Of the letters.
+        size: In points, scaled with the user interface.
+        align: `left`, `middle` or `right`.
+    """
+    blf.size(FONT, size * ui_scale())
+    blf.color(FONT, *color)
+    blf.enable(FONT, blf.SHADOW)
+    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, 0.8 * color[3])
+    blf.shadow_offset(FONT, 0, 0)
+    blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
+    blf.draw(FONT, words)
+    blf.disable(FONT, blf.SHADOW)
+
+
+def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:
+    """Width and height of a line of words as `text` writes it [region px]."""
+    blf.size(FONT, size * ui_scale())
+    width, height = blf.dimensions(FONT, words)
+    return float(width), float(height)

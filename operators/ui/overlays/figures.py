@@ -1,0 +1,96 @@
+"""Plane figures as arrays: outlines cut into segments, dashes, circles, diamonds. Nothing is drawn here.
+
+Places are region pixels unless a function says otherwise. A place that is not finite breaks a line.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+MOST_DASHES = 1000
+"""No line is cut into more dashes: one that reaches far outside a zoomed view gets longer ones."""
+
+
+def segments(points: ArrayLike, *, closed: bool = False) -> Array:
+    """Cut lines into their segments, without those an end of which is not finite.
+
+    Args:
+        points: (..., N, D) lines of N places each.
+        closed: Whether each line returns to its first place.
+
+    Returns:
+        (S, 2, D).
+    """
+    places = np.asarray(points, dtype=np.float64)
+    ends = np.roll(places, -1, axis=-2) if closed else places[..., 1:, :]
+    starts = places if closed else places[..., :-1, :]
+    pairs = np.stack([starts, ends], axis=-2).reshape(-1, 2, places.shape[-1])
+    return pairs[np.isfinite(pairs).all(axis=(-2, -1))]
+
+
+def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) -> Array:
+    """Cut one line into dashes that run on around its corners.
+
+    Args:
+        points: (N, D) places; a dash begins anew after one that is not finite.
+        dash: Length of a dash.
+        gap: Length of the gap after it.
+        closed: Whether the line returns to its first place.
+
+    Returns:
+        (S, 2, D) segments of the dashes.
+    """
+    places = np.asarray(points, dtype=np.float64)
+    if closed and len(places):
+        places = np.concatenate([places, places[:1]])
+    finite = np.isfinite(places).all(axis=-1)
+    runs = np.split(places, np.flatnonzero(np.diff(finite)) + 1)
+    parts = [_dashed_run(run, dash, gap) for run in runs if len(run) > 1 and np.isfinite(run[0]).all()]
+    return np.concatenate(parts) if parts else np.empty((0, 2, places.shape[-1]))
+
+
+def _dashed_run(places: Array, dash: float, gap: float) -> Array:
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=-1))])
+    period = max(dash + gap, along[-1] / MOST_DASHES)
+    if along[-1] == 0.0:
+        return np.empty((0, 2, places.shape[-1]))
+    share = dash / (dash + gap)
+    starts = np.arange(0.0, along[-1], period)
+    cuts = np.unique(np.concatenate([along, starts, starts + share * period]))
+    cuts = cuts[cuts <= along[-1]]
+    middles = 0.5 * (cuts[1:] + cuts[:-1])
+    inked = (middles / period) % 1.0 < share
+    at = np.stack([np.interp(cuts, along, column) for column in places.T], axis=-1)
+    return np.stack([at[:-1], at[1:]], axis=1)[inked]
+
+
+def circles(centres: ArrayLike, radii: ArrayLike, corners: int = 24) -> Array:
+    """(N, corners, 2) circles around centres (N, 2) with radii (N,) or one for all."""
+    turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    unit = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    middle = np.asarray(centres, dtype=np.float64).reshape(-1, 1, 2)
+    reach = np.broadcast_to(np.asarray(radii, dtype=np.float64), middle.shape[:1])
+    return middle + reach[:, None, None] * unit
+
+
+def diamonds(centres: ArrayLike, radius: float) -> Array:
+    """(N, 4, 2) squares standing on a corner around centres (N, 2), as Blender draws keys."""
+    return circles(centres, radius, 4)
+
+
+def triangles(polygons: ArrayLike) -> Array:
+    """Cut convex polygons (N, K, D) into triangles (N * (K - 2), 3, D), without those that are not finite."""
+    corners = np.asarray(polygons, dtype=np.float64)
+    count, dimensions = corners.shape[-2:]
+    first = np.broadcast_to(corners[:, :1], (len(corners), count - 2, dimensions))
+    fans = np.stack([first, corners[:, 1:-1], corners[:, 2:]], axis=-2).reshape(-1, 3, dimensions)
+    return fans[np.isfinite(fans).all(axis=(-2, -1))]
+
+
+def beside(part: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.bool_]:
+    """Which segments or polygons (S, K, 2) lie wholly beside a box from `low` (2,) to `high` (2,)."""
+    places = np.asarray(part, dtype=np.float64)
+    left = (places < np.asarray(low, dtype=np.float64)).all(axis=-2)
+    right = (places > np.asarray(high, dtype=np.float64)).all(axis=-2)
+    return np.asarray((left | right).any(axis=-1))
