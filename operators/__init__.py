@@ -31,6 +31,7 @@ MODULES = (
     "ui.panels.actor",
     "ui.panels.keyframes",
     "ui.panels.reconstruct",
+    "ui.overlays.mask",
     "ui.overlays.registry",
     "command",
 )

@@ -31,7 +31,7 @@ class KEYMARK_OT_add_usual_markers(bpy.types.Operator):
     """Add the five markers that serve best: trunk, both forearms and both shins"""
 
     bl_idname = "keymark.add_usual_markers"
-    bl_label = "Add the Usual Five"
+    bl_label = "Add Usual Five"
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:

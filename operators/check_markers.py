@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..core.footage.marker_style import MarkerStyle
     from ..core.progress import Job
 
-Checked = "tuple[tuple[MarkerStyle, ...], MarkerCheck]"
-
 
 def a_color(context: bpy.types.Context) -> str | None:
     """A marker has a color."""
@@ -26,8 +24,7 @@ def a_color(context: bpy.types.Context) -> str | None:
 
 
 class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
-    """Look for the markers in frames from all over the clip: how large each is, how distinct, and in how many
-    of them it is found"""
+    """Look for the markers all over the clip: how large each is, how distinct, how often it is found"""
 
     bl_idname = "keymark.check_markers"
     bl_label = "Check Markers"
@@ -38,14 +35,14 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         """There must be footage, and a color to look for."""
         return all_met(cls, context, footage, markers, a_color, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Checked]":
+    def start(self, scene: bpy.types.Scene) -> "Job[tuple[tuple[MarkerStyle, ...], MarkerCheck]]":
         """Look at the frames."""
         take = active_take(scene)
         styles = picked_styles(take)
         check = yield from look_at_markers(footage_of(scene, take), styles)
         return styles, check
 
-    def finish(self, scene: bpy.types.Scene, result: Checked) -> None:
+    def finish(self, scene: bpy.types.Scene, result: "tuple[tuple[MarkerStyle, ...], MarkerCheck]") -> None:
         """Store the readouts."""
         styles, check = result
         warnings = write_readouts(active_take(scene), styles, check)

@@ -1,7 +1,7 @@
 """What has the markers' colors in the frame that the scene shows, kept in memory for the overlay.
 
-Nothing of it is saved. It is found again by the footage and the colors it was made for, so that undo brings the
-matching preview back, and a preview of other colors is never shown.
+Nothing of it is saved. It is found again by the footage and the colors it was made for, so that undo brings
+the matching preview back, and a preview of other colors is never shown.
 """
 
 from dataclasses import dataclass, field

@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from ..core.progress import Job
 
 NAVIGATION = {
-    *("MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEPAN", "MOUSEZOOM"),
+    *(
+        "MIDDLEMOUSE",
+        "WHEELUPMOUSE",
+        "WHEELDOWNMOUSE",
+        "TRACKPADPAN",
+        "TRACKPADZOOM",
+        "MOUSEPAN",
+        "MOUSEZOOM",
+    ),
     *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
 }
 
@@ -117,7 +125,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
-        """Read the pixel from the footage's file, free of the viewport's colors; look for what has its color."""
+        """Read the pixel from the footage's file, free of the viewport's colors; look for its color."""
         from .bridge.footage_color import footage_color
 
         take = active_take(scene)

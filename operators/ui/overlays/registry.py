@@ -28,7 +28,10 @@ class Overlay:
     phase: str = "POST_PIXEL"
 
 
-OVERLAYS: tuple[Overlay, ...] = ()
+OVERLAYS: tuple[Overlay, ...] = (
+    Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
+    Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
+)
 """All of them; those of one place are drawn in this order."""
 
 _handlers: list[tuple[Overlay, Any]] = []
