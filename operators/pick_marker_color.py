@@ -68,6 +68,13 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         """There must be footage."""
         return all_met(cls, context, footage, idle)
 
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The tooltip: which marker gets the color."""
+        if properties.add:
+            return "Click on another marker in the footage, to add it on the next body part in its color"
+        return "Click on the active marker in the footage, to take its color from there and look for it"
+
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on the footage."""
         from .ui.footage_view import shows_footage

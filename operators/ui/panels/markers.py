@@ -125,10 +125,9 @@ def _draw_marker(
     if not marker.has_readout(take):
         return
     found = pgettext_iface("{found} of {sampled} frames")
-    area = pgettext_iface("{area:.0f} px, {share:.2f}% of the picture")
     readout = layout.column(align=True)
     _row(readout, "Found In", found.format(found=marker.found, sampled=marker.sampled))
-    _row(readout, "Area", area.format(area=marker.area, share=100.0 * marker.area_share))
+    _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
     _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():
         _draw_warning(layout, context, sentence)
