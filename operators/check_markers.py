@@ -8,6 +8,7 @@ from .job_operator import JobOperator
 from .marker_readouts import look_at_markers, write_readouts
 from .marker_styles import picked_styles
 from .requirements import all_met, footage, idle, markers
+from .say import say
 from .takes import active_take, find_take, footage_of
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         for sentence in warnings:
             self.report({"WARNING"}, sentence)
         if not warnings:
-            self.report({"INFO"}, f"All {len(styles)} markers with a color are found well")
+            say(self, "INFO", "All {count} markers with a color are found well", count=len(styles))
 
 
 def show_frame(scene: bpy.types.Scene) -> None:

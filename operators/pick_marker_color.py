@@ -12,6 +12,7 @@ from .job_operator import JobOperator
 from .marker_readouts import look_at_markers, write_readouts
 from .marker_styles import marker_styles, set_marker_color
 from .requirements import all_met, footage, idle
+from .say import label, say
 from .takes import active_take, footage_of
 from .ui.properties.marker import segment_title
 
@@ -90,9 +91,11 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         if segment is None:
             self.report({"ERROR"}, "Every body part has a marker already")
             return {"CANCELLED"}
-        sentence = f"Click on the performer's marker: {segment_title(segment)}"
+        sentence = label(
+            "Click on the {segment}", segment=bpy.app.translations.pgettext_iface(segment_title(segment))
+        )
         context.window_manager.keymark_progress.show(sentence, 0.0)
-        context.workspace.status_text_set(f"{sentence}   |   Esc: Cancel")
+        context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
         context.window.cursor_modal_set("EYEDROPPER")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -153,10 +156,14 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         show_frame(scene)
         for sentence in marker.warning.splitlines():
             self.report({"WARNING"}, sentence)
-        self.report(
-            {"INFO"},
-            f"Marker {marker.name} has the color {result.color}, found in {marker.found} of "
-            f"{marker.sampled} frames",
+        say(
+            self,
+            "INFO",
+            "Marker {name} has the color {color}, found in {found} of {sampled} frames",
+            name=marker.name,
+            color=result.color,
+            found=marker.found,
+            sampled=marker.sampled,
         )
 
     def _adds(self, take: bpy.types.PropertyGroup) -> bool:

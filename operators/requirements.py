@@ -42,6 +42,12 @@ def motion(context: bpy.types.Context) -> str | None:
     return None if take and take.motion_action else "Reconstruct the motion first"
 
 
+def turntable(context: bpy.types.Context) -> str | None:
+    """There are views of the actor from other sides."""
+    take = find_take(context.scene)
+    return None if take and take.turntable.collection else "Set up the turntable first"
+
+
 def object_mode_possible(context: bpy.types.Context) -> str | None:
     """No object is being edited."""
     active = context.view_layer.objects.active

@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..files.digest import digest
 from .colour_learning import LearnedColours, learn_colours
 from .colour_model import ColourModel
 from .colour_names import nearest_colours, share_of_colour
 from .marker_style import MarkerStyle, colour_groups
+from .sightings import Lesson, Sightings
 from .tracks import ExpectedRegions
 from .working_image import halvings, learning_image, measuring_image
 
@@ -38,6 +40,8 @@ class ClipColours:
 
     Attributes:
         groups: of each colour, the markers that bear it; more than one where samples are alike.
+        lessons: how the colours were learned so far.
+        samples: the images that were learned from, by their frames.
     """
 
     def __init__(
@@ -62,6 +66,8 @@ class ClipColours:
         self._spacing = 1
         self._learned: LearnedColours | None = None
         self._most_found = np.zeros(len(self.groups), dtype=np.int64)
+        self.lessons: list[Lesson] = []
+        self.samples: dict[int, Image] = {}
 
     @property
     def model(self) -> ColourModel:
@@ -94,6 +100,15 @@ class ClipColours:
             self._samples = self._samples[2::3]
             self._spacing = min(3 * self._spacing, _WIDEST_SPACING)
             self._learn()
+
+    def learn_again(self, earlier: Sightings) -> bool:
+        """Learn from what was learned from before; tell whether it teaches exactly the same."""
+        for lesson in earlier.lessons:
+            self._samples = [(index, earlier.samples[index]) for index in lesson.frames]
+            self._learn()
+            if self.lessons[-1] != lesson:
+                return False
+        return bool(earlier.lessons)
 
     def check_found(self) -> None:
         """Refuse colours that were found nowhere.
@@ -130,6 +145,10 @@ class ClipColours:
             ]
         self._learned = learn_colours([image for _, image in self._samples], samples, allowed)
         self._most_found = np.maximum(self._most_found, self._learned.found)
+        model = self._learned.model
+        taught = digest(model.label, model.probability, self._learned.found)
+        self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
+        self.samples.update(self._samples)
 
     def _allowed(
         self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions

@@ -153,7 +153,7 @@ def _readout(
             "it anew, or wear another"
         )
         return MarkerReadout(
-            name, 0, sampled, 0.0, 0.0, 0.0, (sentence, *alike_warnings(name, likeness.alike))
+            name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)
         )
     typical = float(np.median(area[area > 0.0]))
     own = 1.0 - likeness.background - sum(share for _, share in likeness.claimed)

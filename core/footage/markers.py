@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -11,11 +12,12 @@ from numpy.typing import NDArray
 from .association import candidates, main_path
 from .clip import Clip
 from .clip_colours import ClipColours
-from .marker_style import MarkerStyle
+from .marker_style import MarkerStyle, colour_groups
 from .moments import centroid_and_second_moment
 from .own_regions import own_regions
 from .pieces import region_quality
 from .regions import NO_REGIONS, Regions, find_regions
+from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
 from .working_image import halvings, measuring_image
 
@@ -50,12 +52,32 @@ def track_markers(
         InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
+    seen = yield from sight_markers(clip, styles, expected)
+    yield 1.0
+    return tell_markers(seen, styles, expected)
+
+
+def sight_markers(
+    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> Generator[float, None, Sightings]:
+    """Find all regions of the markers' colours in a clip, in one pass; see `track_markers`."""
     colours = ClipColours(clip.path, clip.size, styles, expected)
     regions, time_s = yield from _all_regions(clip, colours)
     colours.check_found()
-    tracks = _tracks(regions, styles, colours.groups, expected, time_s, clip.size)
-    yield 1.0
-    return tracks
+    return Sightings(tuple(regions), time_s, clip.size, tuple(colours.lessons), colours.samples)
+
+
+def still_hold(seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
+    """Tell whether exactly the same would be found in the clip with the markers expected elsewhere."""
+    colours = ClipColours(Path(), seen.size, styles, expected)
+    return colours.learn_again(seen)
+
+
+def tell_markers(
+    seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> RegionTracks:
+    """Tell which of the regions that were found are the markers'; see `track_markers`."""
+    return tracks_of_regions(seen.regions, styles, colour_groups(styles), expected, seen.time_s, seen.size)
 
 
 def _all_regions(
@@ -104,7 +126,7 @@ def _regions_of_stretch(
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
-def _tracks(
+def tracks_of_regions(
     regions: Sequence[Regions],
     styles: Sequence[MarkerStyle],
     groups: Sequence[Sequence[int]],

@@ -6,7 +6,7 @@ import pytest
 from keymark.core.take import Take
 from keymark.operators.marker_previews import forget_previews, look_at_frame, preview_of
 from keymark.operators.takes import active_take
-from keymark.operators.ui.overlays.mask import tinted
+from keymark.operators.ui.overlays.mask import free_height, tinted
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -191,3 +191,11 @@ def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
     assert picture.shape == (120, 160, 4) and trunk.any()
     assert picture[trunk][:, :3] == pytest.approx(np.broadcast_to(masks[0].color, (trunk.sum(), 3)), abs=1e-5)
     assert tuple(picture[0, 0, :3]) == (0.0, 0.0, 0.0) and 0.0 < picture[0, 0, 3] < picture[trunk][0, 3]
+
+
+def test_names_move_up_past_those_that_are_there() -> None:
+    """Over both of two that overlap in turn; one beside them stays."""
+    taken = [(0.0, 10.0, 50.0, 8.0), (20.0, 18.0, 50.0, 8.0), (200.0, 0.0, 10.0, 99.0)]
+    assert free_height((10.0, 12.0, 40.0, 8.0), taken) == 26.0
+    assert free_height((80.0, 12.0, 40.0, 8.0), taken) == 12.0
+    assert free_height((10.0, 40.0, 40.0, 8.0), taken) == 40.0

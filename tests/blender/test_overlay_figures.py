@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.operators.ui.overlays.figures import beside, circles, dashes, diamonds, segments, triangles
+from keymark.operators.ui.overlays.figures import circles, dashes, diamonds, segments, triangles
 
 
 def lengths(parts: np.ndarray) -> np.ndarray:
@@ -74,9 +74,3 @@ def test_triangles_cover_a_convex_polygon() -> None:
     area = 0.5 * np.abs(edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
     assert area.sum() == pytest.approx(1.5 * np.sqrt(3.0))
     assert len(triangles([[[0, 0], [1, 0], [np.nan, 1], [0, 1]]])) == 0
-
-
-def test_what_lies_beside_a_box_is_told_from_what_may_cross_it() -> None:
-    """A segment that spans the box is kept."""
-    parts = [[[-5, 5], [-1, 9]], [[-5, 5], [15, 5]], [[3, 11], [4, 20]], [[2, 2], [3, 3]]]
-    assert beside(parts, (0, 0), (10, 10)).tolist() == [True, False, True, False]

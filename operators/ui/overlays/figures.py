@@ -86,11 +86,3 @@ def triangles(polygons: ArrayLike) -> Array:
     first = np.broadcast_to(corners[:, :1], (len(corners), count - 2, dimensions))
     fans = np.stack([first, corners[:, 1:-1], corners[:, 2:]], axis=-2).reshape(-1, 3, dimensions)
     return fans[np.isfinite(fans).all(axis=(-2, -1))]
-
-
-def beside(part: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.bool_]:
-    """Which segments or polygons (S, K, 2) lie wholly beside a box from `low` (2,) to `high` (2,)."""
-    places = np.asarray(part, dtype=np.float64)
-    left = (places < np.asarray(low, dtype=np.float64)).all(axis=-2)
-    right = (places > np.asarray(high, dtype=np.float64)).all(axis=-2)
-    return np.asarray((left | right).any(axis=-1))

@@ -19,6 +19,7 @@ from ...marker_previews import ColorMask, Preview, forget_previews, look_at_fram
 from ...takes import find_take
 from ..footage_view import FootageView, footage_view
 from . import drawing
+from .figures import segments
 
 Array = NDArray[np.float64]
 
@@ -50,6 +51,7 @@ def draw(context: bpy.types.Context) -> None:
         _picture(_texture(preview), view)
         for mask in preview.masks:
             _outlines(mask, view)
+        _names(preview.masks, view)
 
 
 def tinted(masks: Sequence[ColorMask]) -> NDArray[np.float32]:
@@ -90,16 +92,37 @@ def _picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
 
 
 def _outlines(mask: ColorMask, view: FootageView) -> None:
-    """Draw a mask's outlines, and its name above the larger ones."""
-    longest = len(mask.outlines[0]) if mask.outlines else 0
+    """Draw a mask's outlines."""
     for outline in mask.outlines:
-        places = view.to_region(outline)
-        drawing.lines(np.stack([places, np.roll(places, -1, axis=0)], axis=1), drawing.INK, WIDTH, HALO)
-    for outline in mask.outlines:
-        if len(outline) >= SHORTEST_NAMED * longest:
-            places = view.to_region(outline)
-            top = float(places[:, 1].max()) + NAME_GAP * drawing.ui_scale()
-            drawing.text(mask.label, float(places[:, 0].mean()), top, align="middle")
+        drawing.lines(segments(view.to_region(outline), closed=True), drawing.INK, WIDTH, HALO)
+
+
+def _names(masks: Sequence[ColorMask], view: FootageView) -> None:
+    """Write each mask's name above its larger outlines, higher where there is one already."""
+    scale = drawing.ui_scale()
+    boxes: list[tuple[float, float, float, float]] = []
+    for mask in masks:
+        width, height = drawing.text_size(mask.label)
+        longest = len(mask.outlines[0]) if mask.outlines else 0
+        for outline in mask.outlines:
+            if len(outline) >= SHORTEST_NAMED * longest:
+                places = view.to_region(outline)
+                x, y = float(places[:, 0].mean()), float(places[:, 1].max()) + NAME_GAP * scale
+                y = free_height((x - 0.5 * width, y, width, height + NAME_GAP * scale), boxes)
+                boxes.append((x - 0.5 * width, y, width, height + NAME_GAP * scale))
+                drawing.text(mask.label, x, y, align="middle")
+
+
+def free_height(
+    box: tuple[float, float, float, float], taken: Sequence[tuple[float, float, float, float]]
+) -> float:
+    """The least y at or above a box's own at which it overlaps no other; a box is x, y, width, height."""
+    x, y, width, height = box
+    beside = [other for other in taken if x < other[0] + other[2] and other[0] < x + width]
+    for other in sorted(beside, key=lambda one: one[1]):
+        if y < other[1] + other[3] and other[1] < y + height:
+            y = other[1] + other[3]
+    return y
 
 
 @persistent

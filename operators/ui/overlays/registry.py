@@ -28,9 +28,11 @@ class Overlay:
     phase: str = "POST_PIXEL"
 
 
-OVERLAYS: tuple[Overlay, ...] = (
+OVERLAYS = (
     Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
+    Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
+    Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
 )
 """All of them; those of one place are drawn in this order."""
 

@@ -33,3 +33,11 @@ class TakePanel(SubPanel):
     def poll(cls, context: bpy.types.Context) -> bool:
         """There is a take."""
         return find_take(context.scene) is not None
+
+
+def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw how far the running job is; a job that waits for the animator says for what."""
+    progress = context.window_manager.keymark_progress
+    percent = f" ({100.0 * progress.fraction:.0f}%)" if progress.fraction > 0.0 else ""
+    layout.progress(factor=progress.fraction, text=progress.stage + percent)
+    layout.label(text="Esc cancels")

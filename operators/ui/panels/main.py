@@ -3,7 +3,7 @@
 import bpy
 
 from ...job_operator import job_is_running
-from .base import SidebarPanel
+from .base import SidebarPanel, draw_progress
 
 
 class KEYMARK_UL_takes(bpy.types.UIList):
@@ -33,11 +33,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
         """Draw the running job, or the takes."""
         layout, settings = self.layout, context.scene.keymark
         if job_is_running(context):
-            progress = context.window_manager.keymark_progress
-            layout.progress(
-                factor=progress.fraction, text=f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
-            )
-            layout.label(text="Esc cancels")
+            draw_progress(layout, context)
             return
         if not len(settings.takes):
             layout.operator("keymark.load_footage", icon="FILE_MOVIE")

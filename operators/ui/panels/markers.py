@@ -3,13 +3,13 @@
 from textwrap import wrap
 
 import bpy
-from bpy.app.translations import pgettext_iface
 
 from ...job_operator import job_is_running
+from ...say import label
 from ...takes import active_take, find_take
-from .base import TakePanel
+from .base import TakePanel, draw_progress
 
-CHARACTER_WIDTH = 7.0
+CHARACTER_WIDTH = 6.2
 """Pixels that a letter of a label takes on a plain screen, on the wide side of usual."""
 MARGIN = 75.0
 """Pixels of a sidebar beside the words of a label with an icon."""
@@ -74,11 +74,7 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
         """Draw the running job, or the markers."""
         take = active_take(context.scene)
         if job_is_running(context):
-            progress = context.window_manager.keymark_progress
-            self.layout.progress(
-                factor=progress.fraction, text=f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
-            )
-            self.layout.label(text="Esc cancels")
+            draw_progress(self.layout, context)
             return
         if context.space_data.clip != take.clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
@@ -124,9 +120,10 @@ def _draw_marker(
     column.prop(marker, "color")
     if not marker.has_readout(take):
         return
-    found = pgettext_iface("{found} of {sampled} frames")
     readout = layout.column(align=True)
-    _row(readout, "Found In", found.format(found=marker.found, sampled=marker.sampled))
+    _row(
+        readout, "Found In", label("{found} of {sampled} frames", found=marker.found, sampled=marker.sampled)
+    )
     _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
     _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():

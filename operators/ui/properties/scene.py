@@ -3,6 +3,7 @@
 import bpy
 
 from ...takes import bring_forward
+from .overlays import KEYMARK_PG_overlays
 from .take import KEYMARK_PG_take
 
 VERSION = 1
@@ -27,6 +28,7 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         min=0,
         update=_active_take_changed,
     )
+    overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
 
 
 def register() -> None:

@@ -1,0 +1,93 @@
+"""A legend in the corner: a sample of each kind of line, and what it means."""
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from bpy.app.translations import pgettext_iface
+from numpy.typing import NDArray
+
+from .figures import circles, dashes, diamonds, segments
+from .picture import Fill, Item, Label, Stroke
+from .style import CORE, DASH, DIAMOND, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
+
+Array = NDArray[np.float64]
+
+SAMPLE, LINE, MARGIN = 26.0, 18.0, 12.0
+"""Length of a sample, height of a line, distance from the corner [px]."""
+ABOVE_CACHE = 22.0
+"""The Movie Clip editor draws its cached frames at the bottom [px]."""
+
+
+@dataclass
+class Legend:
+    """Lines of a legend, from the bottom up."""
+
+    x: float
+    y: float
+    style: Style
+    items: list[Item] = field(default_factory=list)
+
+    def solid(self, words: str) -> None:
+        """A solid line."""
+        self._row(words, [Stroke(self._sample(), self.style.color(MIDDLE), 1.5, self.style.halo)])
+
+    def dashed(self, words: str) -> None:
+        """A dashed line."""
+        (line,) = self._sample()
+        parts = dashes(line, DASH * self.style.scale, GAP * self.style.scale)
+        self._row(words, [Stroke(parts, self.style.color(MIDDLE), 1.5, self.style.halo)])
+
+    def limb(self, words: str, side: str) -> None:
+        """A left limb's line, or a right one's."""
+        line, style = self._sample(), self.style
+        color = LEFT if side == "L" else RIGHT
+        drawn: list[Item] = [Stroke(line, style.color(color), 3.0, style.halo)]
+        if side == "R":
+            drawn.append(Stroke(line, style.color(CORE), 1.2))
+        self._row(words, drawn)
+
+    def ring(self, words: str) -> None:
+        """An uncertain point."""
+        (rim,) = circles(self._middle(), JOINT * self.style.scale, 16)
+        stroke = Stroke(segments(rim, closed=True), self.style.color(MIDDLE), 1.5, self.style.halo)
+        self._row(words, [stroke])
+
+    def diamond(self, words: str) -> None:
+        """A keyframe."""
+        marks = diamonds(self._middle(), DIAMOND * self.style.scale)
+        color = self.style.color(MIDDLE)
+        self._row(
+            words, [Stroke(segments(marks, closed=True), color, 1.5, self.style.halo), Fill(marks, color)]
+        )
+
+    def sentence(self, words: str) -> None:
+        """Words without a sample."""
+        self.items.append(Label(words, self.x, self.y, self.style.color(MIDDLE)))
+        self.y += LINE * self.style.scale
+
+    def _row(self, words: str, sample: list[Item]) -> None:
+        self.items += sample
+        x = self.x + (SAMPLE + 8.0) * self.style.scale
+        self.items.append(Label(pgettext_iface(words), x, self.y, self.style.color(MIDDLE)))
+        self.y += LINE * self.style.scale
+
+    def _middle(self) -> Array:
+        return np.array([[self.x + 0.5 * SAMPLE * self.style.scale, self.y + 4.0 * self.style.scale]])
+
+    def _sample(self) -> Array:
+        y = self.y + 4.0 * self.style.scale
+        return np.array([[[self.x, y], [self.x + SAMPLE * self.style.scale, y]]])
+
+
+def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
+    """The bottom left corner of what no toolbar covers of a region [region px]."""
+    left = bottom = 0.0
+    for other in area.regions:
+        covers = other.width > 1 and other.height > 1 and other != region
+        if covers and other.alignment == "LEFT":
+            left = max(left, float(other.x + other.width - region.x))
+        elif covers and other.alignment == "BOTTOM" and other.y <= region.y:
+            bottom = max(bottom, float(other.y + other.height - region.y))
+    lift = ABOVE_CACHE if area.type == "CLIP_EDITOR" else 0.0
+    return left + MARGIN * scale, bottom + (MARGIN + lift) * scale

@@ -1,0 +1,51 @@
+"""How what is drawn looks: colours, sizes, dashes. All sizes are of a plain screen [px]."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .drawing import Color, faded
+
+LEFT: Color = (0.34, 0.71, 0.91, 1.0)
+RIGHT: Color = (0.96, 0.66, 0.10, 1.0)
+MIDDLE: Color = (0.92, 0.92, 0.92, 1.0)
+"""Sky blue and orange, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
+CORE: Color = (0.08, 0.08, 0.08, 1.0)
+"""What makes a line hollow."""
+SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
+DASH, GAP = 6.0, 4.0
+JOINT, DOT, DIAMOND = 3.5, 1.6, 5.0
+PALER = 0.5
+"""How far towards white the prediction's colour is moved, so that dashes show over a solid line."""
+HALO = 0.8
+
+
+@dataclass(frozen=True)
+class Style:
+    """What the animator chose, and the screen."""
+
+    opacity: float
+    width: float
+    scale: float
+    """Pixels of the screen for one of a plain one."""
+
+    def color(self, color: Color | tuple[float, float, float]) -> Color:
+        """A colour with the chosen opacity."""
+        return faded(color, self.opacity)
+
+    @property
+    def halo(self) -> float:
+        """Opacity of lines' dark edges."""
+        return HALO * self.opacity
+
+
+def side_color(name: str) -> Color:
+    """The colour of a point by the side of the body in its name."""
+    return SIDES[name.partition(".")[2]]
+
+
+def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
+    """A colour nearer to white."""
+    red, green, blue = (PALER + (1.0 - PALER) * np.asarray(color, dtype=np.float64)).tolist()
+    return (red, green, blue)
