@@ -2,10 +2,12 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Generator
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.app import timers
 
 from .failures import reported
 
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 """How long a job runs before the user interface is drawn again: as long as drawing took, between these."""
 TIMER_S = 0.01
+SETTLING_S = 0.1
+"""After which everything has been drawn once."""
 PREFIX = "KEYMARK_OT_"
 
 
@@ -104,6 +108,9 @@ class JobOperator:
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
+        # Blender moves sub-panels up only when it draws once more after the panel above them has shrunk.
+        if not bpy.app.background:
+            timers.register(partial(redraw_sidebars, bpy.context), first_interval=SETTLING_S)
 
     def _show(self, context: bpy.types.Context, stage: str, fraction: float) -> None:
         context.window_manager.keymark_progress.show(stage, fraction)

@@ -94,7 +94,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         sentence = label(
             "Click on the {segment}", segment=bpy.app.translations.pgettext_iface(segment_title(segment))
         )
-        context.window_manager.keymark_progress.show(sentence, 0.0)
+        context.window_manager.keymark_progress.show("", 0.0)
         context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
         context.window.cursor_modal_set("EYEDROPPER")
         context.window_manager.modal_handler_add(self)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...job_operator import job_is_running
 from ...takes import find_take
 
 
@@ -35,9 +36,11 @@ class TakePanel(SubPanel):
         return find_take(context.scene) is not None
 
 
-def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw how far the running job is; a job that waits for the animator says for what."""
+def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
+    """Draw how far the running job is; return whether one runs. An eyedropper that waits does no work."""
     progress = context.window_manager.keymark_progress
-    percent = f" ({100.0 * progress.fraction:.0f}%)" if progress.fraction > 0.0 else ""
-    layout.progress(factor=progress.fraction, text=progress.stage + percent)
+    if not job_is_running(context) or not progress.stage:
+        return False
+    layout.progress(factor=progress.fraction, text=f"{progress.stage} ({100.0 * progress.fraction:.0f}%)")
     layout.label(text="Esc cancels")
+    return True

@@ -2,7 +2,6 @@
 
 import bpy
 
-from ...job_operator import job_is_running
 from .base import SidebarPanel, draw_progress
 
 
@@ -32,8 +31,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the takes."""
         layout, settings = self.layout, context.scene.keymark
-        if job_is_running(context):
-            draw_progress(layout, context)
+        if draw_progress(layout, context):
             return
         if not len(settings.takes):
             layout.operator("keymark.load_footage", icon="FILE_MOVIE")

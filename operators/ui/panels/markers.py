@@ -4,7 +4,6 @@ from textwrap import wrap
 
 import bpy
 
-from ...job_operator import job_is_running
 from ...say import label
 from ...takes import active_take, find_take
 from .base import TakePanel, draw_progress
@@ -73,8 +72,7 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the markers."""
         take = active_take(context.scene)
-        if job_is_running(context):
-            draw_progress(self.layout, context)
+        if draw_progress(self.layout, context):
             return
         if context.space_data.clip != take.clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
