@@ -2,10 +2,12 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Generator
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.app import timers
 
 from .failures import reported
 
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 """How long a job runs before the user interface is drawn again: as long as drawing took, between these."""
 TIMER_S = 0.01
+SETTLING_S = 0.1
+"""After which everything has been drawn once."""
 PREFIX = "KEYMARK_OT_"
 
 
@@ -53,15 +57,18 @@ class JobOperator:
         if bpy.app.background:  # there are no timer events
             return self.execute(context)
         with reported(self):
-            self._job = self.start(context.scene)
-            self._scene_name = context.scene.name
-            manager = context.window_manager
-            self._timer = manager.event_timer_add(TIMER_S, window=context.window)
-            manager.modal_handler_add(self)
-            self._show(context, "Starting", 0.0)
-            self._slice_end = monotonic()
+            self.begin(context)
+            context.window_manager.modal_handler_add(self)
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
+
+    def begin(self, context: bpy.types.Context) -> None:
+        """Start the job and the timer that keeps it going; `modal` must be called from then on."""
+        self._job = self.start(context.scene)
+        self._scene_name = context.scene.name
+        self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
+        self._show(context, "Starting", 0.0)
+        self._slice_end = monotonic()
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Go on with the job, or stop it."""
@@ -101,6 +108,9 @@ class JobOperator:
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
+        # Blender moves sub-panels up only when it draws once more after the panel above them has shrunk.
+        if not bpy.app.background:
+            timers.register(partial(redraw_sidebars, bpy.context), first_interval=SETTLING_S)
 
     def _show(self, context: bpy.types.Context, stage: str, fraction: float) -> None:
         context.window_manager.keymark_progress.show(stage, fraction)
@@ -109,10 +119,10 @@ class JobOperator:
 
 
 def redraw_sidebars(context: bpy.types.Context) -> None:
-    """Have every 3D viewport's sidebar drawn again."""
+    """Have every sidebar that shows a job's progress drawn again."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
+            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
                 for region in area.regions:
                     if region.type == "UI":
                         region.tag_redraw()

@@ -29,6 +29,8 @@ class Overlay:
 
 
 OVERLAYS = (
+    Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
+    Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
 )

@@ -2,11 +2,10 @@
 
 import bpy
 
-from ...job_operator import job_is_running
 from ...takes import find_take
 from ...upgrade import is_newer
 from ..next_step import next_step
-from .base import SidebarPanel
+from .base import SidebarPanel, draw_progress
 
 STEPS = (
     ("FILE_MOVIE", "Footage: load the clip, or open a take"),
@@ -80,8 +79,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the takes and the next step."""
         layout, take = self.layout, find_take(context.scene)
-        if job_is_running(context):
-            _draw_progress(layout, context.window_manager.keymark_progress)
+        if draw_progress(layout, context):
             return
         if is_newer(context.scene):
             box = layout.box().column(align=True)
@@ -92,15 +90,6 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             return
         _draw_takes(layout, context.scene.keymark)
         layout.label(text=next_step(take), icon="FORWARD")
-
-
-def _draw_progress(layout: bpy.types.UILayout, progress: bpy.types.PropertyGroup) -> None:
-    """How far the running job is."""
-    percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
-    layout.progress(factor=progress.fraction, text=percent)
-    row = layout.row()
-    row.label(text="Esc cancels", icon="EVENT_ESC")
-    row.label(text=getattr(progress, "time_left", ""), translate=False)
 
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
