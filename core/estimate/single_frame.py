@@ -19,7 +19,7 @@ from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, feature_rows, limb_widths
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
 from .terms.term import NormalEquations, Term
 
 Array = NDArray[np.float64]
