@@ -47,8 +47,8 @@ def place_standing(
         body: The actor's body.
         camera: The camera.
         frame: The frame's place in the clip, for a moving camera.
-        regions: The markers' regions in this frame, as tracks of one frame; None or hidden: the picture's
-            middle.
+        regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
+            goes to the picture's middle.
         segments: The segment each marker is bound to.
 
     Returns:

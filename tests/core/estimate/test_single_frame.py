@@ -123,13 +123,7 @@ def test_someone_who_merely_stands_there_is_fitted_too() -> None:
     """No keyframe yet: from standing at the place that the regions tell, facing the camera."""
     tracks = film(TRUTH, noise_px=0.3, seed=3)
     frame = 8
-    one = replace(
-        tracks,
-        **{
-            name: getattr(tracks, name)[frame : frame + 1]
-            for name in ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
-        },
-    )
+    one = tracks.frame(frame)
     segments = tuple(placement.segment for placement in MODEL.placements)
     belief = belief_from_standing(place_standing(BODY, CAMERA, 0, one, segments))
     found = fit(belief, tracks, frame)
