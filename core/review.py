@@ -1,5 +1,6 @@
 """What a person judges a motion by: outlines, points, confidence, and frames worth another keyframe."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -75,7 +76,7 @@ class Review:
         return arrays
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "Review":
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
         """Read what `to_arrays` gave.
 
         Raises:

@@ -24,6 +24,7 @@ HEIGHTS = {
     "core.estimate": 5,
     "core.take": 6,
     "core.motion": 6,
+    "core.finish": 6,
     "core.reconstruct": 7,
     "core.report": 8,
     "core.review": 8,
