@@ -7,6 +7,7 @@ from importlib import import_module
 from types import ModuleType
 
 MODULES = (
+    "ui.properties.actor",
     "ui.properties.marker",
     "ui.properties.turntable",
     "ui.properties.take",
@@ -14,15 +15,19 @@ MODULES = (
     "ui.properties.overlays",
     "ui.properties.scene",
     "results",
+    "posed_frames",
     "open_take",
     "save_take",
     "load_footage",
     "build_actor",
+    "measure_actor",
+    "apply_lengths",
     "add_marker",
     "remove_marker",
     "pick_marker_color",
     "propose_keyframes",
     "jump_to_proposal",
+    "fit_pose",
     "store_keyframe",
     "reconstruct",
     "show_action",

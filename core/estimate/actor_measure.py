@@ -82,6 +82,8 @@ class MeasuredActor:
     """How far each of the lengths `MEASURED` may still be off, as a share of it."""
     stands: bool
     """Whether the markers are where those of someone who stands can be."""
+    distance_m: float
+    """From the camera to the ground between the feet [m]."""
 
 
 def measure_standing(
@@ -90,8 +92,8 @@ def measure_standing(
     stature_m: float,
     crown_px: Array,
     ground_px: Array,
-    regions: RegionTracks,
-    segments: tuple[str, ...],
+    regions: RegionTracks | None = None,
+    segments: tuple[str, ...] = (),
     arms_stretched: bool = False,
 ) -> MeasuredActor:
     """Lengths and place of a performer who stands.
@@ -102,21 +104,29 @@ def measure_standing(
         stature_m: Body height [m].
         crown_px: (2,) top of the head in the picture [px].
         ground_px: (2,) the ground between the feet [px].
-        regions: The markers' regions in this frame, as tracks of one frame; hidden ones say nothing.
+        regions: The markers' regions in this frame, as tracks of one frame; without them the lengths are
+            average ones.
         segments: The segment each marker is bound to.
         arms_stretched: Whether the performer holds the arms out sideways, across the view.
 
     Raises:
         InputError: The height is out of range, or the two places cannot be a person's.
     """
+    average = Actor.from_stature(stature_m)
     place = ground_place(camera, frame, stature_m, crown_px, ground_px)
+    heading = facing_rad(camera.pose(frame)[0][:, 2])
+    distance_m = float(np.linalg.norm(place - camera.pose(frame)[1]))
+    if regions is None or not regions.visible.any():
+        body = Body(average)
+        unknown = dict.fromkeys(MEASURED, PROPORTION_STD)
+        return MeasuredActor(body, standing_posture(body, place, heading), unknown, True, distance_m)
     problem = _Problem(
         camera,
         np.array([frame]),
-        Actor.from_stature(stature_m),
+        average,
         stature_m,
         place,
-        facing_rad(camera.pose(frame)[0][:, 2]),
+        heading,
         ObservedRegions.from_tracks(regions),
         segments,
         arms_stretched,
@@ -210,7 +220,8 @@ class _Problem:
         exact = self.height_m / standing_height_m(body)
         body = Body(Actor({name: exact * length for name, length in body.actor.segments_m.items()}))
         spread = dict(zip(MEASURED, map(float, shares), strict=True))
-        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x))
+        distance_m = float(np.linalg.norm(self.place - self.camera.pose(int(self.frame[0]))[1]))
+        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), distance_m)
 
     def _stands(self, x: Array) -> bool:
         model = self.model(x)

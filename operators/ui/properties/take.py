@@ -2,6 +2,7 @@
 
 import bpy
 
+from .actor import KEYMARK_PG_lengths
 from .marker import KEYMARK_PG_marker
 from .turntable import KEYMARK_PG_turntable
 
@@ -64,6 +65,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         min=0.5,
         max=3.0,
     )
+    lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
     active_marker: bpy.props.IntProperty(name="Active Marker", default=0, min=0)
     keyframe_action: bpy.props.PointerProperty(
