@@ -7,6 +7,7 @@ from importlib import import_module
 from types import ModuleType
 
 MODULES = (
+    "ui.properties.actor",
     "ui.properties.marker",
     "ui.properties.turntable",
     "ui.properties.clip_state",
@@ -15,6 +16,7 @@ MODULES = (
     "ui.properties.overlays",
     "ui.properties.scene",
     "results",
+    "posed_frames",
     "open_take",
     "save_take",
     "load_footage",
@@ -25,6 +27,8 @@ MODULES = (
     "remove_take",
     "drop_files",
     "build_actor",
+    "measure_actor",
+    "apply_lengths",
     "add_marker",
     "remove_marker",
     "check_markers",
@@ -32,6 +36,7 @@ MODULES = (
     "show_masks",
     "propose_keyframes",
     "jump_to_proposal",
+    "fit_pose",
     "store_keyframe",
     "reconstruct",
     "show_action",

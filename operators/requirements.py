@@ -16,6 +16,12 @@ def footage(context: bpy.types.Context) -> str | None:
     return None if take and take.clip else "Load the footage or open a take first"
 
 
+def camera(context: bpy.types.Context) -> str | None:
+    """The footage's camera is known."""
+    take = find_take(context.scene)
+    return None if take and take.camera else "Choose the camera that the footage was taken with first"
+
+
 def actor(context: bpy.types.Context) -> str | None:
     """The scene has an actor."""
     take = find_take(context.scene)
@@ -55,6 +61,13 @@ def object_mode_possible(context: bpy.types.Context) -> str | None:
     """No object is being edited."""
     active = context.view_layer.objects.active
     return None if active is None or active.mode == "OBJECT" else "Leave the active object's mode first (Tab)"
+
+
+def bones_editable(context: bpy.types.Context) -> str | None:
+    """Nothing is in a mode from which bones cannot be changed."""
+    active = context.view_layer.objects.active
+    free = active is None or active.mode in ("OBJECT", "POSE")
+    return None if free else "Leave the active object's mode first (Tab)"
 
 
 def idle(context: bpy.types.Context) -> str | None:

@@ -102,7 +102,9 @@ def read_values(
 
 def _unit_quaternions(quaternions: Array) -> Array:
     length = np.linalg.norm(quaternions, axis=1, keepdims=True)
-    unit = np.where(length > SMALLEST_LENGTH, quaternions / np.maximum(length, SMALLEST_LENGTH), [1.0, 0, 0, 0])
+    unit = np.where(
+        length > SMALLEST_LENGTH, quaternions / np.maximum(length, SMALLEST_LENGTH), [1.0, 0, 0, 0]
+    )
     return continuous_quaternions(unit)
 
 

@@ -3,6 +3,7 @@
 import bpy
 
 from ...takes import unique_name
+from .actor import KEYMARK_PG_lengths
 from .clip_state import KEYMARK_PG_clip_state
 from .marker import KEYMARK_PG_marker
 from .turntable import KEYMARK_PG_turntable
@@ -98,6 +99,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         min=0.5,
         max=3.0,
     )
+    lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
     active_marker: bpy.props.IntProperty(
         name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
