@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Label, Stroke
-from .style import CORE, DASH, DIAMOND, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
+from .style import CORE, DASH, DIAMOND, DOT, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
 
 Array = NDArray[np.float64]
 
+DOTS = 3
 SAMPLE, LINE, MARGIN = 26.0, 18.0, 12.0
 """Length of a sample, height of a line, distance from the corner [px]."""
 ABOVE_CACHE = 22.0
@@ -28,23 +29,22 @@ class Legend:
     style: Style
     items: list[Item] = field(default_factory=list)
 
-    def solid(self, words: str) -> None:
-        """A solid line."""
-        self._row(words, [Stroke(self._sample(), self.style.color(MIDDLE), 1.5, self.style.halo)])
+    def solid(self, words: str, *, dotted: bool = False) -> None:
+        """A solid line, with a dot a frame where it is a path."""
+        self._line(words, self._sample(), dotted)
 
-    def dashed(self, words: str) -> None:
-        """A dashed line."""
+    def dashed(self, words: str, *, dotted: bool = False) -> None:
+        """A dashed line, with a dot a frame where it is a path."""
         (line,) = self._sample()
-        parts = dashes(line, DASH * self.style.scale, GAP * self.style.scale)
-        self._row(words, [Stroke(parts, self.style.color(MIDDLE), 1.5, self.style.halo)])
+        self._line(words, dashes(line, DASH * self.style.scale, GAP * self.style.scale), dotted)
 
     def limb(self, words: str, side: str) -> None:
         """A left limb's line, or a right one's."""
         line, style = self._sample(), self.style
         color = LEFT if side == "L" else RIGHT
-        drawn: list[Item] = [Stroke(line, style.color(color), 3.0, style.halo)]
+        drawn: list[Item] = [Stroke(line, style.color(color), 3.6, style.halo)]
         if side == "R":
-            drawn.append(Stroke(line, style.color(CORE), 1.2))
+            drawn.append(Stroke(line, style.color(CORE), 1.6))
         self._row(words, drawn)
 
     def ring(self, words: str) -> None:
@@ -65,6 +65,14 @@ class Legend:
         """Words without a sample."""
         self.items.append(Label(words, self.x, self.y, self.style.color(MIDDLE)))
         self.y += LINE * self.style.scale
+
+    def _line(self, words: str, parts: Array, dotted: bool) -> None:
+        color, (ends,) = self.style.color(MIDDLE), self._sample()
+        drawn: list[Item] = [Stroke(parts, color, 1.5, self.style.halo)]
+        if dotted:
+            dots = np.linspace(ends[0], ends[1], DOTS + 2)[1:-1]
+            drawn.append(Fill(circles(dots, (DOT + 1.0) * self.style.scale, 8), color))
+        self._row(words, drawn)
 
     def _row(self, words: str, sample: list[Item]) -> None:
         self.items += sample

@@ -17,7 +17,7 @@ from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_
 from .paths import path, window
 from .picture import Item
 from .skeleton import skeleton
-from .style import Style
+from .style import Style, body_scale
 
 if TYPE_CHECKING:
     from ....core.review import Review
@@ -69,7 +69,9 @@ def picture(
     context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
 ) -> list[Item]:
     """Everything that is switched on, and a legend that explains it."""
-    style = Style(settings.opacity, settings.line_width, drawing.ui_scale())
+    scale = drawing.ui_scale()
+    metre = view.pixels_per_metre(what.review, what.index)
+    style = Style(settings.opacity, settings.line_width, scale, body_scale(metre, scale))
     items: list[Item] = []
     if settings.show_paths:
         items += _paths(what, view, settings, style)
@@ -77,7 +79,6 @@ def picture(
         items += _outlines(what, view.footage, settings, style)
     if settings.show_skeleton:
         (places,) = view.places(what.review, np.array([what.index]))
-        metre = view.pixels_per_metre(what.review, what.index)
         items += skeleton(what.review, what.index, places, metre, settings.uncertain_beyond, style)
     if settings.show_legend:
         legend = Legend(*corner(context.area, context.region, style.scale), style)
@@ -115,8 +116,8 @@ def _explain(legend: Legend, what: Shown, view: MotionView, settings: bpy.types.
     """Lines of the legend from the bottom up: only of what is drawn."""
     if settings.show_paths:
         legend.diamond("Keyframe")
-        legend.dashed("Path to come")
-        legend.solid("Path so far")
+        legend.dashed("Path to come", dotted=True)
+        legend.solid("Path so far", dotted=True)
     if settings.show_skeleton:
         if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
             legend.ring("Uncertain point")

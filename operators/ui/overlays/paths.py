@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Stroke
-from .style import DASH, DIAMOND, DOT, GAP, Style, side_color
+from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, Style, side_color
 
 Array = NDArray[np.float64]
 
@@ -40,11 +40,11 @@ def path(
     ahead = dashes(future, DASH * style.scale, GAP * style.scale)
     seen = np.isfinite(places).all(axis=-1)
     keyed = np.isin(frames, list(keyframe_indices)) & seen
-    marks = diamonds(places[keyed], DIAMOND * style.scale)
+    marks = diamonds(places[keyed], style.size(DIAMOND))
     return [
         Stroke(segments(past), color, style.width, style.halo),
         Stroke(ahead, color, style.width, style.halo),
-        Fill(circles(places[seen & ~keyed], (DOT + 0.5 * style.width) * style.scale, 8), color),
+        Fill(circles(places[seen & ~keyed], style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)),
         Stroke(segments(marks, closed=True), color, 1.5, style.halo),
         Fill(marks, color),
     ]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .figures import circles, dashes, segments
 from .picture import Fill, Item, Stroke
-from .style import CORE, DASH, GAP, JOINT, SIDES, Style, side_color
+from .style import CORE, DASH, GAP, JOINT, LIMB, SIDES, Style, side_color
 
 if TYPE_CHECKING:
     from ....core.review import Review
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ARM, LEG = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
-BODY = 1.6
-"""How much thicker than outlines the limbs are drawn."""
 
 
 def skeleton(
@@ -34,12 +32,12 @@ def skeleton(
         style: How to draw.
     """
     items: list[Item] = []
-    width = BODY * style.width
+    width = LIMB * style.width * style.body_scale
     for side, line in limbs(review.point_names, places):
         parts = segments(line)
         items.append(Stroke(parts, style.color(SIDES[side]), width, style.halo))
         if side == "R":
-            items.append(Stroke(parts, style.color(CORE), 0.4 * width))
+            items.append(Stroke(parts, style.color(CORE), 0.45 * width))
     sigma = review.sigma_m[index]
     uncertain = sigma > limit_m
     for point, name in enumerate(review.point_names):
@@ -70,6 +68,6 @@ def limbs(names: Sequence[str], places: Array) -> list[tuple[str, Array]]:
 def _joint(place: Array, name: str, uncertain: bool, style: Style) -> list[Item]:
     """A disc, or a ring where the point is uncertain."""
     color = style.color(side_color(name))
-    (rim,) = circles(place[None], JOINT * style.scale, 16)
+    (rim,) = circles(place[None], style.size(JOINT), 16)
     edge = Stroke(segments(rim, closed=True), color, 1.5, style.halo)
     return [edge] if uncertain else [edge, Fill(rim[None], color)]

@@ -15,7 +15,6 @@ def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None
     column.prop(settings, "show_observed")
     column.prop(settings, "show_predicted")
     column.prop(settings, "show_skeleton")
-    column.prop(settings, "show_paths")
     column.prop(settings, "show_legend")
     column = layout.column()
     column.prop(settings, "opacity")
