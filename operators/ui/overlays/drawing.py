@@ -19,7 +19,7 @@ from .figures import triangles
 Color = tuple[float, float, float, float]
 Array = NDArray[np.float64]
 
-HALO: Color = (0.0, 0.0, 0.0, 0.55)
+HALO: Color = (0.0, 0.0, 0.0, 0.75)
 """What sets lines off from footage of any brightness."""
 INK: Color = (1.0, 1.0, 1.0, 1.0)
 HALO_PX = 1.25
@@ -156,7 +156,7 @@ def text(
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, 0.8 * color[3])
+    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, color[3])
     blf.shadow_offset(FONT, 0, 0)
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)

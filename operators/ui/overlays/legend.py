@@ -7,12 +7,14 @@ import numpy as np
 from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
+from .drawing import text_size
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Label, Stroke
 from .style import CORE, DASH, DIAMOND, DOT, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
 
 Array = NDArray[np.float64]
 
+GROUND = (0.0, 0.0, 0.0, 0.35)
 DOTS = 3
 SAMPLE, LINE, MARGIN = 26.0, 18.0, 12.0
 """Length of a sample, height of a line, distance from the corner [px]."""
@@ -65,6 +67,17 @@ class Legend:
         """Words without a sample."""
         self.items.append(Label(words, self.x, self.y, self.style.color(MIDDLE)))
         self.y += LINE * self.style.scale
+
+    def finished(self) -> list[Item]:
+        """Everything, on a dark ground that sets it off from bright footage."""
+        labels = [item for item in self.items if isinstance(item, Label)]
+        if not labels:
+            return []
+        edge = 0.5 * MARGIN * self.style.scale
+        right = max(label.x + text_size(label.words)[0] for label in labels) + edge
+        left, bottom, top = self.x - edge, labels[0].y - edge, labels[-1].y + LINE * self.style.scale
+        ground = np.array([[[left, bottom], [right, bottom], [right, top], [left, top]]])
+        return [Fill(ground, self.style.color(GROUND)), *self.items]
 
     def _line(self, words: str, parts: Array, dotted: bool) -> None:
         color, (ends,) = self.style.color(MIDDLE), self._sample()

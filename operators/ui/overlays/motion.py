@@ -83,7 +83,7 @@ def picture(
     if settings.show_legend:
         legend = Legend(*corner(context.area, context.region, style.scale), style)
         _explain(legend, what, view, settings)
-        items += legend.items
+        items += legend.finished()
     return items
 
 

@@ -23,7 +23,7 @@ METRE, SMALLEST = 160.0, 0.35
 """A body of which a metre is smaller than this is drawn with finer marks, down to a share of the usual."""
 PALER = 0.5
 """How far towards white the prediction's colour is moved, so that dashes show over a solid line."""
-HALO = 0.8
+HALO = 0.9
 
 
 @dataclass(frozen=True)
