@@ -13,8 +13,8 @@ from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import motion
 from keymark.operators.ui.overlays.clip_editor import ClipView
 from keymark.operators.ui.overlays.legend import Legend
-from keymark.operators.ui.overlays.paths import path, window
-from keymark.operators.ui.overlays.picture import Fill, Label, Stroke
+from keymark.operators.ui.overlays.paths import paths, window
+from keymark.operators.ui.overlays.picture import Fill, Label, Stroke, merged
 from keymark.operators.ui.overlays.skeleton import skeleton
 from keymark.operators.ui.overlays.style import SMALLEST, Style, body_scale
 from keymark.operators.ui.overlays.viewport import world_view
@@ -145,9 +145,14 @@ def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:
     assert drawn(scene) == []
     switch(scene, "paths")
     scene.keymark.overlays.path_points = {"head"}
-    one = drawn(scene)
+    one = discs(drawn(scene))
     scene.keymark.overlays.path_points = {"head", "ankle.R"}
-    assert len(drawn(scene)) == 2 * len(one) > 0
+    assert discs(drawn(scene)) == 2 * one > 0
+
+
+def discs(items: list) -> int:
+    """How many polygons are filled."""
+    return sum(len(item.corners) for item in items if isinstance(item, Fill))
 
 
 def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
@@ -155,14 +160,14 @@ def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) ->
     places = CAMERA_VIEW.places(review, np.array([3]))[0]
     metre = CAMERA_VIEW.pixels_per_metre(review, 3)
     items = skeleton(review, 3, places, metre, 0.05, STYLE)
-    assert sum(isinstance(item, Fill) for item in items) == 12
+    assert discs(items) == 12
     circle = items[-1].segments.reshape(-1, 2)
     head = review.point_names.index("head")
     assert np.linalg.norm(circle - places[head], axis=-1) == pytest.approx(0.09 * metre[head], rel=0.01)
     assert metre[head] == pytest.approx(2.0 * 400.0 / -review.points[3, head, 2])
     unknown = SimpleNamespace(point_names=review.point_names, sigma_m=np.full_like(review.sigma_m, np.nan))
     items = skeleton(unknown, 3, places, metre, 0.05, STYLE)
-    assert sum(isinstance(item, Fill) for item in items) == 13
+    assert discs(items) == 13
 
 
 def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
@@ -171,7 +176,8 @@ def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
     assert frames.tolist() == list(range(17))
     assert window(38, 2, 10, FRAMES).tolist() == [36, 37, 38, 39]
     places = np.stack([30.0 * frames, np.full(len(frames), 7.0)], axis=-1)
-    past, ahead, dots, _, marks = path("wrist.L", places, frames, 12, [0, 12, 39], STYLE)
+    items = paths(["wrist.L"], places[None], frames, 12, np.array([0, 12, 39]), STYLE)
+    past, ahead, dots, _, marks = items
     assert past.segments[..., 0].max() == pytest.approx(360.0)
     assert len(past.segments) == 12
     assert ahead.segments[..., 0].min() == pytest.approx(360.0)
@@ -224,6 +230,21 @@ def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
     low, high = ground.corners[0].min(axis=0), ground.corners[0].max(axis=0)
     labels = [item for item in rest if isinstance(item, Label)]
     assert all(low[1] < label.y < high[1] - 8.0 and low[0] < label.x < high[0] for label in labels)
+
+
+def test_neighbours_that_are_alike_are_drawn_at_once() -> None:
+    """With their own colours, in their order; different ones are not mixed."""
+    line = np.zeros((2, 2, 2))
+    red, blue = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
+    thin = [Stroke(line, red, 1.0), Stroke(line + 1.0, [blue, red], 1.0)]
+    items = merged([*thin, Stroke(line, red, 2.0), Label("x", 0.0, 0.0), Fill(np.zeros((3, 4, 2)), blue)])
+    assert [type(item) for item in items] == [Stroke, Stroke, Label, Fill]
+    assert items[0].segments[:, 0, 0].tolist() == [0.0, 0.0, 1.0, 1.0]
+    assert items[0].color.tolist() == [list(color) for color in (red, red, blue, red)]
+    squares = merged(
+        [Fill(np.zeros((1, 4, 2)), red), Fill(np.zeros((2, 4, 2)), blue), Fill(np.zeros((1, 8, 2)), red)]
+    )
+    assert [len(item.corners) for item in squares] == [3, 1]
 
 
 def test_a_lost_review_draws_nothing(registered: None) -> None:

@@ -5,6 +5,7 @@ and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first 
 Blender has no shaders.
 """
 
+from collections.abc import Sequence
 from typing import Literal
 
 import blf
@@ -36,9 +37,9 @@ def ui_scale() -> float:
     return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
 
 
-def faded(color: ArrayLike, opacity: float) -> Color:
+def faded(color: Sequence[float], opacity: float) -> Color:
     """A colour of three or four numbers with its alpha multiplied by `opacity`."""
-    red, green, blue, *alpha = (float(value) for value in np.asarray(color, dtype=np.float64))
+    red, green, blue, *alpha = color
     return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
 
 

@@ -77,7 +77,11 @@ class Legend:
         right = max(label.x + text_size(label.words)[0] for label in labels) + edge
         left, bottom, top = self.x - edge, labels[0].y - edge, labels[-1].y + LINE * self.style.scale
         ground = np.array([[[left, bottom], [right, bottom], [right, top], [left, top]]])
-        return [Fill(ground, self.style.color(GROUND)), *self.items]
+        # Thick lines below thin ones, and each kind together: few calls draw them all.
+        strokes = [item for item in self.items if isinstance(item, Stroke)]
+        strokes.sort(key=lambda stroke: -stroke.width)
+        fills = [item for item in self.items if isinstance(item, Fill)]
+        return [Fill(ground, self.style.color(GROUND)), *strokes, *fills, *labels]
 
     def _line(self, words: str, parts: Array, dotted: bool) -> None:
         color, (ends,) = self.style.color(MIDDLE), self._sample()

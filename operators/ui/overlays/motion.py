@@ -14,7 +14,7 @@ from ..footage_view import FootageView
 from . import drawing
 from .legend import Legend, corner
 from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_outlines
-from .paths import path, window
+from .paths import paths, window
 from .picture import Item
 from .skeleton import skeleton
 from .style import Style, body_scale
@@ -103,13 +103,10 @@ def _outlines(
 def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, style: Style) -> list[Item]:
     review = what.review
     frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
-    places = view.places(review, frames)
-    keyframes = review.keyframe_indices.tolist()
-    items: list[Item] = []
-    for point, name in enumerate(review.point_names):
-        if name in settings.path_points:
-            items += path(name, places[:, point], frames, what.index, keyframes, style)
-    return items
+    chosen = [point for point, name in enumerate(review.point_names) if name in settings.path_points]
+    names = [review.point_names[point] for point in chosen]
+    places = np.swapaxes(view.places(review, frames)[:, chosen], 0, 1)
+    return paths(names, places, frames, what.index, review.keyframe_indices, style)
 
 
 def _explain(legend: Legend, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> None:
