@@ -12,7 +12,7 @@ from keymark.operators import results, takes
 from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import motion
 from keymark.operators.ui.overlays.clip_editor import ClipView
-from keymark.operators.ui.overlays.legend import Legend
+from keymark.operators.ui.overlays.legend import Sample, legend
 from keymark.operators.ui.overlays.paths import paths, window
 from keymark.operators.ui.overlays.picture import Fill, Label, Stroke, merged
 from keymark.operators.ui.overlays.skeleton import skeleton
@@ -135,7 +135,7 @@ def test_without_the_footage_there_are_no_outlines(scene: bpy.types.Scene) -> No
     looking = SimpleNamespace(perspective_matrix=Matrix.Identity(4), view_matrix=Matrix.Identity(4))
     scene.frame_set(20)
     lines = words(drawn(scene, world_view(region, looking, None)))
-    assert lines == ["Uncertain point", "Performer's right", "Performer's left"]
+    assert lines == ["Uncertain point", "Performer's right", "Performer's left"]  # from the bottom up
 
 
 def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:
@@ -222,11 +222,10 @@ def test_a_far_body_is_drawn_finer() -> None:
 
 def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
     """Empty, it is nothing."""
-    legend = Legend(40.0, 30.0, STYLE)
-    assert legend.finished() == []
-    legend.solid("Marker as seen")
-    legend.sentence("Hidden: shin.L, shin.R, forearm.L, forearm.R")
-    ground, *rest = legend.finished()
+    assert legend((), 40.0, 30.0, STYLE) == ()
+    rows = [(sample, f"Like {sample.value}, explained at length") for sample in Sample]
+    ground, *rest = legend(tuple(rows), 40.0, 30.0, STYLE)
+    assert len(words(rest)) == len(rows)
     low, high = ground.corners[0].min(axis=0), ground.corners[0].max(axis=0)
     labels = [item for item in rest if isinstance(item, Label)]
     assert all(low[1] < label.y < high[1] - 8.0 and low[0] < label.x < high[0] for label in labels)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .figures import circles, segments
 from .picture import Fill, Item, Stroke
-from .style import CORE, JOINT, LIMB, SIDES, Style, side_color
+from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, Style, side_color
 
 if TYPE_CHECKING:
     from ....core.review import Review
@@ -28,8 +28,6 @@ LIMBS = (
     ),
 )
 """Side and ends of each line."""
-CORE_SHARE = 0.45
-"""Share of a hollow limb's thickness that its core has."""
 
 
 def skeleton(

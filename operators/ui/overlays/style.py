@@ -17,6 +17,8 @@ CORE: Color = (0.08, 0.08, 0.08, 1.0)
 SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
 DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
+CORE_SHARE = 0.45
+"""Share of a hollow line's thickness that its core has."""
 LIMB = 2.4
 """How much thicker than outlines limbs are drawn."""
 METRE, SMALLEST = 160.0, 0.35
