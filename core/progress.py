@@ -1,7 +1,7 @@
 """Jobs that yield their progress: the one form every long computation has."""
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 Result = TypeVar("Result")
@@ -44,3 +44,14 @@ def within(
             result: Result = stop.value
             return result
         yield Progress(stage, first + (last - first) * fraction)
+
+
+def stretch(job: Job[Result], first: float, last: float) -> Job[Result]:
+    """Run a job as the stretch `first` to `last` of a longer one."""
+    while True:
+        try:
+            progress = next(job)
+        except StopIteration as stop:
+            result: Result = stop.value
+            return result
+        yield replace(progress, fraction=first + (last - first) * progress.fraction)

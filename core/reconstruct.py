@@ -1,6 +1,6 @@
 """The whole way from a take to a motion: one generator that the operator, command line and tests share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -12,8 +12,7 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.kalman import filter_clip
 from .estimate.whole_clip import estimate_whole_clip
-from .footage.album import Album, watched
-from .footage.markers import track_markers
+from .footage.read_clip import read_clip
 from .footage.reading import Reading
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
@@ -21,11 +20,12 @@ from .notes import clip_notes, evidence_notes, marker_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
-from .progress import Job, Progress, within
+from .progress import Job, Progress, stretch, within
 from .take import Take, check_frame_count, check_in_front, open_clip
 
 Array = NDArray[np.float64]
 
+FOLLOWING = "Following the markers"
 METHODS = ("map", "ekf", "interpolation")
 EXPECTED_RADIUS_M = 0.45
 """How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
@@ -47,6 +47,8 @@ class Reconstruction:
     """(F,) V_sum of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """What a person should know of the result, one sentence each."""
+    model: RegionModel
+    """What the motion predicts of the markers: calibrated on the keyframes, or average placements."""
 
     @property
     def tracks(self) -> RegionTracks:
@@ -60,8 +62,8 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
     Args:
         take: A validated take with at least two keyframes.
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        reading: What an earlier reconstruction has read of the same clip; it is then not opened again, and no
-            note speaks of it.
+        reading: What `read_footage` or an earlier reconstruction has read of the same clip, which is then not
+            opened again.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -86,38 +88,52 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
 def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
-        reading, of_the_clip = yield from _read(take)
-        notes, begun = notes + of_the_clip, EXTRACTION_SHARE
+        reading = yield from stretch(read_footage(take), 0.0, EXTRACTION_SHARE)
+        begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
+    notes += reading.notes
     tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion = baseline
+    motion, model = baseline, _average_model(take)
     if method == "map":
-        motion, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
+        motion, model, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
         notes += of_the_keyframes
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes)
+    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model)
 
 
-def _read(take: Take) -> Job[tuple[Reading, tuple[str, ...]]]:
-    """What is to be read of the take's clip, and what a person should know of the clip."""
+def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
+    """Read what is to be read of a take's clip.
+
+    Args:
+        take: A take; keyframes tell where its markers are looked for first, and are not needed.
+        kept: What was read before, of whatever clip; it is used as far as it still holds (see `read_clip`).
+
+    Yields:
+        Progress.
+
+    Returns:
+        The same as without `kept`.
+
+    Raises:
+        InputError: The clip cannot be used, or a colour matches nothing in it.
+    """
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
-    expected = expected_regions(take, clip.frame_count)
+    expected = expected_regions(take, take.frame_count or clip.frame_count) if take.keyframes else None
     # Before a camera that moves, no background stands still to tell the performer from.
-    album = None if take.camera.is_moving else Album()
-    filmed = clip if album is None else watched(clip, album)
-    tracks = yield from within(
-        "Following the markers", track_markers(filmed, take.markers, expected), 0.0, EXTRACTION_SHARE
+    with_album = not take.camera.is_moving
+    reading = yield from within(
+        FOLLOWING, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0
     )
-    check_frame_count(take, tracks.frame_count)
-    return Reading(tracks, album), clip_notes(take, clip, tracks)
+    check_frame_count(take, reading.tracks.frame_count)
+    return replace(reading, notes=clip_notes(take, clip, reading.tracks))
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
@@ -132,14 +148,21 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     """Where the interpolated keyframes put each marker, with a generous radius."""
     prior = interpolate(take.keyframes, frame_count)
-    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
-    model = RegionModel(take.body, take.camera, placements)
-    centre = np.empty((frame_count, len(placements), 2))
+    model = _average_model(take)
+    centre = np.empty((frame_count, len(take.markers), 2))
     for frame in _chunks(frame_count):
         centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
-    return ExpectedRegions(centre, np.repeat(radius[:, None], len(placements), axis=1))
+    # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
+    centre, radius = np.round(64.0 * centre) / 64.0, np.round(64.0 * radius) / 64.0
+    return ExpectedRegions(centre, np.repeat(radius[:, None], len(take.markers), axis=1))
+
+
+def _average_model(take: Take) -> RegionModel:
+    """The markers as they sit on an average performer."""
+    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
+    return RegionModel(take.body, take.camera, placements)
 
 
 def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
@@ -149,7 +172,7 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 def _whole_clip(
     take: Take, reading: Reading, prior: Posture, begun: float
-) -> Job[tuple[Motion, tuple[str, ...]]]:
+) -> Job[tuple[Motion, RegionModel, tuple[str, ...]]]:
     tracks = reading.tracks
     estimate = estimate_whole_clip(
         take.body,
@@ -170,7 +193,7 @@ def _whole_clip(
         "distrust": result.evidence.distrust,
     }
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
-    return motion, evidence_notes(take, result.evidence)
+    return motion, result.evidence.model, evidence_notes(take, result.evidence)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

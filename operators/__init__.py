@@ -13,6 +13,7 @@ MODULES = (
     "ui.properties.progress",
     "ui.properties.overlays",
     "ui.properties.scene",
+    "results",
     "open_take",
     "save_take",
     "load_footage",

@@ -24,6 +24,7 @@ class Drawn:
     images: list[np.ndarray]
     fps: float = 30.0
     passes: int = 0
+    decoded: int = 0
     size: tuple[int, int] = SIZE
     frame_count: int = field(init=False)
 
@@ -44,6 +45,12 @@ class Drawn:
     def at(self, indices: list[int]) -> Iterator[tuple[int, np.ndarray]]:
         """Yield some frames."""
         yield from ((index, self.images[index]) for index in indices if index < self.frame_count)
+
+    def onward(self, first: int) -> Iterator[tuple[float, np.ndarray]]:
+        """Yield the frames from one on; how many is counted."""
+        for index in range(max(first, 0), self.frame_count):
+            self.decoded += 1
+            yield index / self.fps, self.images[index]
 
 
 Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], float]

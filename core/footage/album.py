@@ -6,9 +6,9 @@ a coarse grid. Compressed pictures of that grid take some kilobytes each: ten mi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -46,6 +46,24 @@ class Album:
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
         return Album(self.factor, kept)
 
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the pictures one after the other as they are packed, with their frames and ends."""
+        frames = sorted(self._pictures)
+        packed = [self._pictures[frame].ravel() for frame in frames]
+        return {
+            "factor": np.array(self.factor),
+            "frame": np.array(frames, dtype=np.int64),
+            "end": np.cumsum([len(one) for one in packed], dtype=np.int64),
+            "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *packed]),
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Album:
+        """Return the album that `to_arrays` gave."""
+        pictures = np.split(arrays["picture"], arrays["end"])
+        kept = dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
+        return cls(int(arrays["factor"]), kept)
+
     def __contains__(self, index: int) -> bool:
         """Whether there is a picture of a frame."""
         return index in self._pictures
@@ -82,6 +100,10 @@ class _WatchedSource:
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices."""
         return self.source.at(indices)
+
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield the frames from about one on."""
+        return self.source.onward(first)
 
 
 def watched(clip: Clip, album: Album) -> Clip:

@@ -40,6 +40,10 @@ class FrameSource(Protocol):
         """Yield the frames of ascending indices, as far as they exist."""
         ...
 
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield time in seconds and image of the frames from about one on."""
+        ...
+
 
 @dataclass(frozen=True)
 class Clip:
@@ -109,8 +113,8 @@ class Clip:
         """Whether the frames are unevenly spaced in time; takes a pass over the clip."""
         return is_variable_frame_rate(self.time_stamps())
 
-    def sample(self, count: int) -> list[tuple[int, Image]]:
-        """Return about `count` frames spread evenly over the clip, each with its index.
+    def sample(self, count: int) -> Iterator[tuple[int, Image]]:
+        """Yield about `count` frames spread evenly over the clip, each with its index.
 
         Raises:
             ValueError: count is below 1.
@@ -119,5 +123,4 @@ class Clip:
             raise ValueError(f"count must be at least 1, not {count}")
         # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
         middles = (np.arange(count) + 0.5) * self.frame_count / count
-        indices = sorted({int(index) for index in middles})
-        return list(self.source.at(indices))
+        return self.source.at(sorted({int(index) for index in middles}))

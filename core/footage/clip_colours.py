@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..files.digest import digest
 from .colour_learning import LearnedColours, learn_colours
 from .colour_model import ColourModel
 from .colour_names import nearest_colours, share_of_colour
 from .marker_style import MarkerStyle, colour_groups
+from .sightings import Lesson, Sightings
 from .tracks import ExpectedRegions
 from .working_image import halvings, learning_image, measuring_image
 
@@ -38,6 +40,8 @@ class ClipColours:
 
     Attributes:
         groups: of each colour, the markers that bear it; more than one where samples are alike.
+        lessons: how the colours were learned so far.
+        samples: the images that were learned from, by their frames.
     """
 
     def __init__(
@@ -62,6 +66,8 @@ class ClipColours:
         self._spacing = 1
         self._learned: LearnedColours | None = None
         self._most_found = np.zeros(len(self.groups), dtype=np.int64)
+        self.lessons: list[Lesson] = []
+        self.samples: dict[int, Image] = {}
 
     @property
     def model(self) -> ColourModel:
@@ -95,6 +101,15 @@ class ClipColours:
             self._spacing = min(3 * self._spacing, _WIDEST_SPACING)
             self._learn()
 
+    def learn_again(self, earlier: Sightings) -> bool:
+        """Learn from what was learned from before; tell whether it teaches exactly the same."""
+        for lesson in earlier.lessons:
+            self._samples = [(index, earlier.samples[index]) for index in lesson.frames]
+            self._learn()
+            if self.lessons[-1] != lesson:
+                return False
+        return bool(earlier.lessons)
+
     def check_found(self) -> None:
         """Refuse colours that were found nowhere.
 
@@ -102,23 +117,19 @@ class ClipColours:
             InputError: a marker's colour matches nothing in the clip; the sentence names colours that are
                 there, or says that the surroundings have it too.
         """
-        missing = self._missing
-        if self._learned is None or not missing.size:
-            return
-        style = self._styles[self.groups[int(missing[0])][0]]
-        colour, counts = list(style.color_srgb), self._learned.background_counts
-        share = share_of_colour(counts, style.color_srgb)
-        if share > _COMMON_COLOUR:
-            raise InputError(
-                f"{self._path}: marker {style.name} has the colour {colour}, which {100.0 * share:.0f} % of "
-                "the picture around the markers have too, so nothing tells it from them; wear a colour that "
-                "the surroundings do not have"
-            )
-        nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
-        raise InputError(
-            f"{self._path}: marker {style.name} has the colour {colour}, which matches nothing in the clip; "
-            f"pick it on the marker in a frame (the nearest colours found are {nearest})"
-        )
+        for sentence in self.complaints().values():
+            raise InputError(f"{self._path}: marker {sentence}")
+
+    def complaints(self) -> dict[int, str]:
+        """Return of each marker that was found nowhere, by index, a sentence that begins with its name."""
+        if self._learned is None:
+            return {}
+        counts = self._learned.background_counts
+        return {
+            marker: _complaint(self._styles[marker], counts)
+            for colour in self._missing.tolist()
+            for marker in self.groups[colour]
+        }
 
     @property
     def _missing(self) -> NDArray[np.intp]:
@@ -134,6 +145,10 @@ class ClipColours:
             ]
         self._learned = learn_colours([image for _, image in self._samples], samples, allowed)
         self._most_found = np.maximum(self._most_found, self._learned.found)
+        model = self._learned.model
+        taught = digest(model.label, model.probability, self._learned.found)
+        self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
+        self.samples.update(self._samples)
 
     def _allowed(
         self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions
@@ -158,3 +173,19 @@ class ClipColours:
 def _mean_colour(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
     red, green, blue = np.round(np.mean([style.color_srgb for style in styles], axis=0)).astype(int).tolist()
     return red, green, blue
+
+
+def _complaint(style: MarkerStyle, counts: NDArray[np.float64]) -> str:
+    """Say why a colour cannot be found among the background's, (CELL_COUNT,) pixels of each colour cell."""
+    colour = list(style.color_srgb)
+    share = share_of_colour(counts, style.color_srgb)
+    if share > _COMMON_COLOUR:
+        return (
+            f"{style.name} has the colour {colour}, which {100.0 * share:.0f} % of the picture around the "
+            "markers have too, so nothing tells it from them; wear a colour that the surroundings do not have"
+        )
+    nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
+    return (
+        f"{style.name} has the colour {colour}, which matches nothing in the clip; "
+        f"pick it on the marker in a frame (the nearest colours found are {nearest})"
+    )

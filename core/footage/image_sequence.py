@@ -56,6 +56,10 @@ class ImageSequence:
         """Yield the images of ascending indices, as far as they exist."""
         yield from ((index, self._read(index)) for index in indices if index < self.frame_count)
 
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield time in seconds and image of the files from one on."""
+        yield from ((index / self.fps, self._read(index)) for index in range(max(first, 0), self.frame_count))
+
     def _read(self, index: int) -> Image:
         image = read_image(self.paths[index])
         if (image.shape[1], image.shape[0]) != self.size:

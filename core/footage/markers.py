@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .association import (
-    Candidates,
-    candidates,
-    main_path,
-    region_costs,
-    rivals_costs,
-    still_clutter,
-    typical_area,
-)
+from .association import candidates, main_path
 from .clip import Clip
 from .clip_colours import ClipColours
-from .colour_model import ColourModel
-from .marker_style import MarkerStyle
+from .marker_style import MarkerStyle, colour_groups
 from .moments import centroid_and_second_moment
-from .pieces import join_pieces, region_quality
+from .own_regions import own_regions
+from .pieces import region_quality
 from .regions import NO_REGIONS, Regions, find_regions
+from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
 from .working_image import halvings, measuring_image
 
@@ -33,28 +27,6 @@ _STRETCH_BYTES: Final = 100_000_000
 """Memory for the images that wait until the colours are learned: five seconds of video and more."""
 _TOGETHER: Final = 4
 """Images that are looked at together: enough to make little of the cost of every step."""
-_SAMPLED_FRAMES: Final = 12
-_DEAREST_PIECE: Final = 10.0
-
-
-def learn_model(
-    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
-) -> ColourModel:
-    """Learn the markers' colours from frames spread over a clip, for previews of its masks.
-
-    Args:
-        clip: the footage.
-        styles: the markers, M of them.
-        expected: where they may be, to learn from the marker rather than from clutter of its colour.
-
-    Raises:
-        InputError: a marker's colour matches nothing in the clip; the sentence names colours that are there.
-    """
-    colours = ClipColours(clip.path, clip.size, styles, expected)
-    times = halvings(clip.size)
-    colours.learn([measuring_image(image, times) for _, image in clip.sample(_SAMPLED_FRAMES)])
-    colours.check_found()
-    return colours.model
 
 
 def track_markers(
@@ -80,12 +52,32 @@ def track_markers(
         InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
+    seen = yield from sight_markers(clip, styles, expected)
+    yield 1.0
+    return tell_markers(seen, styles, expected)
+
+
+def sight_markers(
+    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> Generator[float, None, Sightings]:
+    """Find all regions of the markers' colours in a clip, in one pass; see `track_markers`."""
     colours = ClipColours(clip.path, clip.size, styles, expected)
     regions, time_s = yield from _all_regions(clip, colours)
     colours.check_found()
-    tracks = _tracks(regions, styles, colours.groups, expected, time_s, clip.size)
-    yield 1.0
-    return tracks
+    return Sightings(tuple(regions), time_s, clip.size, tuple(colours.lessons), colours.samples)
+
+
+def still_hold(seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
+    """Tell whether exactly the same would be found in the clip with the markers expected elsewhere."""
+    colours = ClipColours(Path(), seen.size, styles, expected)
+    return colours.learn_again(seen)
+
+
+def tell_markers(
+    seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> RegionTracks:
+    """Tell which of the regions that were found are the markers'; see `track_markers`."""
+    return tracks_of_regions(seen.regions, styles, colour_groups(styles), expected, seen.time_s, seen.size)
 
 
 def _all_regions(
@@ -134,7 +126,7 @@ def _regions_of_stretch(
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
-def _tracks(
+def tracks_of_regions(
     regions: Sequence[Regions],
     styles: Sequence[MarkerStyle],
     groups: Sequence[Sequence[int]],
@@ -144,26 +136,9 @@ def _tracks(
 ) -> RegionTracks:
     """Tell which regions are the markers', over the whole clip at once."""
     found = [candidates(regions, colour, 2.0 ** halvings(size)) for colour in range(len(groups))]
-    alone = [len(group) == 1 for group in groups]
-    clutter = [
-        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
-        for one, single in zip(found, alone, strict=True)
-    ]
-    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
-    reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
-    joined = {}
-    for colour, group in enumerate(groups):
-        one = found[colour]
-        length = _length(one, clutter[colour], usual[colour])
-        taken = np.zeros(len(one.frame), dtype=np.bool_)
-        for marker in group:
-            cost = region_costs(one, clutter[colour], usual[colour], expected, marker)
-            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
-            path = main_path(one, cost, length)
-            joined[marker] = join_pieces(one, path, cost, reach, _DEAREST_PIECE)
-            taken[path[path >= 0]] = True
+    joined = own_regions(found, groups, expected, main_path)
     rows = [joined[marker] for marker in range(len(styles))]
-    moments = np.stack([row[0] for row in rows], axis=1)  # (F, M, 6)
+    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
     area = moments[..., 0]
     return RegionTracks(
@@ -171,8 +146,8 @@ def _tracks(
         centroid=centroid,
         second_moment=second,
         area=np.where(area > 0.0, area, np.nan),
-        quality=np.stack([region_quality(row[0][:, 0], row[1], row[2], row[3]) for row in rows], axis=1),
-        clipped=np.stack([row[1] for row in rows], axis=1),
+        quality=np.stack([region_quality(row) for row in rows], axis=1),
+        clipped=np.stack([row.clipped for row in rows], axis=1),
         time_s=time_s,
         size=size,
         notes=_notes(styles, groups, expected is not None),
@@ -187,12 +162,3 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
         for group in groups
         if len(group) > 1
     )
-
-
-def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
-    """Return the marker's length in px: the long axis of regions of the usual size."""
-    full = ~clutter & (found.area >= 0.7 * usual_area)
-    if not full.any():
-        return 1.0
-    _, second = centroid_and_second_moment(found.moments[full])
-    return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,25 @@ _AREA_WINDOW: Final = 31
 _CLIPPED_QUALITY: Final = 0.4
 
 
+class OwnRegion(NamedTuple):
+    """What of the regions of its colour is a marker's, in each of F frames.
+
+    Attributes:
+        moments: (F, 6) raw moments, zero where hidden.
+        clipped: (F,) whether it touches the image's border.
+        certainty: (F,) of its colour, in 0..1.
+        share: (F,) share of its largest piece in its area.
+    """
+
+    moments: FloatArray
+    clipped: BoolArray
+    certainty: FloatArray
+    share: FloatArray
+
+
 def join_pieces(
     found: Candidates, path: IntArray, cost: FloatArray, reach_px: float, most_cost: float
-) -> tuple[FloatArray, BoolArray, FloatArray, FloatArray]:
+) -> OwnRegion:
     """Add to each frame's main region the pieces that an arm before the marker cut off from it.
 
     Args:
@@ -30,10 +46,6 @@ def join_pieces(
         cost: (N,) cost of each region; too costly ones are clutter.
         reach_px: widest gap between a piece and the main region.
         most_cost: highest cost of a piece.
-
-    Returns:
-        Raw moments (F, 6), zero where hidden; clipped (F,); colour certainty (F,); the main piece's share
-        (F,).
     """
     frames = len(path)
     main = path[found.frame]  # (N,) of each region, the main one of its frame
@@ -48,23 +60,16 @@ def join_pieces(
     share = np.zeros(frames)
     seen = np.flatnonzero(path >= 0)
     share[seen] = found.area[path[seen]] / area[seen]
-    return moments, clipped, certainty, share
+    return OwnRegion(moments, clipped, certainty, share)
 
 
-def region_quality(
-    area: FloatArray, clipped: BoolArray, certainty: FloatArray, share: FloatArray
-) -> FloatArray:
+def region_quality(own: OwnRegion) -> FloatArray:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
     The product of the area against the full area seen in frames around, of clipping by the image's border, of
     the colour's certainty, and of the scatter of its pieces.
-
-    Args:
-        area: (F,) px, 0 where hidden.
-        clipped: (F,).
-        certainty: (F,) in 0..1.
-        share: (F,) share of the main piece in the area.
     """
+    area = own.moments[:, 0]
     if not np.any(area > 0.0):
         return np.zeros(len(area))
     seen = area > 0.0
@@ -72,7 +77,7 @@ def region_quality(
     full[seen] = percentile_filter(area[seen], 80, size=min(_AREA_WINDOW, int(seen.sum())), mode="nearest")
     ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
-    quality = whole * certainty * (0.5 + 0.5 * share) * np.where(clipped, _CLIPPED_QUALITY, 1.0)
+    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, _CLIPPED_QUALITY, 1.0)
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
 
 

@@ -1,8 +1,11 @@
 """What one pass over a clip leaves for everything that follows."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from .album import Album
+from .sightings import Sightings
 from .tracks import RegionTracks
 
 
@@ -13,7 +16,13 @@ class Reading:
     Attributes:
         tracks: the markers' regions in every frame.
         album: a small picture of every frame; None where nothing is to be looked for but markers.
+        sightings: all regions of the markers' colours; None where they were not kept.
+        notes: sentences on what may be wrong with the clip.
+        key: of what it was read from and how, see `reading_key`; empty where nobody knows.
     """
 
     tracks: RegionTracks
     album: Album | None = None
+    sightings: Sightings | None = None
+    notes: tuple[str, ...] = ()
+    key: str = ""

@@ -15,7 +15,7 @@ from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search import MARGIN, Box, boxes_to_measure, coloured_boxes
 from .sheet import Sheet, Window, lay_out
-from .working_image import halvings, searching_factor, searching_image, smooth
+from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -97,20 +97,30 @@ def find_regions(
     return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
 
 
-def marker_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
-    """Return the coverage of each pixel by each colour, (C, rows, columns) in 0..1, for previews."""
-    height, width = image.shape[:2]
-    times = halvings((width, height))
-    shares = []
-    for colour in range(len(model.distributions)):
-        around = (-MARGIN, -MARGIN, (width >> times) + MARGIN, (height >> times) + MARGIN)
-        sheet = lay_out([image], [Window(0, times, colour, *around)])
+def colour_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
+    """Return the coverage of each pixel of the measuring grid by each colour, (C, rows, columns) in 0..1.
+
+    For previews: it is what the extraction measures, clutter of the markers' colours included.
+
+    Args:
+        image: (rows, columns, 3) of the clip's size.
+        model: the markers' colours, C of them.
+    """
+    grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
+    label = model.labels(smooth(grid))
+    masks = np.zeros((len(model.distributions), *grid.shape[:2]), dtype=np.float32)
+    for colour, mask in enumerate(masks):
+        left, top, columns, rows = cv2.boundingRect(np.equal(label, colour).view(np.uint8))
+        if not columns:
+            continue
+        around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
+        sheet = lay_out([grid], [Window(0, 0, colour, *around)])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
-        share = share[MARGIN : MARGIN + (height >> times), MARGIN : MARGIN + (width >> times)]
-        shares.append(share if times == 0 else np.asarray(cv2.resize(share, (width, height))))
-    return np.stack(shares)
+        a, b, c, d = np.clip(around, 0, (*grid.shape[1::-1], *grid.shape[1::-1])).tolist()
+        mask[b:d, a:c] = share[b - around[1] : d - around[1], a - around[0] : c - around[0]]
+    return masks
 
 
 class _Components(NamedTuple):

@@ -77,29 +77,53 @@ class VideoFile:
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices, as far as they exist.
 
-        Short clips are run through once; in long ones the file is searched, and run through where that fails.
+        Short gaps are run through; in long ones the file is searched, and run through where that fails.
         """
-        if self.frame_count > _FRAMES_PER_SEEK * len(indices):
-            found = [(index, image) for index in indices if (image := self._seek(index)) is not None]
-            if len(found) == len(indices):
-                yield from found
-                return
+        with self._capture() as capture:
+            position = 0
+            for done, index in enumerate(indices):
+                if index - position > _FRAMES_PER_SEEK:
+                    found = capture.set(cv2.CAP_PROP_POS_FRAMES, index) and capture.grab()
+                    if not found:
+                        yield from self._run_through(indices[done:])
+                        return
+                else:
+                    found = all(capture.grab() for _ in range(index + 1 - position))
+                if not found:
+                    return
+                position = index + 1
+                decoded, picture = capture.retrieve()
+                if decoded:
+                    yield index, _as_image(picture)
+
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield time in seconds and image of the frames from about one on.
+
+        The file is searched where that is quicker; at a variable rate another frame may be found, but the
+        times are its own.
+        """
+        with self._capture() as capture:
+            index, previous = 0, -np.inf
+            if first > _FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
+                index = first
+            while capture.grab():
+                previous = self._stamp(capture, index, previous)
+                if index >= first:
+                    decoded, picture = capture.retrieve()
+                    if decoded:
+                        yield previous, _as_image(picture)
+                index += 1
+
+    def _run_through(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         wanted = set(indices)
         with self._capture() as capture:
-            for index in range(max(wanted, default=-1) + 1):
+            for index in range(indices[-1] + 1):
                 if not capture.grab():
                     return
                 if index in wanted:
                     decoded, picture = capture.retrieve()
                     if decoded:
                         yield index, _as_image(picture)
-
-    def _seek(self, index: int) -> Image | None:
-        with self._capture() as capture:
-            if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
-                return None
-            found, image = capture.read()
-            return _as_image(image) if found and image is not None else None
 
     def _stamp(self, capture: cv2.VideoCapture, index: int, previous: float) -> float:
         """Return the time of the frame just read; where the file has no usable stamps, count frames."""

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..footage.ellipse import ellipse_outline
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take
@@ -18,7 +19,6 @@ Array = NDArray[np.float64]
 CELL_WIDTH = 400
 COLUMNS = 4
 LIMB_WIDTH = 3.5
-CORNERS = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
 
 
 def overlay_sheet(take: Take, motion: Motion, tracks: RegionTracks, images: Mapping[int, Image]) -> Image:
@@ -77,11 +77,7 @@ def _draw_region(
     centre = scale * tracks.centroid[frame, marker]
     if not np.isfinite(centre).all():
         return
-    values, vectors = np.linalg.eigh(scale**2 * tracks.second_moment[frame, marker])
-    # An even ellipse has a quarter of its squared half-axes as second moments.
-    half_axes = 2.0 * np.sqrt(np.maximum(values, 0.0))
-    circle = np.stack([np.cos(CORNERS), np.sin(CORNERS)], axis=-1)
-    outline = centre + (circle * half_axes) @ vectors.T
+    outline = ellipse_outline(centre, scale**2 * tracks.second_moment[frame, marker])
     tile.line(outline, WHITE, 2.6, closed=True)
     tile.line(outline, color, 1.4, closed=True)
     for step in (np.array([4.0, 0.0]), np.array([0.0, 4.0])):

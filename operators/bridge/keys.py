@@ -130,6 +130,39 @@ def set_posed_keys(
     _write_keys(fcurve, keys)
 
 
+def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
+    """Replace a curve's keys by ones of the animator's own type, on a smooth curve of given slopes.
+
+    The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
+    cubic that has the keys' values and slopes.
+
+    Args:
+        fcurve: The curve.
+        frames: (K,) scene frames, rising.
+        values: (K,) values of the property.
+        slopes: (K,) change of the property per frame.
+    """
+    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    third = np.diff(frames) / 3.0
+    before, after = np.concatenate([third[:1], third]), np.concatenate([third, third[-1:]])
+    keys["handle_left"] = np.column_stack([frames - before, values - slopes * before]).astype(np.float32)
+    keys["handle_right"] = np.column_stack([frames + after, values + slopes * after]).astype(np.float32)
+    for name in ("handle_left_type", "handle_right_type"):
+        keys[name] = np.full(len(frames), _enum_value(name, "ALIGNED"), np.int32)
+    _write_keys(fcurve, keys)
+
+
+def write_linear_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array) -> None:
+    """Replace a curve's keys by ones of the animator's own type, linear between frames.
+
+    Args:
+        fcurve: The curve.
+        frames: (K,) scene frames, rising.
+        values: (K,) values of the property.
+    """
+    _write_keys(fcurve, _new_keys(frames, values, "KEYFRAME", "LINEAR"))
+
+
 def _distances(frames: NDArray[np.generic], others: NDArray[np.generic]) -> Array:
     """(N,) distance from each frame to the nearest of others."""
     apart = np.subtract.outer(frames.astype(np.float64), others.astype(np.float64))

@@ -24,8 +24,10 @@ HEIGHTS = {
     "core.estimate": 5,
     "core.take": 6,
     "core.motion": 6,
+    "core.finish": 6,
     "core.reconstruct": 7,
     "core.report": 8,
+    "core.review": 8,
     "operators.bridge": 9,
     "operators": 10,
 }

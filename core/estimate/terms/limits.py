@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..clip_state import ClipState
 from .term import NormalEquations
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -16,10 +19,14 @@ class LimitTerm:
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each hinge, zero within its range."""
-        skeleton = state.prior.skeleton
-        hinges = skeleton.hinge_dofs
-        lower, upper = skeleton.limits[hinges].T
-        angles = state.posture.angles
-        excess = (angles - np.clip(angles, lower, upper)) / self.std_rad
+        excess = self.excess(state)
+        hinges = state.prior.skeleton.hinge_dofs
         past = (excess != 0.0) / self.std_rad
         equations.add_rows(excess, state.chain[:, hinges] * past[..., None])
+
+    def excess(self, state: ClipState) -> Array:
+        """(F, H) how far each hinge is past its range [standard deviations]."""
+        skeleton = state.prior.skeleton
+        lower, upper = skeleton.limits[skeleton.hinge_dofs].T
+        angles = state.posture.angles
+        return np.asarray((angles - np.clip(angles, lower, upper)) / self.std_rad)

@@ -19,6 +19,10 @@ Array = NDArray[np.float64]
 
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
+GROUPS = (slice(0, 2), slice(2, FEATURES))
+"""Rows that are doubted together: place and shape."""
+CONTRADICTED = 20.0
+"""Cost of a marker that is seen where it should be hidden."""
 SMALLEST_DEVIATION_PX = 0.6
 AREA_TOLERANCE = 0.25
 """Share of an area that may be missing for other reasons than that something is before it."""
@@ -184,18 +188,39 @@ class RegionTerm:
             residual.reshape(shape), jacobian.reshape(*shape, -1), weight.reshape(shape)
         )
 
+    def misfit(self, state: ClipState) -> Array:
+        """(F, M) what each marker costs: the negative logarithm of Student's t, up to a constant.
+
+        A marker that is seen where the posture hides it costs as much as one that is far off.
+        """
+        predicted = self.model.evaluate(state.pose, state.frame)
+        residual, _ = feature_rows(self.observed, predicted)
+        residual = residual + state.bias.reshape(residual.shape)
+        information = self._information(residual, predicted)
+        squared = np.nan_to_num(residual) ** 2 * information
+        cost = np.zeros(squared.shape[:2])
+        for group in GROUPS:
+            size = self.noise.degrees * (group.stop - group.start)
+            cost += 0.5 * size * np.log1p(squared[..., group].sum(-1) / size)
+        contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
+        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost))
+
     def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
         """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
-        usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
-        trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
-        variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
-        variance = variance * self.distrust[:, None] ** 2
-        variance = variance + missing_variance(self.observed.area, self.whole, predicted)
-        information = np.where(usable, trust, 0.0)[..., None] / (variance * temperature)
+        information = self._information(residual, predicted) / temperature
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
-        for group in (slice(0, 2), slice(2, FEATURES)):
+        for group in GROUPS:
             size = group.stop - group.start
             information[..., group] *= student_weight(squared[..., group].sum(-1), self.noise.degrees, size)[
                 ..., None
             ]
         return np.asarray(information)
+
+    def _information(self, residual: Array, predicted: RegionPrediction) -> Array:
+        """The same before what is far off counts for less."""
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
+        trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
+        variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
+        variance = variance * self.distrust[:, None] ** 2
+        variance = variance + missing_variance(self.observed.area, self.whole, predicted)
+        return np.asarray(np.where(usable, trust, 0.0)[..., None] / variance)

@@ -26,6 +26,12 @@ class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
     frame: bpy.props.IntProperty(name="Frame", description="The scene frame that is proposed")
 
 
+class KEYMARK_PG_note(bpy.types.PropertyGroup):
+    """What the last run says of its result."""
+
+    text: bpy.props.StringProperty(name="Note", description="A sentence that the last reconstruction left")
+
+
 class KEYMARK_PG_take(bpy.types.PropertyGroup):
     """A performer in a clip."""
 
@@ -81,6 +87,20 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         description="The Action that holds the reconstructed motion",
         type=bpy.types.Action,
     )
+    live_preview: bpy.props.BoolProperty(
+        name="Live Preview",
+        description="Let the actor follow while frames are solved; without it the result comes sooner",
+        default=True,
+    )
+    notes: bpy.props.CollectionProperty(type=KEYMARK_PG_note)
+    reading_key: bpy.props.StringProperty(
+        name="Reading", description="Under which key lies what was read of the clip", options={"HIDDEN"}
+    )
+    review_key: bpy.props.StringProperty(
+        name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
+    )
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_proposal, KEYMARK_PG_take))
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_proposal, KEYMARK_PG_note, KEYMARK_PG_take)
+)

@@ -56,7 +56,7 @@ def test_sampling_puts_nothing_into_the_album() -> None:
     """Only the pass over all frames fills it; a frame never read has no picture."""
     album = Album()
     clip = watched(Clip(Path("drawn"), Drawn()), album)
-    assert len(clip.sample(2)) == 2
+    assert len(list(clip.sample(2))) == 2
     assert 0 not in album
     with pytest.raises(KeyError):
         album.picture(0)

@@ -49,7 +49,7 @@ def test_samples_are_spread_over_the_clip_and_are_the_frames_they_say(
 ) -> None:
     """Whether the file is run through or searched, and with more samples asked for than frames exist."""
     path = write_video(tmp_path / "clip.mp4", frames, 30.0)
-    sampled = Clip.open(path).sample(count)
+    sampled = list(Clip.open(path).sample(count))
     assert len(sampled) == min(count, frames)
     for index, image in sampled:
         assert image.mean() == pytest.approx(level(index), abs=8)

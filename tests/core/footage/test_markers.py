@@ -13,8 +13,7 @@ from keymark.core.errors import InputError
 from keymark.core.footage.clip import Clip
 from keymark.core.footage.colour_learning import learn_colours
 from keymark.core.footage.marker_style import MarkerStyle
-from keymark.core.footage.markers import learn_model, track_markers
-from keymark.core.footage.regions import marker_masks
+from keymark.core.footage.markers import track_markers
 from keymark.core.footage.tracks import ExpectedRegions, RegionTracks
 
 
@@ -130,18 +129,6 @@ def test_a_colour_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
     clip = clip_of([draw(moving(index), rng) for index in range(20)])
     with pytest.raises(InputError, match=r"marker shin.*\[40, 220, 60\].*nearest.*\[\d+, \d+, \d+\]"):
         finish(track_markers(clip, (*STYLES, MarkerStyle("shin", "shin.L", (40, 220, 60)))))
-
-
-def test_previews_show_what_the_extraction_measures() -> None:
-    """The masks' coverage sums to the regions' areas and every mask lies where its marker is."""
-    rng = np.random.default_rng(10)
-    images = [draw(moving(index), rng) for index in range(12)]
-    clip = clip_of(images)
-    tracks = finish(track_markers(clip, STYLES))
-    masks = marker_masks(images[5], learn_model(clip, STYLES))
-    assert masks.shape == (2, 240, 320)
-    np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
-    assert masks[0][90:92, 70:80].max() <= 1.0 and masks[0][120, 250] == 0.0 and masks[1][120, 250] == 1.0
 
 
 def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_one() -> None:

@@ -1,0 +1,58 @@
+"""How a person stands when nothing else is known: upright, arms hanging, facing -Y."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import rotations
+from .kinematics import Body
+from .posture import Posture
+from .skeleton import SIDES
+
+Array = NDArray[np.float64]
+
+ARMS_LOWERED_RAD = np.radians(75.0)
+"""From the T pose; sleeves keep the arms from the trunk."""
+ELBOWS_BENT_RAD = np.radians(10.0)
+
+
+def standing_posture(body: Body, place: Array | None = None, heading_rad: float = 0.0) -> Posture:
+    """A posture that stands upright on the ground.
+
+    Args:
+        body: The actor's body; its skeleton must be the default human one.
+        place: (3,) the ground between the feet [m]; the world's origin by default.
+        heading_rad: Turn about the world's Z from facing -Y.
+    """
+    skeleton = body.skeleton
+    column = {name: i for i, name in enumerate(skeleton.dof_names)}
+    vector = np.zeros(skeleton.dof_count)
+    for side, out in zip(SIDES, (1.0, -1.0), strict=True):
+        vector[column[f"shoulder.{side}.rotation_y"]] = out * ARMS_LOWERED_RAD
+        vector[column[f"elbow.{side}.flexion"]] = ELBOWS_BENT_RAD
+    vector[column["pelvis.rotation_z"]] = heading_rad
+    vector[:3] = np.zeros(3) if place is None else place
+    vector[2] += hip_height_m(body)
+    return Posture.from_vector(skeleton, vector)
+
+
+def hip_height_m(body: Body) -> float:
+    """Height of the hips' midpoint above the soles of a body that stands upright [m]."""
+    pose = body.pose(Posture.rest(body.skeleton))
+    ends = [body.segment_ends(pose, segment.name)[1] for segment in body.skeleton.segments]
+    return -float(np.min(np.stack(ends)[:, 2]))
+
+
+def facing_rad(direction: Array) -> float:
+    """The heading of someone who looks along a world direction (3,); straight up or down counts as -Y."""
+    x, y = float(direction[0]), float(direction[1])
+    return float(np.arctan2(x, -y)) if np.hypot(x, y) > 1e-9 else 0.0
+
+
+def turned(posture: Posture, angle_rad: Array) -> Posture:
+    """A posture turned about the vertical through its hips by each of N angles: a batch of N."""
+    axis = np.array([0.0, 0.0, 1.0])
+    turn = rotations.exponential(np.asarray(angle_rad)[:, None] * axis)
+    batch = Posture.stack([posture] * len(turn))
+    matrices = np.array(batch.rotations)
+    matrices[:, 0] = turn @ matrices[:, 0]
+    return Posture(posture.skeleton, batch.translation, matrices, batch.angles)

@@ -1,0 +1,78 @@
+"""How far a person may believe each frame of a motion, as one number from 0 to 1.
+
+Confidence is the share of the principal points that are expected to lie within a tolerance of their true
+places: the mean over the points of the probability that a normal error is shorter than the tolerance. The
+error's covariance is the estimate's own, in which hidden markers and far keyframes show already, with what
+the estimate cannot know of itself:
+
+* Where the footage moved a point far from the interpolated keyframes, these tell little there, and what the
+  footage cannot see, depth above all, is off by a share of what it sees. The estimate's covariance does not
+  grow with that movement; true errors do.
+* Where the footage contradicts the motion by more than it should, the covariance is scaled up by as much,
+  the factor of Birge (1932, *The calculation of errors by the method of least squares*).
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammainc
+
+Array = NDArray[np.float64]
+
+TOLERANCE_SHARE = 0.025
+"""Of the performer's stature: four to five centimetres of a grown-up's joints."""
+UNSEEN_SHARE = 0.2
+"""Of the way that the footage moved a point, the part that its error adds in what is not seen: about what
+takes with truth show with few keyframes."""
+ROWS = 2
+"""Numbers that a centroid's distance is made of."""
+
+
+def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) -> Array:
+    """What the points' errors are expected to be, (F, P, 3, 3) [m²].
+
+    Args:
+        point_covariance: (F, P, 3, 3) the estimate's own [m²]; NaN where unknown.
+        moved_m: (F, P) how far each point lies from the interpolated keyframes [m].
+        misfit: (F, M) as `misfits` gives it; NaN where not compared.
+    """
+    unseen = np.eye(3) * (UNSEEN_SHARE * moved_m)[..., None, None] ** 2 / 3.0
+    return np.asarray((point_covariance + unseen) * _doubt(misfit)[:, None, None, None])
+
+
+def confidence(covariance: Array, tolerance_m: float) -> Array:
+    """Share of the points (F,) expected within a tolerance [m], given `expected_covariance` (F, P, 3, 3).
+
+    NaN where the covariance is.
+    """
+    return np.asarray(_within(covariance, tolerance_m).mean(axis=1))
+
+
+def misfits(distance_px: Array, expected_px: Array) -> Array:
+    """Squared distances (F, M) in expected ones: 1 on average where the noise is as assumed.
+
+    Args:
+        distance_px: (F, M) between the predicted and observed centroids; NaN where not compared.
+        expected_px: (F, M) standard deviation of each coordinate.
+    """
+    return np.asarray((distance_px / expected_px) ** 2 / ROWS)
+
+
+def _doubt(misfit: Array) -> Array:
+    """(F,) factor, at least one, by which the compared markers (F, M) contradict the covariance."""
+    compared = np.isfinite(misfit)
+    total = np.where(compared, misfit, 0.0).sum(axis=1)
+    return np.asarray(np.maximum(total / np.maximum(compared.sum(axis=1), 1), 1.0))
+
+
+def _within(covariance: Array, tolerance_m: float) -> Array:
+    """Probability (...) that normal errors of covariance (..., 3, 3) are shorter than the tolerance.
+
+    The squared length is a weighted sum of χ²; the gamma distribution of its mean and variance stands in for
+    it (Satterthwaite 1946, *An approximate distribution of estimates of variance components*), exactly so
+    where the error is alike in one, two or three directions.
+    """
+    mean = np.trace(covariance, axis1=-2, axis2=-1)
+    half_variance = np.einsum("...ij,...ji->...", covariance, covariance)
+    shape = mean**2 / np.maximum(2.0 * half_variance, 1e-30)
+    scale = np.maximum(2.0 * half_variance / np.maximum(mean, 1e-30), 1e-30)
+    return np.asarray(gammainc(shape, tolerance_m**2 / scale))

@@ -1,0 +1,91 @@
+"""Where a foot rests: stretches of frames in which an ankle stays slow, low and near one place."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+REST_SPEED_M_S = 0.12
+"""A resting ankle is slower than this ..."""
+RELEASE_SPEED_M_S = 0.25
+"""... once, and stays below this before and after."""
+REST_HEIGHT_M = 0.05
+"""A resting ankle is no higher than this above its own lowest within `NEIGHBOURHOOD_S`."""
+NEIGHBOURHOOD_S = 1.0
+SHORTEST_S = 0.2
+"""Shorter rests are turning points of a moving foot."""
+STRAY_M = 0.025
+"""How far a resting ankle may be estimated from its place."""
+MOST_OF_RUN = 0.6
+"""A rest is most of the time for which a foot is slow; a foot that is slow but does not stay slides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A foot at rest."""
+
+    point: int
+    """Which of the points rests."""
+    first: int
+    """The first frame of the rest, from 0."""
+    last: int
+    """Its last frame, included."""
+    place: Array
+    """(3,) where it rests [m]."""
+
+
+def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:
+    """Find where points rest.
+
+    No floor is assumed: a foot may rest on a step or a beam. One that sways or slides further than it may
+    stray does not rest.
+
+    Args:
+        places: (F, N, 3) the points, by frame [m].
+        time_s: (F,) time of each frame [s].
+        stray_m: How far a resting point may be from its place [m].
+
+    Returns:
+        Rests in order of point and frame.
+    """
+    if len(places) < 3:
+        return ()
+    found: list[Contact] = []
+    for point in range(places.shape[1]):
+        path = places[:, point]
+        for run in _slow_runs(path, time_s):
+            first, last = _longest_rest(path, stray_m, *run)
+            lasted, whole = time_s[last] - time_s[first], time_s[run[1]] - time_s[run[0]]
+            if lasted >= max(SHORTEST_S, MOST_OF_RUN * whole):
+                found.append(Contact(point, first, last, path[first : last + 1].mean(axis=0)))
+    return tuple(found)
+
+
+def _slow_runs(path: Array, time_s: Array) -> list[tuple[int, int]]:
+    """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
+    speed = np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1)
+    low = np.array(
+        [path[np.abs(time_s - now) <= NEIGHBOURHOOD_S, 2].min() for now in time_s], dtype=np.float64
+    )
+    slow = (speed < RELEASE_SPEED_M_S) & (path[:, 2] - low < REST_HEIGHT_M)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))
+    runs = zip(edges[::2], edges[1::2] - 1, strict=True)
+    return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < REST_SPEED_M_S]
+
+
+def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
+    """The longest stretch of a run that stays near its own mean place."""
+    longest = (first, first)
+    start = first
+    for stop in range(first + 1, last + 1):
+        while not _stays(path[start : stop + 1], stray_m):
+            start += 1
+        if stop - start > longest[1] - longest[0]:
+            longest = (start, stop)
+    return longest
+
+
+def _stays(path: Array, stray_m: float) -> bool:
+    return bool((np.linalg.norm(path - path.mean(axis=0), axis=-1) <= stray_m).all())

@@ -1,0 +1,170 @@
+"""Piecewise cubics through few keys, fitted to many frames: what an F-curve with Bezier handles shows.
+
+A Bezier segment whose handles lie at one third and two thirds of it in time is a cubic polynomial of time:
+the Hermite cubic with the values and slopes of its two keys (Farin 2002, *Curves and Surfaces for CAGD*,
+section 7.5). The handles' heights are then `value + slope * length / 3` and `value - slope * length / 3`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+SLOPE_TRUST = 0.05
+"""Weight of the frames' own slope at a key [frames]: it decides where no frame lies between two keys."""
+BAND = 3
+"""Value and slope of a key meet those of the next: unknowns three apart at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """K keys of C curves that share their frames."""
+
+    keys: Indices
+    """(K,) positions of the keys among the frames, rising."""
+    values: Array
+    """(K, C)."""
+    slopes: Array
+    """(K, C) per unit of time, the same on both sides of a key."""
+
+    def evaluate(self, times: Array, first: int, last: int) -> Array:
+        """Values (N, C) at the frames `first` to `last`, both included, which lie between the outer keys."""
+        return self._at(times, np.arange(first, last + 1))
+
+    def with_keys(self, times: Array, new: Indices) -> "Spline":
+        """The spline with further keys on its own curve (between its outer keys): nothing moves yet."""
+        fresh = np.setdiff1d(new, self.keys).astype(np.intp)
+        keys = np.concatenate([self.keys, fresh])
+        order = np.argsort(keys, kind="stable")
+        values = np.concatenate([self.values, self._at(times, fresh)])
+        slopes = np.concatenate([self.slopes, self._slope_at(times, fresh)])
+        return Spline(keys[order], values[order], slopes[order])
+
+    def without_key(self, position: int) -> "Spline":
+        """The spline without one of its inner keys."""
+        return Spline(
+            np.delete(self.keys, position),
+            np.delete(self.values, position, axis=0),
+            np.delete(self.slopes, position, axis=0),
+        )
+
+    def columns(self, first: int, last: int) -> "Spline":
+        """The keys of the curves `first` up to but without `last`."""
+        return Spline(self.keys, self.values[:, first:last], self.slopes[:, first:last])
+
+    def _pieces(self, frames: Indices) -> Indices:
+        """(N,) the stretch between two keys that each frame lies in."""
+        return np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
+
+    def _at(self, times: Array, frames: Indices) -> Array:
+        piece = self._pieces(frames)
+        v0, m0, v1, m1 = _basis(times, self.keys, frames, piece).T[..., None]
+        return np.asarray(
+            v0 * self.values[piece]
+            + m0 * self.slopes[piece]
+            + v1 * self.values[piece + 1]
+            + m1 * self.slopes[piece + 1]
+        )
+
+    def _slope_at(self, times: Array, frames: Indices) -> Array:
+        piece = self._pieces(frames)
+        start = times[self.keys[piece]]
+        length = (times[self.keys[piece + 1]] - start)[:, None]
+        s = (times[frames] - start)[:, None] / length
+        rise = (self.values[piece + 1] - self.values[piece]) / length
+        return np.asarray(
+            6.0 * s * (1.0 - s) * rise
+            + (1.0 - s) * (1.0 - 3.0 * s) * self.slopes[piece]
+            + s * (3.0 * s - 2.0) * self.slopes[piece + 1]
+        )
+
+
+def fit_keys(times: Array, data: Array, keys: Indices, exact: Indices) -> Spline:
+    """The spline with given keys that is nearest to the data in the sense of least squares.
+
+    Args:
+        times: (F,) rising times of the frames.
+        data: (F, C) values at the frames.
+        keys: (K,) rising positions of at least two keys, the first and the last frame among them.
+        exact: Positions of frames at which a key takes the data's own value.
+    """
+    start = Spline(keys, data[keys], _slopes(times, data, keys))
+    return refit(times, data, start, 0, len(keys) - 1, exact)
+
+
+def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exact: Indices) -> Spline:
+    """Fit the keys `first` to `last` (counted among the keys, both included) anew; all others stay.
+
+    Args:
+        times: (F,) rising times of the frames.
+        data: (F, C) values at the frames.
+        spline: The keys.
+        first: The first key that may change.
+        last: The last one.
+        exact: Positions of frames at which a key takes the data's own value.
+    """
+    low, high = max(first - 1, 0), min(last + 1, len(spline.keys) - 1)
+    keys = spline.keys[low : high + 1]
+    frame = np.arange(keys[0], keys[-1] + 1)
+    piece = np.clip(np.searchsorted(keys, frame, side="right") - 1, 0, len(keys) - 2)
+    basis = _basis(times, keys, frame, piece)
+    size = 2 * len(keys)
+    band = np.zeros((BAND + 1, size))
+    right = np.zeros((size, data.shape[1]))
+    for i in range(BAND + 1):
+        np.add.at(right, 2 * piece + i, basis[:, i, None] * data[frame])
+        for j in range(i, BAND + 1):
+            np.add.at(band[BAND - (j - i)], 2 * piece + j, basis[:, i] * basis[:, j])
+    own = _slopes(times, data, keys)
+    band[BAND, 1::2] += SLOPE_TRUST**2
+    right[1::2] += SLOPE_TRUST**2 * own
+    known = np.empty((size, data.shape[1]))
+    known[0::2] = np.where(np.isin(keys, exact)[:, None], data[keys], spline.values[low : high + 1])
+    known[1::2] = spline.slopes[low : high + 1]
+    held = np.zeros(size, dtype=bool)
+    held[0::2] = np.isin(keys, exact)
+    held[: 2 * (first - low)] = True
+    held[size - 2 * (high - last) :] = True
+    solved = _solve(band, right, held, known)
+    values, slopes = spline.values.copy(), spline.slopes.copy()
+    values[low : high + 1], slopes[low : high + 1] = solved[0::2], solved[1::2]
+    return Spline(spline.keys, values, slopes)
+
+
+def _basis(times: Array, keys: Indices, frame: Indices, piece: Indices) -> Array:
+    """(N, 4) factors of the earlier key's value and slope and of the later one's, at each frame."""
+    start, length = times[keys[piece]], times[keys[piece + 1]] - times[keys[piece]]
+    s = (times[frame] - start) / length
+    rest = 1.0 - s
+    return np.stack(
+        [
+            rest**2 * (1.0 + 2.0 * s),
+            rest**2 * s * length,
+            s**2 * (3.0 - 2.0 * s),
+            -(s**2) * rest * length,
+        ],
+        axis=-1,
+    )
+
+
+def _slopes(times: Array, data: Array, keys: Indices) -> Array:
+    """(K, C) the data's slope at each key, from the frames beside it."""
+    before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
+    return np.asarray((data[after] - data[before]) / (times[after] - times[before])[:, None])
+
+
+def _solve(band: Array, right: Array, held: NDArray[np.bool_], known: Array) -> Array:
+    """Solve a banded system in which some unknowns are known: their rows and columns are taken out."""
+    fixed = np.where(held[:, None], known, 0.0)
+    for apart in range(1, BAND + 1):
+        row = band[BAND - apart, apart:]
+        right[:-apart] -= row[:, None] * fixed[apart:]
+        right[apart:] -= row[:, None] * fixed[:-apart]
+        row[held[apart:] | held[:-apart]] = 0.0
+    band[BAND, held] = 1.0
+    right[held] = known[held]
+    return np.asarray(solveh_banded(band, right, check_finite=False))

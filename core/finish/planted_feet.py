@@ -1,0 +1,178 @@
+"""Feet that rest are held at one place; the legs follow, and the hips a little where a leg cannot reach.
+
+A least-squares problem over the whole clip on the manifold of postures: resting ankles at their places, all
+others where they were, legs and hips changed as little and as smoothly as that allows. Around a rest the
+correction fades, so that nothing jumps and frames further away stay as they are.
+"""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..body.skeleton import SIDES
+from ..estimate.block_banded import BlockBanded
+from .contacts import STRAY_M, Contact, find_contacts
+
+Array = NDArray[np.float64]
+
+FADE_S = 0.2
+"""How long a correction takes to fade on either side of a rest."""
+ANKLE_STD_M = 2e-4
+"""How nearly an ankle reaches its place."""
+CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
+"""How readily each degree of freedom changes [m, rad]: legs before hips, bends before twists."""
+PACE_STD_PER_S = 2.0
+"""Change of these changes in a second, in units of themselves: small, so that knees do not flicker."""
+UNCHANGED_STD = 1e-6
+"""The same for frames without a correction, in units of the above."""
+STEPS = 8
+SETTLED_M = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class PlantedFeet:
+    """A motion whose resting feet stand still."""
+
+    posture: Posture
+    """A batch of F postures."""
+    contacts: tuple[Contact, ...]
+    """Where which ankle rests; points are counted left, right."""
+    skate_before_mm: float
+    """Mean horizontal travel per frame of resting ankles before, in millimetres; 0 without any rest ..."""
+    skate_after_mm: float
+    """... and after."""
+
+
+def plant_feet(
+    body: Body,
+    posture: Posture,
+    time_s: Array,
+    stray_m: float = STRAY_M,
+) -> Generator[float, None, PlantedFeet]:
+    """Hold resting feet still.
+
+    Args:
+        body: The actor's body.
+        posture: A batch of F postures.
+        time_s: (F,) time of each frame [s].
+        stray_m: How far a foot may be estimated from one place and still be taken to rest there [m].
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Returns:
+        The postures; those far from any rest are unchanged.
+    """
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+    places = body.points(body.pose(posture))[:, ankles]
+    contacts = find_contacts(places, time_s, stray_m)
+    yield 0.1
+    if not contacts:
+        return PlantedFeet(posture, (), 0.0, 0.0)
+    goal, touched = _goal(places, contacts, time_s)
+    dofs = _changing(body)
+    std = np.array([CHANGE_STD[_kind(body.skeleton.dof_names[dof])] for dof in dofs])
+    delta = np.zeros((len(time_s), len(dofs)))
+    planted = posture
+    for number in range(STEPS):
+        step = _step(body, planted, ankles, goal, touched, dofs, std, delta, time_s)
+        delta += step
+        full = np.zeros((len(time_s), body.skeleton.dof_count))
+        full[:, dofs] = delta
+        planted = _changed(posture, full, touched)
+        yield 0.1 + 0.9 * (number + 1) / STEPS
+        if np.abs(step).max() < SETTLED_M:
+            break
+    after = body.points(body.pose(planted))[:, ankles]
+    return PlantedFeet(planted, contacts, _skate_mm(places, contacts), _skate_mm(after, contacts))
+
+
+def _changing(body: Body) -> NDArray[np.intp]:
+    """Degrees of freedom that may change: the hips' place and the legs."""
+    names = body.skeleton.dof_names
+    return np.array([i for i, name in enumerate(names) if _kind(name) in CHANGE_STD], dtype=np.intp)
+
+
+def _kind(name: str) -> str:
+    """`hip.L.rotation_x` is of the kind `hip`, `pelvis.location_x` of the kind `pelvis.location`."""
+    first, *_, last = name.split(".")
+    return f"{first}.{last.partition('_')[0]}" if first == "pelvis" else first
+
+
+def _goal(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Where each ankle shall be, (F, 2, 3), and the frames in which that is elsewhere than before."""
+    goal = places.copy()
+    touched = np.zeros(len(time_s), dtype=bool)
+    for contact in contacts:
+        beside = [other for other in contacts if other.point == contact.point and other is not contact]
+        point, rest = contact.point, slice(contact.first, contact.last + 1)
+        goal[rest, point] = contact.place
+        touched[rest] = True
+        for edge, way in ((contact.first, -1), (contact.last, 1)):
+            near = [
+                abs(time_s[other.last if way < 0 else other.first] - time_s[edge])
+                for other in beside
+                if (other.first - contact.first) * way > 0
+            ]
+            # Two rests that follow closely share the time between them.
+            fade = min([FADE_S, *(0.5 * gap for gap in near)])
+            offset = contact.place - places[edge, point]
+            frame = edge + way
+            while 0 <= frame < len(time_s) and abs(time_s[frame] - time_s[edge]) < fade:
+                share = abs(time_s[frame] - time_s[edge]) / fade
+                goal[frame, point] += offset * (1.0 - share) ** 2 * (1.0 + 2.0 * share)
+                touched[frame] = True
+                frame += way
+    return goal, touched
+
+
+def _step(
+    body: Body,
+    posture: Posture,
+    ankles: list[int],
+    goal: Array,
+    touched: NDArray[np.bool_],
+    dofs: NDArray[np.intp],
+    std: Array,
+    delta: Array,
+    time_s: Array,
+) -> Array:
+    """A Gauss-Newton step (F, n) of the changes `delta`."""
+    frames, size = delta.shape
+    pose = body.pose(posture)
+    residual = (body.points(pose)[:, ankles] - goal).reshape(frames, -1) / ANKLE_STD_M
+    jacobian = body.points_jacobian(pose)[:, ankles][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
+    equations = BlockBanded(frames, size)
+    equations.add_rows((jacobian,))
+    gradient = (residual[:, None] @ jacobian)[:, 0]
+    every = slice(None)
+    kept = (std * np.where(touched, 1.0, UNCHANGED_STD)[:, None]) ** -2
+    steady = (std * PACE_STD_PER_S * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
+    prior = BlockBanded(frames, size)
+    prior.add_combination(every, (1.0,), kept)
+    prior.add_combination(every, (-1.0, 1.0), steady)
+    equations.add(prior)
+    gradient += prior.multiply(delta)
+    return equations.factorise().solve(-gradient)
+
+
+def _changed(posture: Posture, delta: Array, touched: NDArray[np.bool_]) -> Posture:
+    """The posture with changes (F, D) in the touched frames; the others keep their very numbers."""
+    moved = posture.plus(delta)
+    return Posture(
+        posture.skeleton,
+        np.where(touched[:, None], moved.translation, posture.translation),
+        np.where(touched[:, None, None, None], moved.rotations, posture.rotations),
+        np.where(touched[:, None], moved.angles, posture.angles),
+    )
+
+
+def _skate_mm(places: Array, contacts: tuple[Contact, ...]) -> float:
+    travel = [
+        np.linalg.norm(np.diff(places[c.first : c.last + 1, c.point, :2], axis=0), axis=-1) for c in contacts
+    ]
+    return 1e3 * float(np.concatenate(travel).mean())

@@ -1,0 +1,63 @@
+"""Frames spread over a clip, kept as small pictures, so that colours can be tried on them at once."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .clip import Clip
+from .working_image import halvings, measuring_image
+
+Image = NDArray[np.uint8]
+
+SAMPLED_FRAMES: Final = 24
+"""Twice as many as colours are learned from, so that most are judged by colours learned elsewhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClipSamples:
+    """N frames of a clip.
+
+    Attributes:
+        path: the clip, for messages.
+        size: width and height of its frames in px.
+        indices: (N,) which frames they are.
+        images: their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid.
+    """
+
+    path: Path
+    size: tuple[int, int]
+    indices: tuple[int, ...]
+    images: tuple[Image, ...]
+
+
+def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+    """Take frames from all over a clip.
+
+    Args:
+        clip: the footage.
+        count: how many, where it has as many.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Raises:
+        InputError: not one of them can be read.
+    """
+    times = halvings(clip.size)
+    indices: list[int] = []
+    images: list[Image] = []
+    yield 0.0
+    for index, image in clip.sample(count):
+        indices.append(index)
+        images.append(measuring_image(image, times))
+        yield min(len(indices) / min(count, clip.frame_count), 1.0)
+    if not images:
+        raise InputError(f"{clip.path}: none of the frames looked at can be read; the file is damaged")
+    return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))

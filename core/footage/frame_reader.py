@@ -1,0 +1,68 @@
+"""One frame of a clip after another as a person looks at them: a step forward decodes one frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip import Clip
+
+Image = NDArray[np.uint8]
+Stamped = tuple[float, Image]
+
+_EARLY: Final = 0.1
+"""Share of a frame's interval by which its time stamp may be rounded up."""
+_LONGEST_STEP: Final = 12.0
+"""Intervals that are rather decoded on the way than searched for."""
+_BEFORE: Final = 2
+"""Frames before the one that is sought, with which a search begins."""
+
+
+class FrameReader:
+    """A clip's decoder that stays where it is between two looks.
+
+    Frames are sought by their time and not counted, so that those of a variable rate are found without going
+    through the whole clip first.
+    """
+
+    def __init__(self, clip: Clip) -> None:
+        """Take a clip; nothing is decoded yet."""
+        self._clip = clip
+        self._onward: Iterator[Stamped] = iter(())
+        self._shown: Stamped | None = None
+        self._coming: Stamped | None = None
+
+    def image_at(self, time_s: float) -> Image | None:
+        """Return the last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
+
+        None before the first frame, and once the last has been shown for an interval.
+
+        Args:
+            time_s: seconds from the first frame.
+
+        Raises:
+            InputError: the clip is gone, or an image of a sequence cannot be read.
+        """
+        interval = 1.0 / self._clip.fps
+        limit = time_s + _EARLY * interval
+        if limit < 0.0:
+            return None
+        if self._shown is None or not 0.0 <= limit - self._shown[0] < _LONGEST_STEP * interval:
+            self._begin(max(int(limit / interval) - _BEFORE, 0))
+            if self._shown is None or self._shown[0] > limit:
+                self._begin(0)
+        while self._coming is not None and self._coming[0] <= limit:
+            self._shown, self._coming = self._coming, next(self._onward, None)
+        if self._shown is None or (
+            self._coming is None and limit >= self._shown[0] + (1.0 + _EARLY) * interval
+        ):
+            return None
+        return self._shown[1]
+
+    def _begin(self, first: int) -> None:
+        """Take up a place before which nothing is wanted."""
+        self._onward = self._clip.source.onward(first)
+        self._shown, self._coming = next(self._onward, None), next(self._onward, None)

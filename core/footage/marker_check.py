@@ -1,0 +1,166 @@
+"""How well each marker can be found in a clip, from frames spread over it: numbers and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .association import Candidates, candidates
+from .clip_colours import ClipColours
+from .clip_samples import ClipSamples
+from .colour_model import ColourModel
+from .colour_overlap import colour_claims
+from .marker_style import MarkerStyle
+from .marker_warnings import Likeness, marker_warnings
+from .own_regions import DEAREST_PIECE, own_regions
+from .regions import find_regions
+from .tracks import ExpectedRegions
+from .working_image import halvings
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class MarkerReadout:
+    """What a look at N frames says of one marker.
+
+    Attributes:
+        name: the marker's.
+        found: frames in which it is seen.
+        sampled: frames looked at, N.
+        area_px: median of its area where it is seen, in pixels of the clip; 0 where it never is.
+        area_share: the same as a share of the picture.
+        distinctness: probability in 0..1 that a pixel of it is told from all else and that what is told so is
+            the marker; 0 where it is never seen.
+        warnings: sentences that begin with its name.
+    """
+
+    name: str
+    found: int
+    sampled: int
+    area_px: float
+    area_share: float
+    distinctness: float
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerCheck:
+    """What a look at a clip's samples says of M markers in C colours.
+
+    Attributes:
+        readouts: one a marker.
+        model: the colours as they were learned, for previews.
+        groups: of each colour, the markers that bear it.
+    """
+
+    readouts: tuple[MarkerReadout, ...]
+    model: ColourModel
+    groups: tuple[tuple[int, ...], ...]
+
+
+def check_markers(
+    samples: ClipSamples, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> Generator[float, None, MarkerCheck]:
+    """Find the markers in sampled frames, with the extraction's own means but each frame by itself.
+
+    A colour that is nowhere does not keep the others from being looked at.
+
+    Args:
+        samples: frames spread over the clip.
+        styles: the markers, M of them, at least one.
+        expected: where each marker is expected in every frame of the clip, (F, M); never required.
+
+    Yields:
+        The fraction done, from 0 to 1.
+    """
+    yield 0.0
+    frames = len(samples.images)
+    at_samples = None if expected is None else _at(expected, samples.indices)
+    colours = ClipColours(samples.path, samples.size, styles, at_samples)
+    colours.learn(samples.images)
+    yield 0.5
+    regions = []
+    for done, image in enumerate(samples.images):
+        regions += find_regions([image], 0, colours.model)
+        yield 0.5 + 0.5 * done / frames
+    found = [
+        candidates(regions, colour, 2.0 ** halvings(samples.size)) for colour in range(len(colours.groups))
+    ]
+    own = own_regions(found, colours.groups, at_samples, _cheapest)
+    areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
+    likenesses = _likenesses([style.name for style in styles], colours, found, areas)
+    complaints = colours.complaints()
+    readouts = [
+        _readout(style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker))
+        for marker, style in enumerate(styles)
+    ]
+    yield 1.0
+    groups = tuple(tuple(group) for group in colours.groups)
+    return MarkerCheck(tuple(readouts), colours.model, groups)
+
+
+def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
+    """Return the expectation in some frames; what lies beyond the last known one is taken as there."""
+    rows = np.minimum(indices, len(expected.centre) - 1)
+    return ExpectedRegions(expected.centre[rows], expected.radius[rows])
+
+
+def _cheapest(found: Candidates, cost: FloatArray, _length_px: float) -> IntArray:
+    """Return each frame's cheapest region, (F,), -1 where none is cheap; no path joins samples."""
+    path = np.full(len(found.start) - 1, -1, dtype=np.int64)
+    for frame, (first, end) in enumerate(zip(found.start[:-1], found.start[1:], strict=True)):
+        if first < end:
+            best = first + int(np.argmin(cost[first:end]))
+            path[frame] = best if cost[best] <= DEAREST_PIECE else -1
+    return path
+
+
+def _likenesses(
+    names: Sequence[str], colours: ClipColours, found: Sequence[Candidates], areas: Sequence[FloatArray]
+) -> dict[int, Likeness]:
+    """Return what else looks like each marker, by its index, from its area in every frame."""
+    claims = colour_claims(colours.model)
+    together = [" and ".join(names[marker] for marker in group) for group in colours.groups]
+    likenesses = {}
+    for colour, group in enumerate(colours.groups):
+        coloured = float(found[colour].area.sum())
+        theirs = sum(float(areas[marker].sum()) for marker in group)
+        clutter = max(coloured - theirs, 0.0) / max(coloured, 1.0)
+        claimed = [
+            (other, float(share))
+            for index, (other, share) in enumerate(zip(together, claims[colour, :-1], strict=True))
+            if index != colour
+        ]
+        for marker in group:
+            alike = [names[other] for other in group if other != marker]
+            likenesses[marker] = Likeness(alike, claimed, float(claims[colour, -1]), clutter)
+    return likenesses
+
+
+def _readout(
+    name: str, area: FloatArray, size: tuple[int, int], likeness: Likeness, complaint: str | None
+) -> MarkerReadout:
+    """Return a marker's readout from its area (N,) in px, 0 where it is not seen."""
+    sampled, found = len(area), int(np.count_nonzero(area))
+    if complaint is not None or not found:
+        sentence = complaint or (
+            f"{name} is in none of the {sampled} frames looked at, or something larger has its colour; pick "
+            "it anew, or wear another"
+        )
+        return MarkerReadout(name, 0, sampled, 0.0, 0.0, 0.0, (sentence,))
+    typical = float(np.median(area[area > 0.0]))
+    own = 1.0 - likeness.background - sum(share for _, share in likeness.claimed)
+    return MarkerReadout(
+        name=name,
+        found=found,
+        sampled=sampled,
+        area_px=typical,
+        area_share=typical / (size[0] * size[1]),
+        distinctness=max(own, 0.0) * (1.0 - likeness.clutter),
+        warnings=marker_warnings(name, found, sampled, typical / 4.0 ** halvings(size), likeness),
+    )

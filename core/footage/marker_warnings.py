@@ -1,0 +1,77 @@
+"""What may go wrong with a marker's colour, in sentences for the person who can still change it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+_FEW: Final = 0.6
+"""Share of the frames looked at below which a marker is seldom found."""
+_MUCH: Final = 0.2
+"""Share of its colour that others may have before it is worth a word."""
+_SMALL_PX: Final = 40.0
+"""Pixels of the measuring grid below which a region is hardly more than its border."""
+
+
+class Likeness(NamedTuple):
+    """What else looks like a marker.
+
+    Attributes:
+        alike: names of markers that no colour tells from it.
+        claimed: names of the other colours' markers, each with the share of its pixels taken for them.
+        background: share of its pixels taken for the background.
+        clutter: share of what has its colour that is not it, without the markers that are alike.
+    """
+
+    alike: Sequence[str]
+    claimed: Sequence[tuple[str, float]]
+    background: float
+    clutter: float
+
+
+def marker_warnings(
+    name: str, found: int, sampled: int, grid_area: float, likeness: Likeness
+) -> tuple[str, ...]:
+    """Return what a person should know of a marker that was found, the gravest first.
+
+    Args:
+        name: the marker's.
+        found: frames in which it is seen.
+        sampled: frames looked at.
+        grid_area: its usual area in pixels of the measuring grid.
+        likeness: what else looks like it.
+    """
+    sentences = []
+    if likeness.alike:
+        sentences.append(
+            f"{name} has almost the same colour as {' and '.join(likeness.alike)}; only keyframes and paths "
+            "tell which is which"
+        )
+    sentences += [
+        f"{name} and {other} have colours too alike: {_percent(share)} of {name} would pass for {other}"
+        for other, share in likeness.claimed
+        if share >= _MUCH
+    ]
+    if likeness.background >= _MUCH:
+        sentences.append(
+            f"the background wears the colour of {name}: {_percent(likeness.background)} of the marker would "
+            "pass for it"
+        )
+    if likeness.clutter >= _MUCH:
+        sentences.append(
+            f"{_percent(likeness.clutter)} of what has the colour of {name} is something else in the picture"
+        )
+    if found < _FEW * sampled:
+        sentences.append(
+            f"{name} is found in only {found} of {sampled} frames; where it is not hidden, pick its "
+            "colour in one that misses it"
+        )
+    if grid_area < _SMALL_PX:
+        sentences.append(
+            f"{name} is small in the picture, so its place and direction are uncertain; film from nearer"
+        )
+    return tuple(sentences)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.0f} %"

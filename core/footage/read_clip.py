@@ -1,0 +1,56 @@
+"""Reading a clip once for everything that follows, and not at all where what is kept of it still holds."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+
+from .album import Album, watched
+from .clip import Clip
+from .marker_style import MarkerStyle
+from .markers import sight_markers, still_hold, tell_markers
+from .reading import Reading
+from .reading_key import of_same_footage, reading_key
+from .tracks import ExpectedRegions
+
+
+def read_clip(
+    clip: Clip,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    with_album: bool = True,
+    kept: Reading | None = None,
+) -> Generator[float, None, Reading]:
+    """Follow the markers through a clip and keep a picture of every frame.
+
+    Args:
+        clip: the footage.
+        styles: the markers.
+        expected: where they are expected; never required.
+        with_album: whether pictures are wanted.
+        kept: what was read before, of whatever clip. Where it still holds, the clip is not gone through: as a
+            whole if all it was read from is as it was, and but for which regions are the markers' if only
+            these are expected elsewhere and that changes nothing of the colours learned.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Returns:
+        The same, to the last digit, as without what was kept.
+
+    Raises:
+        InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
+    """
+    yield 0.0
+    key = reading_key(clip.path, clip.fps, styles, expected)
+    if kept is not None and (kept.album is not None or not with_album):
+        kept = kept if with_album else replace(kept, album=None)
+        if kept.key == key:
+            return kept
+        seen = kept.sightings
+        if seen is not None and of_same_footage(kept.key, key) and still_hold(seen, styles, expected):
+            return replace(kept, tracks=tell_markers(seen, styles, expected), key=key)
+    album = Album() if with_album else None
+    seen = yield from sight_markers(clip if album is None else watched(clip, album), styles, expected)
+    yield 1.0
+    return Reading(tell_markers(seen, styles, expected), album, seen, key=key)

@@ -1,0 +1,51 @@
+"""What one look at every frame finds, before anything says which region is which marker's.
+
+Where the markers are expected decides which regions are theirs, and has a say in what their colours are
+learned from. Sightings remember what was learned from, so that they serve other expectations too, wherever
+the same would be learned with those: exactly the same regions would be found again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .regions import Regions
+
+FloatArray = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """Once that the colours were learned.
+
+    Attributes:
+        frames: the frames learned from.
+        taught: digest of what they taught.
+    """
+
+    frames: tuple[int, ...]
+    taught: str
+
+
+@dataclass(frozen=True, eq=False)
+class Sightings:
+    """All regions of the markers' colours in a clip of F frames.
+
+    Attributes:
+        regions: of each frame, what was found in it, in pixels of the measuring grid.
+        time_s: (F,) time stamps of the frames in seconds.
+        size: width and height of the clip's images in px.
+        lessons: how the colours were learned, in order.
+        samples: the images that were learned from, (rows, columns, 3), by their frames.
+    """
+
+    regions: tuple[Regions, ...]
+    time_s: FloatArray
+    size: tuple[int, int]
+    lessons: tuple[Lesson, ...]
+    samples: Mapping[int, Image]

@@ -1,0 +1,59 @@
+"""The actor's armature as core's `Rig`: what its channels show in the world."""
+
+import bpy
+import numpy as np
+
+from ...core.body.kinematics import Body
+from ...core.finish.rig import Rig, RigBone
+from .actor_lengths import skeleton_bones
+from .bones import BoneModel, bone_models
+from .object_space import object_space
+
+
+def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
+    """The bones that turn, in the rotation modes they have, with the ends of all that hangs on them.
+
+    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels.
+
+    Args:
+        armature_object: An armature with the skeleton's bones, in any place, even scale and rest pose.
+        body: The skeleton, with the sizes that `read_body` finds in the armature.
+
+    Raises:
+        InputError: A bone is missing, or the object is scaled unevenly.
+    """
+    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
+    models = bone_models(body)
+    space = object_space(armature_object)
+    rest = {
+        model.name: np.array(armature_object.data.bones[model.name].matrix_local, dtype=np.float64)
+        for model in models
+    }
+    turning = [model for model in models if model.chain]
+    names = [model.name for model in turning]
+    bones = []
+    for model in turning:
+        own = rest[model.name][:3, :3]
+        if model.parent is None:
+            left = space.rotation @ own
+        else:
+            left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
+        bones.append(
+            RigBone(
+                name=model.name,
+                parent=-1 if model.parent is None else names.index(model.parent),
+                mode=armature_object.pose.bones[model.name].rotation_mode,
+                left=left,
+                right=axes[model.name].T,
+                origin=body.offsets[model.chain[0]],
+                points=_fixed_points(model, models),
+            )
+        )
+    root = rest[names[0]]
+    return Rig(tuple(bones), space.scale * space.rotation @ root[:3, :3], space.to_world(root[:3, 3]))
+
+
+def _fixed_points(model: BoneModel, models: tuple[BoneModel, ...]) -> np.ndarray:
+    """(N, 3) the bone's own end, then those of the rigid leaves on it, in its joint's frame [m]."""
+    leaves = [other.end for other in models if other.parent == model.name and not other.chain]
+    return np.stack([model.end, *leaves])

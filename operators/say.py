@@ -1,0 +1,26 @@
+"""Sentences for people, from templates that can be translated.
+
+A template is a plain literal where it is said, so that Blender's own tools find it for translators; what
+varies stands in braces and is filled in after translation.
+"""
+
+from typing import Any
+
+import bpy
+
+
+def say(operator: bpy.types.Operator, kind: str, template: str, **values: Any) -> None:
+    """Report a sentence.
+
+    Args:
+        operator: Whose report it is.
+        kind: INFO, WARNING or ERROR; in a script, ERROR becomes a RuntimeError.
+        template: The sentence, with what varies in braces.
+        values: What goes into the braces.
+    """
+    operator.report({kind}, bpy.app.translations.pgettext_rpt(template).format(**values))
+
+
+def label(template: str, **values: Any) -> str:
+    """A line of a panel; draw it with `translate=False`, as it is translated already."""
+    return str(bpy.app.translations.pgettext_iface(template)).format(**values)

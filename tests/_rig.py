@@ -1,0 +1,41 @@
+"""A rig without Blender: every joint of the default body turns by a quaternion, in the joint's own axes."""
+
+import numpy as np
+from _scene import BODY
+from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import continuous_quaternions, to_quaternions
+from keymark.core.finish.rig import Rig, RigBone
+
+LEAVES = ("hand", "foot")
+
+
+def quaternion_rig() -> Rig:
+    """Bones of the average body, hands and feet fixed to their limbs."""
+    skeleton, bones = BODY.skeleton, []
+    turning = [s for s in skeleton.segments if not s.name.startswith(LEAVES)]
+    names = [segment.name for segment in turning]
+    for segment in turning:
+        leaves = [s for s in skeleton.segments if s.parent == segment.name and s.name.startswith(LEAVES)]
+        ends = np.stack([BODY.local(part.end) for part in (segment, *leaves)])
+        parent = -1 if segment.parent is None else names.index(segment.parent)
+        above = -1 if parent < 0 else turning[parent].joint
+        first = segment.joint
+        while skeleton.joints[first].parent != above:
+            first = skeleton.joints[first].parent
+        origin = BODY.offsets[first]
+        bones.append(RigBone(segment.name, parent, "QUATERNION", np.eye(3), np.eye(3), origin, ends))
+    return Rig(tuple(bones), np.eye(3), np.zeros(3))
+
+
+def rig_values(rig: Rig, posture: Posture) -> list[np.ndarray]:
+    """What each bone of `quaternion_rig` holds to show a batch of postures."""
+    joint = {segment.name: segment.joint for segment in BODY.skeleton.segments}
+    pose = BODY.pose(posture)
+    values = []
+    for bone in rig.bones:
+        turn = pose.rotation[:, joint[bone.name]]
+        if bone.parent >= 0:
+            turn = np.swapaxes(pose.rotation[:, joint[rig.bones[bone.parent].name]], -1, -2) @ turn
+        values.append(continuous_quaternions(to_quaternions(turn)))
+    values[0] = np.concatenate([values[0], pose.origin[:, 0]], axis=1)
+    return values

@@ -1,0 +1,101 @@
+"""Results kept in a folder: whole, bounded, and absent rather than wrong."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from keymark.core.errors import ConversionError
+from keymark.core.files.store import Store
+
+ARRAYS = {
+    "speed": np.array([1.0, np.nan]),
+    "seen": np.array([True, False]),
+    "names": np.array(["trunk", "ä"]),
+}
+
+
+def test_what_is_saved_is_loaded_alike(tmp_path: Path) -> None:
+    """Kinds and missing values included; other keys hold nothing."""
+    store = Store(tmp_path / "results")
+    store.save("reading-1a", ARRAYS)
+    found = Store(tmp_path / "results").load("reading-1a")
+    assert found is not None and set(found) == set(ARRAYS)
+    for name, array in ARRAYS.items():
+        assert np.array_equal(found[name], array, equal_nan=name == "speed")
+        assert found[name].dtype == array.dtype
+    assert store.load("reading-1b") is None
+
+
+def test_saving_again_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None:
+    """One file a key."""
+    store = Store(tmp_path)
+    store.save("a", {"x": np.zeros(3)})
+    store.save("a", {"y": np.ones(2)})
+    assert list(store.load("a") or {}) == ["y"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
+
+
+@pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "text"])
+def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
+    """Whatever happened to it."""
+    store = Store(tmp_path)
+    store.save("a", {"x": np.arange(1000.0)})
+    file = tmp_path / "a.npz"
+    whole = file.read_bytes()
+    flipped = whole[:4000] + bytes([whole[4000] ^ 1]) + whole[4001:]
+    file.write_bytes({"cut": whole[:-300], "flipped": flipped, "empty": b"", "text": b"{}"}[damage])
+    assert store.load("a") is None
+    store.save("a", {"x": np.zeros(1)})
+    assert store.load("a") is not None
+
+
+def test_python_objects_are_neither_kept_nor_read(tmp_path: Path) -> None:
+    """A file that somebody put there runs nothing."""
+    store = Store(tmp_path)
+    with pytest.raises(ValueError, match="objects"):
+        store.save("a", {"x": np.array([{}], dtype=object)})
+    np.savez(tmp_path / "a.npz", x=np.array([{}], dtype=object))
+    assert store.load("a") is None
+
+
+@pytest.mark.parametrize("key", ["../a", "", "A", "a/b", "a.npz", "-a", "a" * 200])
+def test_keys_cannot_leave_the_folder(tmp_path: Path, key: str) -> None:
+    """A key may come from somebody else's scene."""
+    np.savez(tmp_path / "a.npz", x=np.zeros(1))
+    store = Store(tmp_path / "inside")
+    assert store.load(key) is None
+    with pytest.raises(ValueError, match="key"):
+        store.save(key, {})
+
+
+def test_what_was_unused_for_longest_goes_first(tmp_path: Path) -> None:
+    """Loading counts as use; the newest always stays."""
+    store = Store(tmp_path, largest_bytes=4000)
+    for age, key in enumerate(("c", "b", "a")):
+        store.save(key, {"x": np.zeros(100)})
+        os.utime(tmp_path / f"{key}.npz", (1000 + age, 1000 + age))
+    assert store.load("c") is not None
+    store.save("d", {"x": np.zeros(100)})
+    left = {path.stem for path in tmp_path.iterdir()}
+    assert {"c", "d"} <= left and "b" not in left
+    store.save("e", {"x": np.zeros(1000)})
+    assert store.load("e") is None and store.load("d") is not None
+
+
+def test_a_half_written_file_of_long_ago_is_removed(tmp_path: Path) -> None:
+    """One that is being written now stays."""
+    for name in (".keymark-old", ".keymark-new"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "a.npz").write_bytes(b"half")
+    os.utime(tmp_path / ".keymark-old", (1000, 1000))
+    Store(tmp_path).save("a", {"x": np.zeros(1)})
+    assert {path.name for path in tmp_path.iterdir()} == {".keymark-new", "a.npz"}
+
+
+def test_a_folder_that_cannot_be_written_is_said_so(tmp_path: Path) -> None:
+    """In one sentence."""
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ConversionError, match="cannot be written"):
+        Store(tmp_path / "file" / "store").save("a", {"x": np.zeros(1)})
+    assert Store(tmp_path / "file" / "store").load("a") is None

@@ -1,0 +1,153 @@
+"""Fewer keys: the tolerance holds on the body, and costs as few keys as it must."""
+
+import numpy as np
+import pytest
+from _rig import quaternion_rig, rig_values
+from _scene import BODY, exercise
+from keymark.core.body.posture import Posture
+from keymark.core.finish.hermite import fit_keys
+from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys
+from keymark.core.finish.rig import Rig, RigBone, rotation_matrices
+from keymark.core.progress import run
+from scipy.spatial.transform import Rotation
+
+FRAMES = 70
+TIMES = np.arange(1.0, FRAMES + 1.0)
+KEYFRAMES = np.array([0, 23, 44, FRAMES - 1])
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    """The average body's bones."""
+    return quaternion_rig()
+
+
+@pytest.fixture(scope="module")
+def values(rig: Rig) -> list[np.ndarray]:
+    """A lively motion with a little noise in every frame, as an estimate has."""
+    posture = exercise(FRAMES)
+    noise = np.random.default_rng(5).normal(0.0, 0.002, (FRAMES, BODY.skeleton.dof_count))
+    return rig_values(rig, posture.plus(noise))
+
+
+def shown(rig: Rig, reduced: ReducedKeys) -> np.ndarray:
+    """(F, P, 3) what the keys show."""
+    return rig.show([s.evaluate(TIMES, 0, FRAMES - 1) for s in reduced.splines]).points
+
+
+def key_count(reduced: ReducedKeys) -> int:
+    """Keys of all bones together."""
+    return sum(len(spline.keys) for spline in reduced.splines)
+
+
+def test_the_rig_shows_the_body(rig: Rig) -> None:
+    """All thirteen points are among the joints and ends of the bones, where the body's are."""
+    posture = exercise(6)
+    places = rig.show(rig_values(rig, posture)).points
+    points = BODY.points(BODY.pose(posture))
+    apart = np.linalg.norm(places[:, None] - points[:, :, None], axis=-1).min(axis=-1)
+    assert apart.max() < 1e-9
+
+
+@pytest.mark.parametrize("whole_pose", [False, True])
+@pytest.mark.parametrize("tolerance_m", [0.004, 0.015])
+def test_no_point_is_further_off_than_the_tolerance(
+    rig: Rig, values: list[np.ndarray], tolerance_m: float, whole_pose: bool
+) -> None:
+    """In every frame, ends of hands and feet included; and the tolerance is made use of."""
+    reduced = run(reduce_keys(rig, TIMES, values, tolerance_m, KEYFRAMES, whole_pose))
+    distance = np.linalg.norm(shown(rig, reduced) - rig.show(values).points, axis=-1)
+    assert 0.4 * tolerance_m < distance.max() <= tolerance_m
+    assert distance.max() == pytest.approx(reduced.furthest_m)
+
+
+def test_keyframes_stay_keys_with_their_values(rig: Rig, values: list[np.ndarray]) -> None:
+    """What the animator posed is on every bone's curves, unsmoothed."""
+    for whole_pose in (False, True):
+        reduced = run(reduce_keys(rig, TIMES, values, 0.01, KEYFRAMES, whole_pose))
+        for spline, data in zip(reduced.splines, values, strict=True):
+            assert set(KEYFRAMES) <= set(spline.keys)
+            at = np.searchsorted(spline.keys, KEYFRAMES)
+            assert spline.values[at] == pytest.approx(data[KEYFRAMES], abs=1e-12)
+
+
+def test_fewer_keys_than_at_even_steps(rig: Rig, values: list[np.ndarray]) -> None:
+    """Even steps with as many keys leave the body further off."""
+    reduced = run(reduce_keys(rig, TIMES, values, 0.005, np.zeros(0, dtype=np.intp)))
+    count = -(-key_count(reduced) // len(rig.bones))
+    even = np.unique(np.round(np.linspace(0, FRAMES - 1, count)).astype(np.intp))
+    none = np.zeros(0, dtype=np.intp)
+    evenly = rig.show([fit_keys(TIMES, d, even, none).evaluate(TIMES, 0, FRAMES - 1) for d in values])
+    assert np.linalg.norm(evenly.points - rig.show(values).points, axis=-1).max() > 0.0075
+    assert key_count(reduced) < 0.5 * FRAMES * len(rig.bones)
+
+
+def test_more_tolerance_needs_fewer_keys_and_poses_share_their_frames(
+    rig: Rig, values: list[np.ndarray]
+) -> None:
+    """Twenty millimetres cost less than five; whole poses key all bones on the same frames."""
+    counts = [key_count(run(reduce_keys(rig, TIMES, values, mm / 1e3, KEYFRAMES))) for mm in (5, 10, 20)]
+    assert counts[0] > counts[1] > counts[2]
+    poses = run(reduce_keys(rig, TIMES, values, 0.01, KEYFRAMES, True))
+    assert len({tuple(spline.keys) for spline in poses.splines}) == 1
+
+
+def test_a_point_can_be_held_more_tightly(rig: Rig, values: list[np.ndarray]) -> None:
+    """A tolerance of its own for one point in some frames is kept, too."""
+    names = [bone.name for bone in rig.bones]
+    ankle = rig.point_slices[names.index("shin.R")].start + 1
+    tolerance = np.full((FRAMES, rig.point_slices[-1].stop), 0.02)
+    tolerance[20:50, ankle] = 0.001
+    reduced = run(reduce_keys(rig, TIMES, values, tolerance, KEYFRAMES))
+    distance = np.linalg.norm(shown(rig, reduced) - rig.show(values).points, axis=-1)
+    assert distance[20:50, ankle].max() <= 0.001
+    assert distance.max() > 0.01
+
+
+def test_a_still_body_needs_its_first_and_last_key(rig: Rig) -> None:
+    """Nothing moves: two keys a bone."""
+    still = rig_values(rig, Posture.rest(BODY.skeleton, (FRAMES,)))
+    reduced = run(reduce_keys(rig, TIMES, still, 0.005, np.zeros(0, dtype=np.intp)))
+    assert {tuple(spline.keys) for spline in reduced.splines} == {(0, FRAMES - 1)}
+
+
+@pytest.mark.parametrize("mode", ["XYZ", "YZX", "ZXY"])
+def test_euler_channels_are_read_in_their_order(mode: str) -> None:
+    """Blender's YZX turns about y first, then z, then x, all fixed axes; channels are stored x, y, z."""
+    angles = np.random.default_rng(1).uniform(-1.0, 1.0, (5, 3))
+    turn = np.broadcast_to(np.eye(3), (5, 3, 3))
+    for letter in mode:
+        axis = "XYZ".index(letter)
+        turn = Rotation.from_rotvec(angles[:, axis, None] * np.eye(3)[axis]).as_matrix() @ turn
+    assert rotation_matrices(angles, mode) == pytest.approx(turn, abs=1e-12)
+
+
+def test_axes_and_quaternions_count_by_their_direction() -> None:
+    """Neither needs unit length: Blender brings them to it."""
+    axis_angle = np.array([[0.7, 0.0, 3.0, 0.0]])
+    quaternion = 2.5 * np.array([[np.cos(0.35), 0.0, np.sin(0.35), 0.0]])
+    turn = rotation_matrices(axis_angle, "AXIS_ANGLE")
+    assert turn == pytest.approx(rotation_matrices(quaternion, "QUATERNION"), abs=1e-12)
+    assert turn[0, 0, 2] == pytest.approx(np.sin(0.7))
+
+
+def test_changing_one_bone_shows_what_showing_all_does(rig: Rig, values: list[np.ndarray]) -> None:
+    """The short way, for some frames and the bones below, agrees with the long way."""
+    upper_arm = [bone.name for bone in rig.bones].index("upper_arm.L")
+    changed = list(values)
+    changed[upper_arm] = values[upper_arm] + 0.05
+    changed[0] = values[0] + 0.01
+    frames = slice(10, 30)
+    part = rig.show_changed(
+        rig.show(values), frames, {index: changed[index][frames] for index in (upper_arm, 0)}
+    )
+    assert part.points == pytest.approx(rig.show(changed).points[frames], abs=1e-12)
+
+
+def test_bones_hang_together() -> None:
+    """Each bone carries itself and what hangs on it."""
+    bones = tuple(
+        RigBone(name, parent, "XYZ", np.eye(3), np.eye(3), np.zeros(3), np.zeros((1, 3)))
+        for name, parent in (("a", -1), ("b", 0), ("c", 1), ("d", 0))
+    )
+    assert Rig(bones, np.eye(3), np.zeros(3)).below == ((0, 1, 2, 3), (1, 2), (2,), (3,))

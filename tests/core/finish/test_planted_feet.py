@@ -1,0 +1,111 @@
+"""Planted feet: what rests stands still, what moves goes on moving, and nothing jumps."""
+
+import numpy as np
+import pytest
+from _scene import BODY
+from keymark.core.body.posture import Posture
+from keymark.core.finish.contacts import find_contacts
+from keymark.core.finish.planted_feet import FADE_S, plant_feet
+from keymark.core.progress import run
+
+FPS = 30.0
+NAMES = BODY.skeleton.point_names
+ANKLES = [NAMES.index("ankle.L"), NAMES.index("ankle.R")]
+
+
+def places(posture: Posture) -> np.ndarray:
+    """(F, 13, 3) principal points."""
+    return BODY.points(BODY.pose(posture))
+
+
+def step_and_stand() -> Posture:
+    """Sixty frames: the left foot is lifted in the middle, all wander a little, as estimates do."""
+    names = BODY.skeleton.dof_names
+    vector = np.zeros((60, len(names)))
+    vector[:, 2] = 0.9
+    time = np.arange(60) / FPS
+    lift = np.clip(np.sin(np.pi * (time - 0.7) / 0.6), 0.0, None) * ((time > 0.7) & (time < 1.3))
+    for side, amount in (("L", lift), ("R", np.zeros(60))):
+        vector[:, names.index(f"hip.{side}.rotation_x")] = -0.35 - 0.6 * amount
+        vector[:, names.index(f"knee.{side}.flexion")] = 0.7 + 0.8 * amount
+    vector[:, 0] = 0.008 * np.sin(2.0 * time)
+    vector[:, 1] = 0.006 * np.cos(3.0 * time)
+    return Posture.from_vector(BODY.skeleton, vector)
+
+
+TIME_S = np.arange(60) / FPS
+
+
+def test_resting_feet_stand_still_afterwards() -> None:
+    """Both ankles rest, the left one twice; each stays within a millimetre of one place."""
+    planted = run(plant_feet(BODY, step_and_stand(), TIME_S))
+    after = places(planted.posture)
+    assert [contact.point for contact in planted.contacts] == [0, 0, 1]
+    for contact in planted.contacts:
+        rest = after[contact.first : contact.last + 1, ANKLES[contact.point]]
+        assert np.linalg.norm(rest - contact.place, axis=-1).max() < 1e-3
+    assert planted.skate_before_mm > 10.0 * planted.skate_after_mm
+
+
+def test_frames_far_from_a_rest_keep_their_numbers() -> None:
+    """Where neither foot rests nor a correction fades, nothing changes by a bit."""
+    leave = np.zeros((60, BODY.skeleton.dof_count))
+    leave[:, 0] = 0.03 * np.clip(np.arange(60) - 20, 0, None)
+    walking = step_and_stand().plus(leave)
+    planted = run(plant_feet(BODY, walking, TIME_S))
+    assert planted.contacts
+    last = max(contact.last for contact in planted.contacts)
+    free = np.arange(60) > last + FADE_S * FPS + 1
+    assert free.sum() > 20
+    assert np.array_equal(planted.posture.translation[free], walking.translation[free])
+    assert np.array_equal(planted.posture.rotations[free], walking.rotations[free])
+
+
+def test_the_other_foot_and_the_upper_body_stay() -> None:
+    """Only the legs and, a little, the hips change: a lifted foot goes where it went."""
+    before = step_and_stand()
+    planted = run(plant_feet(BODY, before, TIME_S))
+    moved = np.linalg.norm(places(planted.posture) - places(before), axis=-1)
+    lifted = slice(26, 34)
+    assert moved[lifted, ANKLES[0]].max() < 2e-3
+    assert moved[:, NAMES.index("head")].max() < 5e-3
+    step = planted.posture.minus(before)
+    arms = [i for i, name in enumerate(BODY.skeleton.dof_names) if name.startswith(("shoulder", "elbow"))]
+    assert np.array_equal(step[:, arms], np.zeros((60, len(arms))))
+
+
+def test_nothing_jumps() -> None:
+    """The ankles' speed changes from frame to frame no more than by what the rests ask for."""
+    before, planted = step_and_stand(), run(plant_feet(BODY, step_and_stand(), TIME_S))
+    bend = [
+        np.linalg.norm(np.diff(places(posture)[:, ANKLES], n=2, axis=0), axis=-1).max()
+        for posture in (before, planted.posture)
+    ]
+    assert bend[1] < bend[0] + 0.004
+
+
+def test_an_unsteady_foot_does_not_rest() -> None:
+    """One that is slow but slides on and on is left alone, unless the animator allows it to stray."""
+    slide = np.zeros((60, 2, 3))
+    slide[:, :, 0] = 0.08 * TIME_S[:, None]
+    assert find_contacts(slide, TIME_S) == ()
+    assert len(find_contacts(slide, TIME_S, stray_m=0.1)) == 2
+
+
+def test_a_foot_held_up_does_not_rest_on_air() -> None:
+    """Half a metre above where it stands a moment later, it does not rest."""
+    path = np.zeros((60, 1, 3))
+    path[:25, 0, 2] = 0.5
+    path[25:31, 0, 2] = np.linspace(0.5, 0.0, 6)
+    contacts = find_contacts(path, TIME_S)
+    assert len(contacts) == 1
+    assert contacts[0].first > 28
+
+
+def test_a_motion_without_a_rest_is_returned_as_it_is() -> None:
+    """Three frames are too few to rest in."""
+    posture = step_and_stand()[np.arange(3)]
+    planted = run(plant_feet(BODY, posture, TIME_S[:3]))
+    assert planted.contacts == ()
+    assert planted.posture is posture
+    assert planted.skate_before_mm == pytest.approx(0.0)

@@ -1,0 +1,92 @@
+"""Looking at single frames: the right one at every time, and no more decoding than it takes."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from _drawn_clip import Drawn
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.frame_reader import FrameReader
+
+FPS = 30.0
+
+
+def grey(index: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
+    """A picture whose level tells its index."""
+    return np.full((size[1], size[0], 3), 20 + 8 * (index % 25), dtype=np.uint8)
+
+
+def test_stepping_forward_decodes_each_frame_once() -> None:
+    """Steps, short jumps, the same frame again and going back all give the frame that was asked for."""
+    source = Drawn([grey(index) for index in range(50)], fps=FPS)
+    reader = FrameReader(Clip(Path("drawn"), source))
+    for index in range(20):
+        assert (reader.image_at(index / FPS) == grey(index)).all()
+    assert source.decoded == 21  # one ahead, to know when a frame ends
+    for index in (19, 19, 22, 5, 49, 48):
+        assert (reader.image_at(index / FPS) == grey(index)).all()
+    assert source.decoded <= 21 + 3 + 4 + 3 + 4
+
+
+def test_outside_the_clip_there_is_no_frame() -> None:
+    """The last frame lasts as long as the others."""
+    reader = FrameReader(Clip(Path("drawn"), Drawn([grey(index) for index in range(5)], fps=FPS)))
+    assert reader.image_at(-0.5 / FPS) is None
+    assert reader.image_at(5.2 / FPS) is None
+    assert (reader.image_at(4.8 / FPS) == grey(4)).all()
+    assert (reader.image_at(0.0) == grey(0)).all()
+
+
+def test_times_between_and_rounded_stamps_show_the_frame_that_has_begun() -> None:
+    """Containers round stamps to milliseconds, up as well as down."""
+
+    class Rounded(Drawn):
+        """Stamps in whole milliseconds."""
+
+        def onward(self, first: int):  # noqa: ANN202
+            """Round."""
+            return ((round(time, 3), image) for time, image in super().onward(first))
+
+    reader = FrameReader(Clip(Path("drawn"), Rounded([grey(index) for index in range(40)], fps=FPS)))
+    for index in (0, 1, 2, 3, 31, 32, 11, 38):
+        assert (reader.image_at(index / FPS) == grey(index)).all()
+        assert (reader.image_at((index + 0.7) / FPS) == grey(index)).all()
+
+
+def test_uneven_frames_are_found_by_their_times() -> None:
+    """Every other frame of a stretch was dropped; the one before is shown then."""
+    kept = [index for index in range(60) if index < 20 or index % 2 == 0]
+
+    class Uneven(Drawn):
+        """Frames at their own times."""
+
+        def onward(self, first: int):  # noqa: ANN202
+            """Those that were kept."""
+            return ((kept[index] / FPS, grey(kept[index])) for index in range(first, len(kept)))
+
+    reader = FrameReader(Clip(Path("uneven"), Uneven([grey(index) for index in kept], fps=FPS)))
+    for index in (3, 19, 20, 21, 35, 50, 9, 57):
+        expected = index if index < 20 else index - index % 2
+        assert (reader.image_at(index / FPS) == grey(expected)).all()
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 290, 291, 150, 140), (299, 0, 131)])
+def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> None:
+    """Far places of a file and the way back."""
+    path = tmp_path / "long.mp4"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), FPS, (64, 48))
+    for index in range(300):
+        writer.write(grey(index))
+    writer.release()
+    reader = FrameReader(Clip.open(path))
+    for index in order:
+        assert reader.image_at(index / FPS).mean() == pytest.approx(20 + 8 * (index % 25), abs=3.9)
+
+
+def test_numbered_images_are_read_one_by_one(tmp_path: Path) -> None:
+    """Their rate is what the scene says."""
+    for index in range(6):
+        cv2.imwrite(str(tmp_path / f"img_{index}.png"), grey(index))
+    reader = FrameReader(Clip.open(tmp_path, fps=10.0))
+    assert (reader.image_at(0.31) == grey(3)).all() and (reader.image_at(0.12) == grey(1)).all()

@@ -1,0 +1,200 @@
+"""The readout of markers: numbers and warnings on clips whose colours are known, and previews' masks."""
+
+from collections.abc import Generator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import cv2
+import numpy as np
+import pytest
+from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving
+from keymark.core.footage.clip import Clip
+from keymark.core.footage.clip_samples import sample_clip
+from keymark.core.footage.marker_check import MarkerCheck, check_markers
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.marker_warnings import Likeness, marker_warnings
+from keymark.core.footage.markers import track_markers
+from keymark.core.footage.mask_outlines import mask_outlines
+from keymark.core.footage.regions import colour_masks
+from keymark.core.footage.tracks import ExpectedRegions
+
+Result = TypeVar("Result")
+GREEN = (40, 220, 60)
+
+
+def result_of(job: Generator[float, None, Result]) -> Result:
+    """Drive a part to its end; its fractions must rise from 0 to 1."""
+    fractions = []
+    while True:
+        try:
+            fractions.append(next(job))
+        except StopIteration as stop:
+            assert fractions[0] == 0.0 and fractions[-1] == 1.0 and fractions == sorted(fractions)
+            return stop.value
+
+
+def check(
+    images: list[np.ndarray], styles: Sequence[MarkerStyle] = STYLES, expected: ExpectedRegions | None = None
+) -> MarkerCheck:
+    """The check of a clip of images."""
+    return result_of(check_markers(result_of(sample_clip(clip_of(images))), styles, expected))
+
+
+def words(result: MarkerCheck) -> str:
+    """All its warnings."""
+    return "\n".join(sentence for readout in result.readouts for sentence in readout.warnings)
+
+
+def test_clear_colours_are_found_everywhere_with_their_areas() -> None:
+    """Two ellipses of 302 and 452 px on a wall that has neither colour."""
+    rng = np.random.default_rng(1)
+    red, blue = check([draw(moving(index), rng) for index in range(40)]).readouts
+    assert (red.name, red.found, red.sampled) == ("red", 24, 24) and blue.found == 24
+    assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
+    assert blue.area_share == pytest.approx(np.pi * 8 * 18 / (320 * 240), rel=0.06)
+    assert min(red.distinctness, blue.distinctness) > 0.95
+    assert red.warnings == blue.warnings == ()
+
+
+def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
+    """Red is away for three quarters of the clip; the sentence says in how many frames it is found."""
+    rng = np.random.default_rng(2)
+    images = [draw(moving(index)[index >= 10 :], rng) for index in range(40)]
+    result = check(images)
+    red, blue = result.readouts
+    assert (red.found, blue.found) == (6, 24)
+    assert "red is found in only 6 of 24 frames" in words(result) and not blue.warnings
+
+
+def test_one_colour_that_is_nowhere_does_not_hide_the_others() -> None:
+    """It alone has nothing, and its sentence names colours that are there."""
+    rng = np.random.default_rng(3)
+    images = [draw(moving(index), rng) for index in range(20)]
+    result = check(images, (*STYLES, MarkerStyle("shin", "shin.L", GREEN)))
+    red, blue, shin = result.readouts
+    assert (shin.found, shin.area_px, shin.distinctness) == (0, 0.0, 0.0)
+    assert "[40, 220, 60], which matches nothing in the clip" in shin.warnings[0]
+    assert red.found == blue.found == 20 and red.warnings == blue.warnings == ()
+    np.testing.assert_allclose(red.distinctness, check(images).readouts[0].distinctness, atol=0.01)
+
+
+def test_a_wall_of_a_markers_colour_is_named() -> None:
+    """Nothing tells the marker from the wall; the other marker is well."""
+    rng = np.random.default_rng(4)
+    styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
+    wall, blue = check([draw(moving(index), rng) for index in range(20)], styles).readouts
+    assert wall.found == 0 and wall.distinctness == 0.0
+    assert "of the picture around the markers have too" in wall.warnings[0]
+    assert blue.found == 20 and blue.distinctness > 0.9
+
+
+def test_a_background_that_comes_near_a_markers_colour_makes_it_less_distinct() -> None:
+    """Below it all hangs a curtain ever nearer to red."""
+    distinctness = []
+    for share in (0.0, 0.8, 0.85):
+        rng = np.random.default_rng(5)
+        curtain = (1.0 - share) * np.array((200.0, 190.0, 176.0)) + share * np.array(RED)
+        images = []
+        for index in range(20):
+            image = draw(moving(index), rng)
+            noise = rng.normal(0.0, 6.0, (90, 320, 3))
+            image[150:] = np.clip(curtain[::-1] + noise, 0, 255).astype(np.uint8)
+            images.append(image)
+        distinctness.append(check(images).readouts[0].distinctness)
+    assert distinctness[0] > 0.995 > distinctness[1] > 0.98 > distinctness[2]
+
+
+def test_clutter_of_a_markers_colour_is_named_with_its_share() -> None:
+    """A bucket of 1106 px stands beside a marker of 302 px that moves."""
+    rng = np.random.default_rng(6)
+    bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
+    result = check([draw([*moving(index), bucket], rng) for index in range(40)])
+    red, blue = result.readouts
+    assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
+    share = 22 * 16 / (22 * 16 + 16 * 6)
+    assert red.distinctness == pytest.approx(1.0 - share, abs=0.05) and blue.distinctness > 0.95
+    assert "% of what has the colour of red is something else" in words(result)
+
+
+def test_markers_of_one_colour_are_named_both_and_each_is_found() -> None:
+    """Their expected places tell them apart."""
+    rng = np.random.default_rng(7)
+    other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
+    styles = (*STYLES, MarkerStyle("twin", "shin.L", (RED[0] - 4, RED[1], RED[2] + 3)))
+    places = np.array([[moving(index)[0][1], moving(index)[1][1], other[1]] for index in range(40)])
+    expected = ExpectedRegions(places, np.full((40, 3), 40.0))
+    result = check([draw([*moving(index), other], rng) for index in range(40)], styles, expected)
+    red, blue, twin = result.readouts
+    assert result.groups == ((0, 2), (1,))
+    assert "red has almost the same colour as twin" in red.warnings[0]
+    assert "twin has almost the same colour as red" in twin.warnings[0]
+    assert red.found == twin.found == 24 and blue.warnings == ()
+    assert twin.area_px == pytest.approx(np.pi * 9 * 14, rel=0.08)
+
+
+def test_colours_that_light_may_make_equal_are_named() -> None:
+    """Two reds that differ by a little more than one sample leaves open, in changing light."""
+    rng = np.random.default_rng(8)
+    dark = (150, 52, 40)
+    images = []
+    for index in range(24):
+        shapes: list[Ellipse] = [moving(index)[0], (dark, (250.5, 120.5), (8.0, 18.0), 0.0)]
+        images.append(draw(shapes, rng, 6.0, 1.0 - 0.4 * (index % 2)))
+    result = check(images, (STYLES[0], MarkerStyle("dark", "trunk", dark)))
+    assert "colours too alike" in words(result) or "almost the same colour" in words(result)
+    assert "red" in words(result) and "dark" in words(result)
+
+
+def test_sentences_say_with_what_a_colour_is_confused() -> None:
+    """Each names the marker, and a marker that nothing is wrong with has none."""
+    clear = Likeness((), (("blue", 0.02),), 0.05, 0.01)
+    assert marker_warnings("red", 24, 24, 300.0, clear) == ()
+    (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
+    assert other == "red and blue have colours too alike: 30 % of red would pass for blue"
+    (wall,) = marker_warnings("red", 24, 24, 300.0, clear._replace(background=0.25))
+    assert wall.startswith("the background wears the colour of red: 25 %")
+
+
+def test_a_tiny_marker_is_called_small() -> None:
+    """A wristband of two pixels' half axis."""
+    rng = np.random.default_rng(9)
+    images = [draw([(RED, (60.0 + 3 * i, 90.0), (4.0, 2.5), 0.0), moving(i)[1]], rng, 1.0) for i in range(24)]
+    red, blue = check(images).readouts
+    assert any("red is small in the picture" in sentence for sentence in red.warnings)
+    assert blue.warnings == ()
+
+
+def test_previews_show_what_the_extraction_measures() -> None:
+    """The masks' coverage sums to the regions' areas and every mask lies where its marker is."""
+    rng = np.random.default_rng(10)
+    images = [draw(moving(index), rng) for index in range(12)]
+    tracks = finish(track_markers(clip_of(images), STYLES))
+    masks = colour_masks(images[5], check(images).model)
+    assert masks.shape == (2, 240, 320)
+    np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
+    assert masks.max() <= 1.0 and masks[0][120, 250] == 0.0 and masks[1][120, 250] == 1.0
+
+
+def test_large_images_are_previewed_on_the_measuring_grid() -> None:
+    """At four times the size the mask covers as much of the picture as at once."""
+    rng = np.random.default_rng(11)
+    small = [draw(moving(index), rng) for index in range(6)]
+    large = [cv2.resize(image, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC) for image in small]
+    clip = Clip(Path("large"), Drawn(large, size=(1280, 960)))
+    result = result_of(check_markers(result_of(sample_clip(clip)), STYLES))
+    masks = colour_masks(large[2], result.model)
+    assert masks.shape == (2, 240, 320)
+    assert masks[0].mean() == pytest.approx(result.readouts[0].area_share, rel=0.06)
+
+
+def test_outlines_run_along_the_edge_of_what_is_covered() -> None:
+    """An ellipse of 24 by 10 px and one of 6 by 6, on a grid half as fine as the image."""
+    mask = draw([((255, 255, 255), (60.0, 50.0), (12.0, 5.0), 0.0)], np.random.default_rng(0), 0.0)
+    bright = (mask.min(axis=2) > 220).astype(np.float32)
+    bright[100:106, 200:206] = 1.0
+    long, short = mask_outlines(bright, 2.0)
+    radius = np.hypot((long[:, 0] - 120.0) / 24.0, (long[:, 1] - 100.0) / 10.0)
+    assert np.abs(radius - 1.0).max() < 0.15 and len(long) > len(short)
+    assert short.min(axis=0) == pytest.approx([400.0, 200.0], abs=1.1)
+    assert short.max(axis=0) == pytest.approx([412.0, 212.0], abs=1.1)
+    assert mask_outlines(np.zeros((4, 4), dtype=np.float32), 1.0) == []

@@ -1,0 +1,155 @@
+"""What is read of a clip: known again, kept as arrays, and read anew where anything differs."""
+
+import os
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _synthetic_take import write_synthetic_take
+from keymark.core.files.digest import digest, file_digest
+from keymark.core.footage import clip as clip_module
+from keymark.core.footage.reading import Reading
+from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arrays
+from keymark.core.footage.tracks import RegionTracks
+from keymark.core.progress import run
+from keymark.core.reconstruct import read_footage
+from keymark.core.take import Take, read_take
+
+FRAMES = 24
+
+
+@pytest.fixture
+def take(tmp_path: Path) -> Take:
+    """A small synthetic take."""
+    return read_take(write_synthetic_take(tmp_path / "take", frames=FRAMES, keyframe_every=8))
+
+
+@pytest.fixture
+def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Grows by one whenever a clip's frames are gone through."""
+    counted: list[int] = []
+    original = clip_module.ImageSequence.frames
+
+    def frames(self: clip_module.ImageSequence):  # noqa: ANN202
+        counted.append(1)
+        return original(self)
+
+    monkeypatch.setattr(clip_module.ImageSequence, "frames", frames)
+    return counted
+
+
+def assert_alike(one: RegionTracks, other: RegionTracks) -> None:
+    """Every number is the same."""
+    for field in fields(RegionTracks):
+        a, b = getattr(one, field.name), getattr(other, field.name)
+        assert np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else a == b
+
+
+def moved(take: Take, by: float) -> Take:
+    """The take with its second keyframe displaced [m] across the picture."""
+    step = np.zeros(take.body.skeleton.dof_count)
+    step[0] = by
+    changed = replace(take.keyframes[1], posture=take.keyframes[1].posture.plus(step))
+    return replace(take, keyframes=(take.keyframes[0], changed, *take.keyframes[2:]))
+
+
+def test_a_reading_survives_as_arrays(take: Take) -> None:
+    """Tracks, pictures, sightings, notes and key."""
+    reading = replace(run(read_footage(take)), notes=("it may be cut off",))
+    back = reading_from_arrays(reading_arrays(reading))
+    assert_alike(back.tracks, reading.tracks)
+    assert back.notes == reading.notes and back.key == reading.key
+    assert back.album is not None and reading.album is not None
+    for frame in (0, FRAMES - 1):
+        assert np.array_equal(back.album.picture(frame), reading.album.picture(frame))
+    assert FRAMES not in back.album
+    assert back.sightings is not None and reading.sightings is not None
+    assert back.sightings.lessons == reading.sightings.lessons
+    bare = reading_from_arrays(reading_arrays(Reading(reading.tracks)))
+    assert bare.album is None and bare.sightings is None and bare.notes == () and bare.key == ""
+
+
+def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> None:
+    """The very reading comes back."""
+    reading = run(read_footage(take))
+    again = run(read_footage(take, reading))
+    assert again.sightings is reading.sightings and again.tracks is reading.tracks
+    assert len(passes) == 1
+
+
+def test_a_moved_keyframe_needs_no_pass_where_colours_stay(take: Take, passes: list[int]) -> None:
+    """From what was kept comes exactly what reading anew gives."""
+    kept = reading_from_arrays(reading_arrays(run(read_footage(take))))
+    changed = moved(take, 0.03)
+    again = run(read_footage(changed, kept))
+    assert len(passes) == 1
+    fresh = run(read_footage(changed))
+    assert_alike(again.tracks, fresh.tracks)
+    assert again.key == fresh.key != kept.key
+    without = replace(take, keyframes=())
+    assert_alike(run(read_footage(without, kept)).tracks, run(read_footage(without)).tracks)
+
+
+def test_a_keyframe_that_hides_a_colour_has_the_clip_read_anew(take: Take, passes: list[int]) -> None:
+    """Where the markers may be looked for has a say in what is learned."""
+    kept = run(read_footage(take))
+    far = moved(take, 0.9)
+    again = run(read_footage(far, kept))
+    assert len(passes) == 2
+    assert_alike(again.tracks, run(read_footage(far)).tracks)
+
+
+@pytest.mark.parametrize("change", ["clip", "touched", "colour", "segment"])
+def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[int], change: str) -> None:
+    """Nothing is ever out of date."""
+    kept = run(read_footage(take))
+    image = sorted((take.folder / "frames").iterdir())[3]
+    style = take.markers[0]
+    if change == "clip":
+        image.write_bytes(sorted((take.folder / "frames").iterdir())[9].read_bytes())
+    elif change == "touched":
+        os.utime(image, (1000, 1000))
+    elif change == "colour":
+        take = replace(take, markers=(replace(style, color_srgb=(44, 150, 70)), *take.markers[1:]))
+    else:
+        take = replace(take, markers=(replace(style, segment="chest"), *take.markers[1:]))
+    again = run(read_footage(take, kept))
+    assert len(passes) == 2 and again.sightings is not kept.sightings
+
+
+def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passes: list[int]) -> None:
+    """One that was thought to move needs the clip once more for them."""
+    poses = np.repeat(take.camera.matrix_world[None], FRAMES, axis=0)
+    poses[1:, 0, 3] += 0.01
+    moving = replace(take, camera=replace(take.camera, matrix_world=poses))
+    assert run(read_footage(moving, run(read_footage(take)))).album is None
+    without = run(read_footage(moving))
+    assert run(read_footage(take, without)).album is not None
+    assert len(passes) == 3
+
+
+def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
+    """Kinds and borders count."""
+    alike: Callable[..., bool] = lambda a, b: digest(*a) == digest(*b)  # noqa: E731
+    assert alike((1, "a", np.arange(3)), (1, "a", np.arange(3)))
+    for one, other in (
+        (("ab", "c"), ("a", "bc")),
+        ((1,), (1.0,)),
+        ((None,), ("None",)),
+        ((("a",), "b"), (("a", "b"),)),
+        ((np.zeros(4),), (np.zeros((2, 2)),)),
+        ((np.zeros(2),), (np.zeros(2, np.float32),)),
+        ((b"1",), ("1",)),
+    ):
+        assert not alike(one, other)
+    with pytest.raises(TypeError, match="dict"):
+        digest({})
+    file = tmp_path / "file"
+    file.write_bytes(bytes(300_000))
+    before = file_digest(file)
+    state = file.stat()
+    file.write_bytes(bytes(150_000) + b"1" + bytes(149_999))
+    os.utime(file, ns=(state.st_atime_ns, state.st_mtime_ns))
+    assert file_digest(file) != before
