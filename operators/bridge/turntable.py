@@ -144,6 +144,7 @@ def add_turntable(
     pivot = _empty(collection, f"{name} Pivot")
     pivot.parent = centre
     for layer in scene.view_layers:
+        layer.update()  # it does not know the new objects yet
         for empty in (centre, pivot):  # lines from each camera to them would lie over the actor
             if empty.name in layer.objects:
                 empty.hide_set(True, view_layer=layer)

@@ -12,7 +12,7 @@ from keymark.operators import results, takes
 from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import motion
 from keymark.operators.ui.overlays.clip_editor import ClipView
-from keymark.operators.ui.overlays.legend import Sample, legend
+from keymark.operators.ui.overlays.legend import Sample, corner, legend
 from keymark.operators.ui.overlays.paths import paths, window
 from keymark.operators.ui.overlays.picture import Fill, Label, Stroke, merged
 from keymark.operators.ui.overlays.skeleton import skeleton
@@ -244,6 +244,21 @@ def test_neighbours_that_are_alike_are_drawn_at_once() -> None:
         [Fill(np.zeros((1, 4, 2)), red), Fill(np.zeros((2, 4, 2)), blue), Fill(np.zeros((1, 8, 2)), red)]
     )
     assert [len(item.corners) for item in squares] == [3, 1]
+
+
+def test_the_legend_keeps_clear_of_what_covers_the_region() -> None:
+    """A toolbar at the left, the panel of the last operator at the bottom; a closed one covers nothing."""
+
+    def other(kind: str, alignment: str, x: int, y: int, width: int, height: int) -> SimpleNamespace:
+        return SimpleNamespace(type=kind, alignment=alignment, x=x, y=y, width=width, height=height)
+
+    own = other("WINDOW", "NONE", 100, 50, 800, 600)
+    tools, panel = other("TOOLS", "LEFT", 100, 50, 60, 600), other("HUD", "FLOAT", 170, 50, 200, 40)
+    closed = other("TOOLS", "LEFT", 100, 50, 1, 1)
+    alone = corner(SimpleNamespace(type="VIEW_3D", regions=[own, closed]), own, 1.0)
+    x, y = corner(SimpleNamespace(type="VIEW_3D", regions=[own, tools, panel]), own, 1.0)
+    assert (x - alone[0], y - alone[1]) == (60.0, 40.0)
+    assert corner(SimpleNamespace(type="CLIP_EDITOR", regions=[own]), own, 1.0)[1] > alone[1]
 
 
 def test_a_lost_review_draws_nothing(registered: None) -> None:

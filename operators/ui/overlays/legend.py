@@ -98,13 +98,13 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
 
 
 def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
-    """The bottom left corner of what no toolbar covers of a region [region px]."""
+    """The bottom left corner of what no toolbar or operator's panel covers of a region [region px]."""
     left = bottom = 0.0
     for other in area.regions:
         covers = other.width > 1 and other.height > 1 and other != region
         if covers and other.alignment == "LEFT":
             left = max(left, float(other.x + other.width - region.x))
-        elif covers and other.alignment == "BOTTOM" and other.y <= region.y:
+        elif covers and (other.type == "HUD" or (other.alignment == "BOTTOM" and other.y <= region.y)):
             bottom = max(bottom, float(other.y + other.height - region.y))
     lift = ABOVE_CACHE if area.type == "CLIP_EDITOR" else 0.0
     return left + MARGIN * scale, bottom + (MARGIN + lift) * scale
