@@ -3,6 +3,7 @@
 import bpy
 
 from .marker import KEYMARK_PG_marker
+from .review import KEYMARK_PG_review
 from .turntable import KEYMARK_PG_turntable
 
 METHODS = (
@@ -99,6 +100,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     review_key: bpy.props.StringProperty(
         name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
     )
+    review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
 
 
 register, unregister = bpy.utils.register_classes_factory(
