@@ -57,6 +57,14 @@ def turntable(context: bpy.types.Context) -> str | None:
     return None if take and take.turntable.collection else "Set up the turntable first"
 
 
+def weak_frames(context: bpy.types.Context) -> str | None:
+    """There are frames worth another keyframe."""
+    take = find_take(context.scene)
+    if take is None or take.review.frame_count == 0:
+        return "Reconstruct the motion first"
+    return None if len(take.review.weak_frames) else "No frame needs another keyframe"
+
+
 def object_mode_possible(context: bpy.types.Context) -> str | None:
     """No object is being edited."""
     active = context.view_layer.objects.active

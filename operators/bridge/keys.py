@@ -67,9 +67,12 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     """Frames (N,) of the keys that are not GENERATED."""
-    keys = _read_keys(fcurve)
-    own = keys["type"] != _enum_value("type", "GENERATED")
-    return np.asarray(keys["co"][own, 0], dtype=np.float64)
+    # Only what is needed: this is asked for all of an armature's curves while the timeline is drawn.
+    points = fcurve.keyframe_points
+    places, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
+    points.foreach_get("co", places.ravel())
+    points.foreach_get("type", types)
+    return np.asarray(places[types != _enum_value("type", "GENERATED"), 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:

@@ -3,7 +3,6 @@
 import bpy
 
 from ..bridge.actions import existing_channelbag
-from .properties.marker import UNPICKED
 
 FEWEST_KEYFRAMES = 2
 
@@ -16,7 +15,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: find the clip's file"
     if not len(take.markers):
         return "Next: add the markers that the performer wears"
-    if any(tuple(marker.color) == UNPICKED for marker in take.markers):
+    if any(not marker.is_picked for marker in take.markers):
         return "Next: pick each marker's color in the footage"
     if take.armature is None:
         return "Next: enter the performer's height and build the actor"

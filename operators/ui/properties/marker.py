@@ -12,9 +12,6 @@ SEGMENTS = (
 )
 """What a marker can be bound to."""
 
-UNPICKED = (0.5, 0.5, 0.5)
-"""The color of a marker that has not been given one."""
-
 
 def segment_title(segment: str) -> str:
     """What people call a segment."""
@@ -62,7 +59,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         size=3,
         min=0.0,
         max=1.0,
-        default=UNPICKED,
+        default=(0.5, 0.5, 0.5),
         update=_changed,
     )
     named_after: bpy.props.StringProperty(

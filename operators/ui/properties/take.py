@@ -6,6 +6,7 @@ from ...takes import unique_name
 from .actor import KEYMARK_PG_lengths
 from .clip_state import KEYMARK_PG_clip_state
 from .marker import KEYMARK_PG_marker
+from .review import KEYMARK_PG_review
 from .turntable import KEYMARK_PG_turntable
 
 METHODS = (
@@ -137,6 +138,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     review_key: bpy.props.StringProperty(
         name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
     )
+    review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
 
 
 register, unregister = bpy.utils.register_classes_factory(
