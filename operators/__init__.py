@@ -9,6 +9,7 @@ from types import ModuleType
 MODULES = (
     "ui.properties.marker",
     "ui.properties.turntable",
+    "ui.properties.finish",
     "ui.properties.take",
     "ui.properties.progress",
     "ui.properties.overlays",
@@ -26,6 +27,7 @@ MODULES = (
     "store_keyframe",
     "reconstruct",
     "show_action",
+    "bake_motion",
     "set_up_turntable",
     "remove_turntable",
     "show_view",

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .finish import KEYMARK_PG_finish
 from .marker import KEYMARK_PG_marker
 from .turntable import KEYMARK_PG_turntable
 
@@ -99,6 +100,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     review_key: bpy.props.StringProperty(
         name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
     )
+    finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)
 
 
 register, unregister = bpy.utils.register_classes_factory(
