@@ -8,10 +8,10 @@ from .takes import active_take
 
 
 class KEYMARK_OT_mark_asset(bpy.types.Operator):
-    """Offer the motion, the final one if there is one, in the asset browser: with catalog, tags and a picture"""
+    """Offer the motion (the final one if there is one) in the asset browser, with catalog, tags and picture"""
 
     bl_idname = "keymark.mark_asset"
-    bl_label = "Mark as Asset"
+    bl_label = "Mark Asset"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

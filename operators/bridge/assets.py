@@ -1,7 +1,8 @@
 """Actions as assets: what an asset browser shows of them, and by which it finds them."""
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import bpy
 import cv2
@@ -9,12 +10,14 @@ import numpy as np
 
 from ...core.body.human import HUMAN
 from ...core.motion import Motion
-from ...core.progress import run
+from ...core.progress import run, within
 from ...core.report.canvas import Image
 from ...core.report.thumbnail import thumbnail
 from .actor_lengths import read_body
 from .final_motion import motion_frames, read_values, shown_postures
 from .rig import read_rig
+
+Result = TypeVar("Result")
 
 DRAWN_FRAMES = 25
 """Frames over the whole motion that the picture is made from."""
@@ -73,8 +76,8 @@ def action_picture(
     rig = read_rig(armature_object, body)
     every = motion_frames(armature_object, action, body)
     frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
-    values = run(read_values(armature_object, action, rig, frames))
-    posture = run(shown_postures(armature_object, rig, rig.show(values), body))
+    values = _finished(read_values(armature_object, action, rig, frames))
+    posture = _finished(shown_postures(armature_object, rig, rig.show(values), body))
     points = body.points(body.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
     rate = scene.render.fps / scene.render.fps_base
@@ -82,3 +85,7 @@ def action_picture(
         body, rate, int(frames[0]), (frames - frames[0]) / rate, posture, points, unknown, (), "interpolation"
     )
     return thumbnail(motion)
+
+
+def _finished(part: Generator[float, None, Result]) -> Result:
+    return run(within("Drawing the picture", part, 0.0, 1.0))

@@ -2,9 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import bpy
 
@@ -12,17 +10,6 @@ from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_whole
 from .scene_file import write_bvh
 from .scene_frames import showing_action
-
-
-@dataclass(frozen=True)
-class Format:
-    """A kind of file."""
-
-    name: str
-    suffix: str
-    write: Callable[[bpy.types.Object, Path], None]
-    missing: Callable[[], str]
-    """Why this Blender cannot write it; empty where it can."""
 
 
 def _write_fbx(_: bpy.types.Object, path: Path) -> None:
@@ -66,24 +53,12 @@ def _write_usd(_: bpy.types.Object, path: Path) -> None:
     )
 
 
-def _lacks_addon(operator: str, addon: str) -> Callable[[], str]:
-    return lambda: "" if hasattr(bpy.types, operator) else f"enable the add-on {addon} in the preferences"
-
-
-FORMATS = {
-    "BVH": Format(
-        "BVH", ".bvh", write_bvh, _lacks_addon("EXPORT_ANIM_OT_bvh", "BioVision Motion Capture (BVH)")
-    ),
-    "FBX": Format("FBX", ".fbx", _write_fbx, _lacks_addon("EXPORT_SCENE_OT_fbx", "FBX")),
-    "GLTF": Format("glTF", ".glb", _write_gltf, _lacks_addon("EXPORT_SCENE_OT_gltf", "glTF 2.0")),
-    "USD": Format(
-        "USD",
-        ".usdc",
-        _write_usd,
-        lambda: "" if bpy.app.build_options.usd else "this Blender is built without it",
-    ),
+WRITERS: dict[str, Callable[[bpy.types.Object, Path], None]] = {
+    "BVH": write_bvh,
+    "FBX": _write_fbx,
+    "GLTF": _write_gltf,
+    "USD": _write_usd,
 }
-"""What can be written, by identifier."""
 
 
 def export_motion(
@@ -101,26 +76,22 @@ def export_motion(
         armature_object: The actor; nothing else is written.
         action: The motion.
         frames: First and last scene frame.
-        kind: A key of `FORMATS`.
+        kind: A key of `WRITERS`.
         path: The file; it appears complete or not at all.
 
     Raises:
-        InputError: This Blender cannot write the format, or the actor is hidden from the exporters.
+        InputError: The actor is hidden with its collection.
         ConversionError: The exporter failed, or the file cannot be written.
     """
-    chosen = FORMATS[kind]
-    missing = chosen.missing()
-    if missing:
-        raise InputError(f"{chosen.name} cannot be written: {missing}")
     with _only(scene, armature_object), _frame_range(scene, frames), showing_action(armature_object, action):
 
         def write(beside: Path) -> None:
             try:
-                chosen.write(armature_object, beside)
+                WRITERS[kind](armature_object, beside)
             except RuntimeError as error:
                 raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
             if not beside.exists():
-                raise ConversionError(f"{path}: the exporter for {chosen.name} wrote nothing")
+                raise ConversionError(f"{path}: the exporter wrote nothing")
 
         write_whole(path, write)
 
@@ -168,9 +139,3 @@ def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
 def _set_mode(mode: str, now: str) -> None:
     if mode != now and bpy.ops.object.mode_set.poll():
         bpy.ops.object.mode_set(mode=mode)
-
-
-def suggested_path(name: str, kind: Any) -> str:
-    """A file's name for a motion, beside the .blend where it has been saved."""
-    folder = "//" if bpy.data.filepath else ""
-    return bpy.path.abspath(folder + bpy.path.clean_name(name) + FORMATS[kind].suffix)

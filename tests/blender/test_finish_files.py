@@ -12,8 +12,8 @@ from keymark.core.motion import Motion
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
-from keymark.operators.bridge.exports import FORMATS
 from keymark.operators.bridge.fcurves import write_motion
+from keymark.operators.export_formats import FORMATS, Format
 from keymark.operators.takes import add_take
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
@@ -194,8 +194,7 @@ def test_a_format_that_blender_lacks_is_refused(
     take: bpy.types.PropertyGroup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With the reason."""
-    monkeypatch.setitem(
-        FORMATS, "USD", FORMATS["USD"].__class__("USD", ".usdc", print, lambda: "no such thing")
-    )
-    with pytest.raises(RuntimeError, match="USD cannot be written: no such thing"):
+    gone = Format("USD", ".usdc", "", "KEYMARK_OT_of_no_addon", "USD Exporter")
+    monkeypatch.setitem(FORMATS, "USD", gone)
+    with pytest.raises(RuntimeError, match="USD cannot be written: Enable the add-on USD Exporter"):
         bpy.ops.keymark.export_motion(format="USD", filepath=str(tmp_path / "wave.usdc"))

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...bridge.exports import FORMATS
+from ...export_formats import FORMATS
 from ...takes import active_take
 from .base import TakePanel
 
@@ -92,7 +92,7 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
             row.enabled = not missing
             row.operator("keymark.export_motion", text=chosen.name, icon="EXPORT").format = kind
             if missing:
-                column.label(text=missing[0].upper() + missing[1:], icon="INFO")
+                column.label(text=missing, icon="INFO")
 
 
 register, unregister = bpy.utils.register_classes_factory(
