@@ -8,7 +8,7 @@ from .takes import active_take
 
 
 class KEYMARK_OT_mark_asset(bpy.types.Operator):
-    """Offer the motion (the final one if there is one) in the asset browser, with catalog, tags and picture"""
+    """Offer the motion, finished if it is, in the asset browser: with catalog, tags and a picture"""
 
     bl_idname = "keymark.mark_asset"
     bl_label = "Mark Asset"
