@@ -57,18 +57,29 @@ def ensure_catalog(file: Path, catalog: str) -> str:
         InputError: The catalog's path or the file is unusable.
         ConversionError: The file cannot be written.
     """
-    path = _clean(catalog)
     content = _read(file)
+    known = _catalogs(content)
+    names = _clean(catalog).split("/")
+    paths = ["/".join(names[: depth + 1]) for depth in range(len(names))]
+    if paths[-1] not in known:
+        # Parents get lines of their own: without them Blender calls the file changed as soon as it is read.
+        missing = [path for path in paths if path not in known]
+        known |= {path: str(uuid.uuid5(NAMESPACE, path)) for path in missing}
+        start = content.rstrip("\n") + "\n" if content.strip() else HEADER
+        lines = [f"{known[path]}:{path}:{path.replace('/', '-')}\n" for path in missing]
+        text = start + "".join(lines)
+        write_whole(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+    return known[paths[-1]]
+
+
+def _catalogs(content: str) -> dict[str, str]:
+    """Identifiers of the catalogs in a file's text, by path; where one stands twice, the first."""
+    found: dict[str, str] = {}
     for line in content.splitlines():
         parts = line.strip().split(":", 2)
-        if not line.startswith("#") and len(parts) > 1 and parts[1] == path:
-            return parts[0]
-    identifier = str(uuid.uuid5(NAMESPACE, path))
-    start = content if content.strip() else HEADER
-    line = f"{identifier}:{path}:{path.replace('/', '-')}\n"
-    text = start.rstrip("\n") + "\n" + ("\n" if start == HEADER else "") + line
-    write_whole(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
-    return identifier
+        if not line.startswith("#") and len(parts) > 1:
+            found.setdefault(parts[1], parts[0])
+    return found
 
 
 def _clean(catalog: str) -> str:

@@ -108,6 +108,7 @@ def test_keys_are_the_animators_own_and_posed_frames_stay(take: bpy.types.Proper
         assert {point.interpolation for point in points} == {"BEZIER"}
         assert set(POSED) <= {round(point.co.x, 3) for point in points}
         assert {point.handle_left_type for point in points} == {"ALIGNED"}
+        assert not any(point.select_control_point for point in points)
 
 
 def test_handles_give_the_cubic_that_was_checked(take: bpy.types.PropertyGroup) -> None:

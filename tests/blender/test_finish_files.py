@@ -88,10 +88,15 @@ def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
     file.write_text(before)
     assert ensure_catalog(file, "Props / Chairs/") == "11111111-2222-3333-4444-555555555555"
     assert file.read_text() == before
-    first = ensure_catalog(file, "Keymark/Running")
-    assert file.read_text() == before + f"{first}:Keymark/Running:Keymark-Running\n"
-    assert ensure_catalog(file, "Keymark/Running") == first
-    assert ensure_catalog(file, "Keymark") != first
+    first = ensure_catalog(file, "Props/Chairs/Thrones")
+    assert file.read_text().startswith(before)
+    assert [line.split(":")[1] for line in file.read_text()[len(before) :].splitlines()] == [
+        "Props",  # a parent without a line would make Blender call the file changed
+        "Props/Chairs/Thrones",
+    ]
+    written = file.read_text()
+    assert ensure_catalog(file, "Props/Chairs/Thrones") == first
+    assert file.read_text() == written
     assert [path.name for path in tmp_path.iterdir()] == [NAME]
 
 
