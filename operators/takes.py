@@ -32,6 +32,18 @@ def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     return settings.takes[min(settings.active_take, len(settings.takes) - 1)]
 
 
+def take_called(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
+    """The take of an identifier, whichever is worked on now.
+
+    Raises:
+        InputError: It has been removed.
+    """
+    for take in scene.keymark.takes:
+        if take.identifier == identifier:
+            return take
+    raise InputError("the take that the job was about has been removed meanwhile; nothing was changed")
+
+
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Add a take, which becomes the active one; a number makes its name unique."""
     settings = scene.keymark

@@ -8,8 +8,8 @@ import numpy as np
 from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
-from ...results import reading_of, review_of
-from ...takes import find_take, footage_of
+from ...results import review_of
+from ...takes import find_take
 from . import drawing
 from .drawing import Color, faded
 from .figures import diamonds, segments
@@ -86,9 +86,7 @@ def draw(context: bpy.types.Context) -> None:
     paint(picture(context.scene, take, timeline))
 
 
-def picture(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline
-) -> list[Item]:
+def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:
     """Everything that is switched on and known."""
     settings = scene.keymark.timeline
     items: list[Item] = []
@@ -190,11 +188,9 @@ _known: dict[object, object] = {}
 MOST_KNOWN = 16
 
 
-def _remembered(key: object, make: Callable[[], list[Item]]) -> list[Item]:
-    ...
+def _remembered(key: object, make: Callable[[], list[Item]]) -> list[Item]: ...
 
 
 def _speed(
     scene: bpy.types.Scene, take: bpy.types.PropertyGroup
-) -> tuple[Array, Array, tuple[object, ...]] | None:
-    ...
+) -> tuple[Array, Array, tuple[object, ...]] | None: ...

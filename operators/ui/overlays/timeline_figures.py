@@ -80,7 +80,10 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
     top = floor + height * confidence
     bottom = np.where(np.isfinite(top), floor, np.nan)
     bars = np.stack(
-        [np.stack(corner, axis=-1) for corner in ((left, bottom), (right, bottom), (right, top), (left, top))],
+        [
+            np.stack(corner, axis=-1)
+            for corner in ((left, bottom), (right, bottom), (right, top), (left, top))
+        ],
         axis=1,
     )
     return bars, np.column_stack([believed_color(confidence), np.ones(len(x))])

@@ -5,6 +5,7 @@ import bpy
 from ...takes import unique_name
 from .actor import KEYMARK_PG_lengths
 from .clip_state import KEYMARK_PG_clip_state
+from .finish import KEYMARK_PG_finish
 from .marker import KEYMARK_PG_marker
 from .review import KEYMARK_PG_review
 from .turntable import KEYMARK_PG_turntable
@@ -139,6 +140,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
     )
     review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
+    finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)
 
 
 register, unregister = bpy.utils.register_classes_factory(
