@@ -5,6 +5,7 @@ and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first 
 Blender has no shaders.
 """
 
+from collections.abc import Sequence
 from typing import Literal
 
 import blf
@@ -19,7 +20,7 @@ from .figures import triangles
 Color = tuple[float, float, float, float]
 Array = NDArray[np.float64]
 
-HALO: Color = (0.0, 0.0, 0.0, 0.55)
+HALO: Color = (0.0, 0.0, 0.0, 0.75)
 """What sets lines off from footage of any brightness."""
 INK: Color = (1.0, 1.0, 1.0, 1.0)
 HALO_PX = 1.25
@@ -36,9 +37,9 @@ def ui_scale() -> float:
     return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
 
 
-def faded(color: ArrayLike, opacity: float) -> Color:
+def faded(color: Sequence[float], opacity: float) -> Color:
     """A colour of three or four numbers with its alpha multiplied by `opacity`."""
-    red, green, blue, *alpha = (float(value) for value in np.asarray(color, dtype=np.float64))
+    red, green, blue, *alpha = color
     return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
 
 
@@ -156,7 +157,7 @@ def text(
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, 0.8 * color[3])
+    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, color[3])
     blf.shadow_offset(FONT, 0, 0)
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)

@@ -7,6 +7,7 @@ import numpy as np
 from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
+from .drawing import INK
 from .figures import dashes, segments
 from .picture import Item, Label, Stroke
 from .style import DASH, GAP, Style, paler
@@ -66,5 +67,5 @@ def predicted_outlines(
         if marker in hidden:
             x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
             words = pgettext_iface("{marker} hidden").format(marker=review.marker_names[marker])
-            items.append(Label(words, float(x), float(y), style.color(paler(color))))
+            items.append(Label(words, float(x), float(y), style.color(INK)))
     return items

@@ -41,6 +41,9 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> boo
     progress = context.window_manager.keymark_progress
     if not job_is_running(context) or not progress.stage:
         return False
-    layout.progress(factor=progress.fraction, text=f"{progress.stage} ({100.0 * progress.fraction:.0f}%)")
-    layout.label(text="Esc cancels")
+    percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
+    layout.progress(factor=progress.fraction, text=percent)
+    row = layout.row()
+    row.label(text="Esc cancels", icon="EVENT_ESC")
+    row.label(text=getattr(progress, "time_left", ""), translate=False)
     return True

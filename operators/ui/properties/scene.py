@@ -5,9 +5,7 @@ import bpy
 from ...takes import bring_forward
 from .overlays import KEYMARK_PG_overlays
 from .take import KEYMARK_PG_take
-
-VERSION = 1
-"""Version of these properties; a file says by which it was written."""
+from .timeline import KEYMARK_PG_timeline
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -29,6 +27,7 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         update=_active_take_changed,
     )
     overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
+    timeline: bpy.props.PointerProperty(type=KEYMARK_PG_timeline)
 
 
 def register() -> None:
