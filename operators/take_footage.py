@@ -8,6 +8,7 @@ from ..core.errors import InputError
 from .bridge.attach_footage import attach_footage, is_guess
 from .bridge.footage import clip_path
 from .bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
+from .show_view import look_through
 from .takes import find_take, footage_of
 
 LOOKED_AT = 90
@@ -64,6 +65,13 @@ def is_missing(clip: bpy.types.MovieClip | None) -> bool:
     except InputError:
         return True
     return False
+
+
+def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    """Let the viewport at work show the footage: otherwise nothing of it would be seen."""
+    space = context.space_data
+    if isinstance(space, bpy.types.SpaceView3D) and space.region_3d is not None and take.camera is not None:
+        look_through(space, take.id_data, take.camera)
 
 
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:

@@ -36,7 +36,7 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it behind the take's camera."""
-        from .take_footage import give_footage
+        from .take_footage import give_footage, look_through_camera
 
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
@@ -50,7 +50,9 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
             )
             return {"CANCELLED"}
         take = None if self.as_new_take else find_take(scene)
-        give_footage(take or add_take(scene, clip.name.rpartition(".")[0] or clip.name), clip)
+        take = take or add_take(scene, clip.name.rpartition(".")[0] or clip.name)
+        give_footage(take, clip)
+        look_through_camera(context, take)
         return {"FINISHED"}
 
 
