@@ -18,7 +18,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: add the markers"
     if any(tuple(marker.color) == UNPICKED for marker in take.markers):
         return "Next: pick the markers' colors"
-    if take.armature is None:
+    if take.armature is None or take.armature.name not in take.id_data.objects:
         return "Next: build the actor"
     count = posed_count(take)
     if not count and not len(take.proposals):

@@ -100,7 +100,7 @@ def test_another_performer_shares_clip_and_camera_only(tiny_take: Take) -> None:
     bpy.ops.keymark.keep_lens()
     assert first.guessed_lens_mm == 0.0
     bpy.ops.keymark.add_performer()
-    assert [take.name for take in scene.keymark.takes] == ["clip", "clip Performer 2", "clip Performer 3"]
+    assert [take.name for take in scene.keymark.takes] == ["tiny", "tiny Performer 2", "tiny Performer 3"]
 
 
 def test_another_clip_for_one_performer_leaves_the_others_camera(tiny_take: Take, tmp_path: Path) -> None:
