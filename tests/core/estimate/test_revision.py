@@ -18,7 +18,7 @@ FRAMES, EVERY, MOVED = 360, 6, 31
 TOLERANCE_MM = 2.0
 TRUTH = exercise(FRAMES)
 TRACKS = film(TRUTH, 0.3)
-OPTIONS = WholeClipOptions(window_s=10.0, margin_s=2.0)
+OPTIONS = WholeClipOptions(window_s=10.0)
 
 
 def posed(seed: int = 5) -> tuple[Keyframe, ...]:
@@ -89,7 +89,7 @@ def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> No
     fresh, all_shown = estimate(moved())
     again, shown = estimate(moved(), first())
     assert estimated_frames(all_shown) == FRAMES
-    assert estimated_frames(shown) < 0.4 * FRAMES
+    assert estimated_frames(shown) < 0.5 * FRAMES
     assert largest_mm(again.posture, fresh.posture) < TOLERANCE_MM
     assert np.allclose(again.covariance, fresh.covariance, rtol=0.1, atol=1e-4)
     assert largest_mm(first().posture, fresh.posture) > 3.0
