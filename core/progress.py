@@ -50,6 +50,16 @@ def run(job: Job[Result], report: Callable[[Progress], None] | None = None) -> R
             report(progress)
 
 
+def finished(part: Generator[object, None, Result]) -> Result:
+    """Drive any part of a job to its end at once, and return its result."""
+    while True:
+        try:
+            next(part)
+        except StopIteration as stop:
+            result: Result = stop.value
+            return result
+
+
 def within(stage: str, part: Part[Result], first: float, last: float) -> Job[Result]:
     """Run a part that yields its own fraction as the stretch `first` to `last` of a whole job."""
     fraction = first

@@ -86,13 +86,22 @@ def reconstruct(
         ConversionError: No motion could be computed.
         ValueError: The reading is one of other markers.
     """
+    check_reconstructible(take, method)
+    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return (yield from _reconstruct(take, method, reading, earlier))
+
+
+def check_reconstructible(take: Take, method: str) -> None:
+    """Refuse at once what no reading of the clip could mend.
+
+    Raises:
+        InputError: The method is unknown, or there are too few keyframes.
+    """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
-    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
-    with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier))
 
 
 def _reconstruct(
@@ -147,7 +156,9 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
-    expected = expected_regions(take, take.frame_count or clip.frame_count) if take.keyframes else None
+    expected = (
+        expected_regions(take, take.frame_count or clip.frame_count) if len(take.keyframes) > 1 else None
+    )
     # Before a camera that moves, no background stands still to tell the performer from.
     with_album = not take.camera.is_moving
     reading = yield from within(

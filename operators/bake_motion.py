@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .job_operator import JobOperator, stretch
+from .job_operator import JobOperator
 from .requirements import actor, all_met, idle, motion
 from .takes import active_take, take_called
 
@@ -55,7 +55,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     def start(self, scene: bpy.types.Scene) -> "Job[Finished]":
         """Read the motion and finish it."""
         from ..core.body.human import HUMAN
-        from ..core.progress import within
+        from ..core.progress import stretch, within
         from .bridge.actor_lengths import read_body
         from .bridge.final_motion import motion_frames, read_values
         from .bridge.rig import read_rig
@@ -69,7 +69,8 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
             "Reading the motion", read_values(armature_object, action, rig, frames), 0.0, READ
         )
         channels = sum(value.shape[1] for value in values)
-        contacts, notes = (), ()
+        contacts: tuple[Any, ...] = ()
+        notes: tuple[str, ...] = ()
         if settings.plant_feet:
             planting = self._plant(scene, take, body, rig, frames, values)
             values, contacts, notes = yield from stretch(planting, READ, PLANTED)
