@@ -45,5 +45,5 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> boo
     layout.progress(factor=progress.fraction, text=percent)
     row = layout.row()
     row.label(text="Esc cancels", icon="EVENT_ESC")
-    row.label(text=getattr(progress, "time_left", ""), translate=False)
+    row.label(text=progress.time_left, translate=False)
     return True

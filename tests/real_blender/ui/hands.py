@@ -161,9 +161,7 @@ class Hands:
                     return place
         return None
 
-    def _is_at(
-        self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]
-    ) -> Steps[bool]:
+    def _is_at(self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[bool]:
         yield from self.move(*place)
         return all(word in self._copied(kind, copy) for word in wanted)
 

@@ -53,9 +53,7 @@ def markers(person: Person) -> Steps[None]:
     """Add the five markers, and pick each one's colour from the footage."""
     names = [style.segment for style in person.known.markers]
     while len(person.take.markers) < len(names):
-        yield from person.undoable(
-            "adding a marker", lambda: person.hands.click_button("keymark.add_marker")
-        )
+        yield from person.undoable("adding a marker", lambda: person.hands.click_button("keymark.add_marker"))
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
     yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
@@ -123,7 +121,9 @@ def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     style, keyframe = known.markers[number], known.keyframes[0]
     expect(keyframe.index == person.scene.frame_current - known.frame_start, "not at the first keyframe")
     points = dict(
-        zip(known.body.skeleton.point_names, known.body.points(known.body.pose(keyframe.posture)), strict=True)
+        zip(
+            known.body.skeleton.point_names, known.body.points(known.body.pose(keyframe.posture)), strict=True
+        )
     )
     middle = np.mean([points[name] for name in _ends(style.segment)], axis=0)
     (centre,), _ = known.camera.project(middle[None])
