@@ -3,12 +3,13 @@
 import bpy
 
 from .failures import reported
-from .requirements import all_met, idle, object_mode_possible
+from .requirements import all_met, bones_editable, idle
+from .say import say
 from .takes import ensure_take, find_take
 
 
 class KEYMARK_OT_build_actor(bpy.types.Operator):
-    """Add an armature of average proportions with the performer's height, standing at the world's origin"""
+    """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_idname = "keymark.build_actor"
     bl_label = "Build Actor"
@@ -18,15 +19,22 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         name="Height",
         description="The performer's body height",
         subtype="DISTANCE",
+        precision=3,
         default=1.75,
         min=0.5,
         max=3.0,
     )
+    place: bpy.props.BoolProperty(
+        name="Stand in the Footage",
+        description="Stand the actor where the markers say the performer is in the current frame, facing the "
+        "camera; without markers, in the middle of the picture. An actor with keyframes stays where it is",
+        default=True,
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Blender adds objects in Object Mode."""
-        return all_met(cls, context, object_mode_possible, idle)
+        """Bones are made in a mode of their own."""
+        return all_met(cls, context, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Take the height from the panel."""
@@ -36,18 +44,45 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Build it, select it, and make it the scene's actor."""
+        """Build or change it, stand it in the footage, and say what was done."""
         with reported(self):
             from ..core.body.actor import Actor
             from ..core.body.kinematics import Body
-            from .new_actor import add_actor
+            from .actor_scene import is_posed, performers_place, size_actor
+            from .bridge.pose import write_posture
 
             body = Body(Actor.from_stature(self.stature))
             take = ensure_take(context.scene)
-            add_actor(context, take, body)
+            had_one = size_actor(context, take, body)
             take.stature = self.stature
+            if is_posed(take):
+                say(
+                    self,
+                    "INFO",
+                    "The actor is {height:.2f} m tall now; its keyframes are kept",
+                    height=self.stature,
+                )
+                return {"FINISHED"}
+            found = performers_place(context.scene, take, body) if self.place else None
+            if found is not None:
+                write_posture(take.armature, found[0])
+            self._tell(had_one, found is not None, found is not None and found[1])
             return {"FINISHED"}
         return {"CANCELLED"}
+
+    def _tell(self, had_one: bool, placed: bool, by_markers: bool) -> None:
+        if by_markers:
+            say(self, "INFO", "The actor stands where the markers are in this frame")
+        elif placed:
+            say(
+                self,
+                "INFO",
+                "The actor stands in the middle of the picture; with markers it would stand at the performer",
+            )
+        elif had_one:
+            say(self, "INFO", "The actor is {height:.2f} m tall now", height=self.stature)
+        else:
+            say(self, "INFO", "The actor stands at the world's origin")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_build_actor,))

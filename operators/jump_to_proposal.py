@@ -2,6 +2,8 @@
 
 import bpy
 
+from .posed_frames import forget, proposed_frames, unposed
+from .say import say
 from .takes import find_take
 
 
@@ -14,45 +16,58 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
+        description="Which way to go from the current frame",
         items=[
             ("NEXT", "Next", "Go to the next proposed keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
         ],
     )
+    skip_posed: bpy.props.BoolProperty(
+        name="Skip Posed",
+        description="Go to a proposed keyframe that is not posed yet; from the last one on to the first",
+        default=False,
+    )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """The tooltip says which way."""
-        return f"Go to the {properties.direction.lower()} proposed keyframe"
+        if properties.skip_posed:
+            return "Go to the next proposed keyframe that is not posed yet"
+        if properties.direction == "NEXT":
+            return "Go to the next proposed keyframe"
+        return "Go to the previous proposed keyframe"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be proposals."""
-        if _proposed(context.scene):
+        if proposed_frames(find_take(context.scene)):
             return True
         cls.poll_message_set("Propose keyframes first")
         return False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Go there; at the end, stay and say so."""
-        scene = context.scene
-        proposed = _proposed(scene)
-        ahead = [frame for frame in proposed if frame > scene.frame_current]
-        behind = [frame for frame in proposed if frame < scene.frame_current]
+        """Go there; where there is none, stay and say so."""
+        scene, take = context.scene, find_take(context.scene)
+        forget()
+        frames = unposed(take) if self.skip_posed else proposed_frames(take)
+        if not frames:
+            say(self, "INFO", "All proposed keyframes are posed")
+            return {"CANCELLED"}
+        ahead = [frame for frame in frames if frame > scene.frame_current]
+        behind = [frame for frame in frames if frame < scene.frame_current]
+        if self.skip_posed:  # around the ends
+            ahead, behind = ahead or frames, behind or frames
         if self.direction == "NEXT" and ahead:
             scene.frame_set(ahead[0])
         elif self.direction == "PREVIOUS" and behind:
             scene.frame_set(behind[-1])
+        elif self.direction == "NEXT":
+            say(self, "INFO", "There is no proposed keyframe after this frame")
+            return {"CANCELLED"}
         else:
-            self.report({"INFO"}, f"There is no {self.direction.lower()} proposed keyframe")
+            say(self, "INFO", "There is no proposed keyframe before this frame")
             return {"CANCELLED"}
         return {"FINISHED"}
-
-
-def _proposed(scene: bpy.types.Scene) -> list[int]:
-    """The proposed scene frames, in order."""
-    take = find_take(scene)
-    return sorted({proposal.frame for proposal in take.proposals}) if take else []
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

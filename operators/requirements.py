@@ -16,18 +16,41 @@ def footage(context: bpy.types.Context) -> str | None:
     return None if take and take.clip else "Load the footage or open a take first"
 
 
+def camera(context: bpy.types.Context) -> str | None:
+    """The footage's camera is known."""
+    take = find_take(context.scene)
+    return None if take and take.camera else "Choose the camera that the footage was taken with first"
+
+
 def actor(context: bpy.types.Context) -> str | None:
     """The scene has an actor."""
     take = find_take(context.scene)
     armature_object = take.armature if take else None
-    there = armature_object is not None and armature_object.name in context.scene.objects
-    return None if there else "Build the actor first, or choose its armature"
+    if armature_object is None or armature_object.name not in context.scene.objects:
+        return "Build the actor first, or choose its armature"
+    if armature_object.library is not None:
+        return "The actor is linked; make a library override of it first (Object > Library Override)"
+    return None
 
 
 def markers(context: bpy.types.Context) -> str | None:
     """There are markers."""
     take = find_take(context.scene)
     return None if take and len(take.markers) else "Add the markers that the performer wears first"
+
+
+def a_color(context: bpy.types.Context) -> str | None:
+    """A marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and any(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the color of a marker first"
+
+
+def all_colors(context: bpy.types.Context) -> str | None:
+    """Every marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and all(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the colors of all markers first, or remove those that have none"
 
 
 def keyframes(context: bpy.types.Context) -> str | None:
@@ -48,10 +71,25 @@ def turntable(context: bpy.types.Context) -> str | None:
     return None if take and take.turntable.collection else "Set up the turntable first"
 
 
+def weak_frames(context: bpy.types.Context) -> str | None:
+    """There are frames worth another keyframe."""
+    take = find_take(context.scene)
+    if take is None or take.review.frame_count == 0:
+        return "Reconstruct the motion first"
+    return None if len(take.review.weak_frames) else "No frame needs another keyframe"
+
+
 def object_mode_possible(context: bpy.types.Context) -> str | None:
     """No object is being edited."""
     active = context.view_layer.objects.active
     return None if active is None or active.mode == "OBJECT" else "Leave the active object's mode first (Tab)"
+
+
+def bones_editable(context: bpy.types.Context) -> str | None:
+    """Nothing is in a mode from which bones cannot be changed."""
+    active = context.view_layer.objects.active
+    free = active is None or active.mode in ("OBJECT", "POSE")
+    return None if free else "Leave the active object's mode first (Tab)"
 
 
 def idle(context: bpy.types.Context) -> str | None:

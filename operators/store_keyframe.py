@@ -3,12 +3,14 @@
 import bpy
 
 from .failures import reported
+from .posed_frames import forget
 from .requirements import actor, all_met, idle
+from .say import say
 from .takes import active_take
 
 
 class KEYMARK_OT_store_keyframe(bpy.types.Operator):
-    """Key the actor's whole pose at the current frame in the keyframe Action"""
+    """Key the actor's whole pose at the current frame in the keyframe Action, which is then the one shown"""
 
     bl_idname = "keymark.store_keyframe"
     bl_label = "Store Keyframe"
@@ -27,6 +29,7 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             from .bridge.actor_lengths import read_body
             from .bridge.keyframes import NOTICEABLE_M, store_pose
             from .bridge.pose import read_posture
+            from .keyframe_editing import shows_keyframes
             from .new_actor import new_keyframe_action
 
             scene = context.scene
@@ -36,18 +39,28 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             if take.keyframe_action is None:
                 take.keyframe_action = new_keyframe_action(armature_object)
             frame = scene.frame_current_final
+            switched = not shows_keyframes(take)
             store_pose(armature_object, take.keyframe_action, HUMAN, frame)
-            data = armature_object.animation_data
-            if data is None or data.action is None:
-                assign_action(armature_object, take.keyframe_action)
+            assign_action(armature_object, take.keyframe_action)
+            forget()
             if reading.furthest_m > NOTICEABLE_M:
-                self.report(
-                    {"WARNING"},
-                    f"Stored at frame {frame:g}; the pose goes {1000.0 * reading.furthest_m:.0f} mm beyond "
-                    "what the skeleton can do, and its nearest posture will be used",
+                say(
+                    self,
+                    "WARNING",
+                    "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
+                    "can do, and its nearest posture will be used",
+                    frame=frame,
+                    beyond=1000.0 * reading.furthest_m,
+                )
+            elif switched:
+                say(
+                    self,
+                    "INFO",
+                    "Stored a keyframe at frame {frame:g}; the actor shows the keyframes now",
+                    frame=frame,
                 )
             else:
-                self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}")
+                say(self, "INFO", "Stored a keyframe at frame {frame:g}", frame=frame)
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -6,28 +6,35 @@ from numpy.typing import NDArray
 from . import rotations
 from .kinematics import Body
 from .posture import Posture
+from .shapes import HEAD_OVERSHOOT
 from .skeleton import SIDES
 
 Array = NDArray[np.float64]
 
-ARMS_LOWERED_RAD = np.radians(75.0)
+ARMS_LOWERED_RAD = float(np.radians(75.0))
 """From the T pose; sleeves keep the arms from the trunk."""
 ELBOWS_BENT_RAD = np.radians(10.0)
 
 
-def standing_posture(body: Body, place: Array | None = None, heading_rad: float = 0.0) -> Posture:
+def standing_posture(
+    body: Body,
+    place: Array | None = None,
+    heading_rad: float = 0.0,
+    arms_lowered_rad: float = ARMS_LOWERED_RAD,
+) -> Posture:
     """A posture that stands upright on the ground.
 
     Args:
         body: The actor's body; its skeleton must be the default human one.
         place: (3,) the ground between the feet [m]; the world's origin by default.
         heading_rad: Turn about the world's Z from facing -Y.
+        arms_lowered_rad: How far the arms hang down from being stretched sideways.
     """
     skeleton = body.skeleton
     column = {name: i for i, name in enumerate(skeleton.dof_names)}
     vector = np.zeros(skeleton.dof_count)
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
-        vector[column[f"shoulder.{side}.rotation_y"]] = out * ARMS_LOWERED_RAD
+        vector[column[f"shoulder.{side}.rotation_y"]] = out * arms_lowered_rad
         vector[column[f"elbow.{side}.flexion"]] = ELBOWS_BENT_RAD
     vector[column["pelvis.rotation_z"]] = heading_rad
     vector[:3] = np.zeros(3) if place is None else place
@@ -40,6 +47,12 @@ def hip_height_m(body: Body) -> float:
     pose = body.pose(Posture.rest(body.skeleton))
     ends = [body.segment_ends(pose, segment.name)[1] for segment in body.skeleton.segments]
     return -float(np.min(np.stack(ends)[:, 2]))
+
+
+def standing_height_m(body: Body) -> float:
+    """From the soles to the crown of a body that stands upright [m]."""
+    lengths = body.actor.segments_m
+    return hip_height_m(body) + lengths["trunk"] + HEAD_OVERSHOOT * lengths["neck_head"]
 
 
 def facing_rad(direction: Array) -> float:

@@ -6,11 +6,12 @@ against each other. Without any region the body is placed so that the picture ho
 """
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.standing import facing_rad, hip_height_m, standing_posture
+from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
@@ -22,7 +23,7 @@ FILLED_SHARE = 0.7
 SIZE_STD = 0.08
 """The distance read off sizes in the picture errs by this share."""
 AREA_STD, LEGS_STD = 0.12, 0.08
-"""By the area of a region (sleeves differ, bodies turn), by the height of the trunk over the shins (knees bend)."""
+"""By a region's area (sleeves differ, bodies turn), by how high the trunk is over the shins (knees bend)."""
 TRUNK = ("trunk", "chest", "pelvis")
 FLOOR_STD_M = 0.05
 """Height of the soles above a floor that is stood upon [m]."""
@@ -30,6 +31,7 @@ FLOOR_DOUBTED = 3.0
 """Standard deviations beyond which the ground is somewhere else than at z = 0."""
 ROUNDS = 6
 LEAST_DEPTH_M = 0.3
+LEAST_HEIGHT_PX = 20.0
 
 
 def place_standing(
@@ -45,8 +47,8 @@ def place_standing(
         body: The actor's body.
         camera: The camera.
         frame: The frame's place in the clip, for a moving camera.
-        regions: The markers' regions in this frame, as tracks of one frame; None or hidden: the picture's
-            middle.
+        regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
+            goes to the picture's middle.
         segments: The segment each marker is bound to.
 
     Returns:
@@ -76,6 +78,40 @@ def place_standing(
     by_size = location + distance * direction - offset
     along = _floor_step(float(by_size[2]) - hip_height_m(body), float(direction[2]), distance)
     return _at(standing, by_size + along * direction)
+
+
+def ground_place(
+    camera: Camera, frame: int, stature_m: float, crown_px: ArrayLike, ground_px: ArrayLike
+) -> Array:
+    """The ground, (3,) in the world [m], between the feet of someone who stands there upright.
+
+    Args:
+        camera: The camera.
+        frame: The frame's place in the clip, for a moving camera.
+        stature_m: Body height [m].
+        crown_px: (2,) top of the head in the picture [px].
+        ground_px: (2,) the ground between the feet [px].
+
+    Raises:
+        InputError: The two places in the picture cannot be a person's.
+    """
+    crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
+    if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
+        raise InputError(
+            f"top of the head and ground are {np.linalg.norm(crown - ground):.0f} pixels apart in the "
+            f"picture; at least {LEAST_HEIGHT_PX:.0f} are needed to measure by"
+        )
+    location, up = camera.rays(crown, frame)
+    _, down = camera.rays(ground, frame)
+    # Both lines of sight meet a vertical of the body's height: a down + (0, 0, height) = b up.
+    vertical = np.array([0.0, 0.0, stature_m])
+    far, *_ = np.linalg.lstsq(np.stack([-down, up], axis=1), vertical, rcond=None)
+    if not (np.isfinite(far).all() and far.min() > 0.0):
+        raise InputError(
+            "the top of the head lies below the ground in the picture; "
+            "pick the top of the head first, then the ground between the feet"
+        )
+    return np.asarray(location + far[0] * down)
 
 
 def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> NDArray[np.bool_]:
@@ -113,8 +149,8 @@ def _relative_size(
     trunk = known & _bound(segments, *TRUNK)
     shins = np.isfinite(seen[:, 0]) & _bound(segments, "shin")
     if trunk.any() and shins.sum() == 2:
-        apart = [np.linalg.norm(_centre(place, trunk) - _centre(place, shins)) for place in (shown, seen)]
-        logarithms.append(float(np.log(max(apart[0], 1.0) / max(apart[1], 1.0))))
+        apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
+        logarithms.append(float(np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0))))
         weights.append(LEGS_STD**-2)
     return float(np.exp(np.average(logarithms, weights=weights)))
 

@@ -2,8 +2,8 @@
 
 Maximum a posteriori about a belief in the posture, by the same terms and steps as the whole clip's estimate.
 Five regions do not determine 34 degrees of freedom, and the image is ambiguous in depth; so several starts
-descend side by side, each as if it were a frame of its own, and the most probable end is taken. The start
-itself is among the candidates: what is returned never fits the image worse than what was believed.
+descend side by side, each as if it were a frame of its own, and the most probable end is taken. What was
+believed is among the candidates, so the markers never make the posture less probable than it was.
 """
 
 from dataclasses import dataclass, replace
@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.posture import Posture
+from ..footage.tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
 from ..prior.belief import Belief
+from ..progress import finished
 from .clip_state import ClipState
-from .keyframe_evidence import KeyframeEvidence
+from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
@@ -28,6 +30,10 @@ TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 LARGEST_STEP = 0.4
 """No unknown of the posture moves further in one step [m, rad]."""
 SETTLED = 2e-3
+CALIBRATED_FROM = 5
+"""So many keyframes tell more of where the markers sit than they err."""
+EXPECTED_RADIUS_M = 0.9
+"""How far a marker may lie from where it is believed to be."""
 MISPLACED_WIDTHS = 1.5
 """A marker farther off than this many of its limb's half-widths is one the posture does not explain ..."""
 MISPLACED_PX = 4.0
@@ -73,6 +79,31 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     """What is known of the markers before any keyframe is posed: average proportions."""
     markers, dofs = len(model.placements), model.body.skeleton.dof_count
     return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
+
+
+def calibrated(
+    model: RegionModel, observed: ObservedRegions, keyframes: Posture, frame: NDArray[np.intp]
+) -> KeyframeEvidence:
+    """What keyframes tell of the markers, where there are enough of them to tell.
+
+    Args:
+        model: The region model with average placements.
+        observed: Regions seen at the K keyframes.
+        keyframes: The K postures.
+        frame: (K,) their poses of a moving camera.
+    """
+    if len(frame) < CALIBRATED_FROM:
+        return uncalibrated(model)
+    width_px = limb_widths(model, keyframes.translation, frame)
+    return finished(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
+
+
+def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> ExpectedRegions:
+    """Where a belief puts each marker, (1, M), with a generous radius."""
+    predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
+    depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
+    radius = EXPECTED_RADIUS_M * model.camera.focal_px / depth
+    return ExpectedRegions(predicted.centroid, np.full(predicted.visible.shape, radius))
 
 
 class _Descent:

@@ -77,7 +77,7 @@ def tell_markers(
     seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
     """Tell which of the regions that were found are the markers'; see `track_markers`."""
-    return tracks_of_regions(seen.regions, styles, colour_groups(styles), expected, seen.time_s, seen.size)
+    return _tracks(seen.regions, styles, colour_groups(styles), expected, seen.time_s, seen.size)
 
 
 def _all_regions(
@@ -126,7 +126,7 @@ def _regions_of_stretch(
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
-def tracks_of_regions(
+def _tracks(
     regions: Sequence[Regions],
     styles: Sequence[MarkerStyle],
     groups: Sequence[Sequence[int]],

@@ -9,30 +9,27 @@ import numpy as np
 from ..errors import InputError
 from .clip import Clip
 from .clip_colours import ClipColours
-from .clip_samples import sample_clip
-from .colour_model import ColourModel
-from .marker_style import MarkerStyle, colour_groups
-from .markers import tracks_of_regions
+from .frame_reader import FrameReader
+from .marker_style import MarkerStyle
+from .markers import tell_markers
 from .regions import find_regions
+from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import halvings
+from .working_image import halvings, measuring_image
+
+_SAMPLED_FRAMES = 12
 
 
 def regions_of_frame(
-    clip: Clip,
-    index: int,
-    styles: Sequence[MarkerStyle],
-    expected: ExpectedRegions | None = None,
-    model: ColourModel | None = None,
+    clip: Clip, time_s: float, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Find the markers in one frame.
+    """Find the markers in one frame, by colours learned from frames spread over the clip.
 
     Args:
         clip: the footage.
-        index: which frame, from 0.
+        time_s: time of the frame in seconds from the first.
         styles: the markers, M of them, in the order of the result.
         expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its colour.
-        model: the markers' colours; learned from frames spread over the clip by default.
 
     Returns:
         Tracks of one frame.
@@ -40,24 +37,12 @@ def regions_of_frame(
     Raises:
         InputError: a marker's colour matches nothing in the clip, or there is no such frame.
     """
-    image = next((image for _, image in clip.source.at([index])), None)
+    image = FrameReader(clip).image_at(time_s)
     if image is None:
-        raise InputError(f"{clip.path}: frame {index} cannot be read; the clip has {clip.frame_count} frames")
-    model = model or _learned(clip, styles)
-    regions = find_regions([image], halvings(clip.size), model)
-    return tracks_of_regions(regions, styles, colour_groups(styles), expected, np.zeros(1), clip.size)
-
-
-def _learned(clip: Clip, styles: Sequence[MarkerStyle]) -> ColourModel:
-    """Learn the markers' colours from frames spread over a clip."""
-    looking = sample_clip(clip)
-    while True:
-        try:
-            next(looking)
-        except StopIteration as stop:
-            samples = stop.value
-            break
+        raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
+    times = halvings(clip.size)
     colours = ClipColours(clip.path, clip.size, styles)
-    colours.learn(samples.images)
+    colours.learn([measuring_image(sample, times) for _, sample in clip.sample(_SAMPLED_FRAMES)])
     colours.check_found()
-    return colours.model
+    regions = find_regions([image], times, colours.model)
+    return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,15 @@ class RegionTracks:
                 raise ValueError(f"{field.name} has the shape {array.shape}, not {tails[field.name]}")
             array.setflags(write=False)
             object.__setattr__(self, field.name, array)
+
+    def frame(self, index: int) -> RegionTracks:
+        """Return the tracks of one frame alone, its time included."""
+        rows = {
+            field.name: getattr(self, field.name)[index : index + 1]
+            for field in fields(self)
+            if isinstance(getattr(self, field.name), np.ndarray)
+        }
+        return replace(self, **rows)
 
     @property
     def visible(self) -> BoolArray:

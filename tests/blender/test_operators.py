@@ -184,7 +184,8 @@ def test_an_operator_that_cannot_run_says_what_is_missing(operator: str, sentenc
 
 
 def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
-    """As Blender's own Add operators do; its predecessor's keyframes are not taken over."""
+    """As Blender's own Add operators do; the keyframes of an actor that is gone are not taken over."""
+    bpy.data.objects.remove(active_take(opened).armature)
     bpy.ops.keymark.build_actor(stature=1.6)
     layer = bpy.context.view_layer
     assert list(layer.objects.selected) == [active_take(opened).armature] == [layer.objects.active]

@@ -1,28 +1,81 @@
-"""Where to pose."""
+"""Where to pose, and posing there."""
 
 import bpy
 
+from ...posed_frames import posed_frames, proposed_frames, unposed
+from ...say import label
 from ...takes import active_take
 from .base import TakePanel
 
 
 class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
-    """Proposals, and storing the pose."""
+    """Going to where a keyframe is wanted, fitting a pose there, and storing it."""
 
     bl_label = "Keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw proposals and what stores a pose."""
+        """Draw how far the posing is, and what poses and stores."""
         take, column = active_take(context.scene), self.column()
+        _draw_progress(column, take)
         row = column.row(align=True)
         row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
-        row.operator("keymark.store_keyframe", icon="KEY_HLT")
+        going = row.operator("keymark.jump_to_proposal", text="Next to Pose")
+        going.direction, going.skip_posed = "NEXT", True
         row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
-        column.separator()
+        _draw_here(column, context.scene, take)
+        posing = column.column(align=True)
+        posing.scale_y = 1.2
+        posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
+        posing.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
+        posing.operator("keymark.store_keyframe", icon="KEY_HLT")
+
+
+def _draw_progress(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """How many of the proposed keyframes are posed, and how many others."""
+    proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
+    if not proposed:
+        text = label("{posed} posed; none proposed yet", posed=posed)
+        layout.label(text=text, icon="INFO", translate=False)
+        return
+    done = proposed - left
+    text = label("{done} of {count} posed", done=done, count=proposed)
+    if posed > done:
+        text = label("{done} of {count} posed, {more} more", done=done, count=proposed, more=posed - done)
+    layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+
+
+def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
+    """What this frame is: posed, proposed, or the motion's, which is no good to pose in."""
+    frame = scene.frame_current
+    data = take.armature.animation_data if take.armature is not None else None
+    if data is not None and data.action is not None and data.action == take.motion_action:
+        row = layout.row()
+        row.label(text="The motion is shown", icon="ERROR")
+        row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
+    elif any(round(posed) == frame for posed in posed_frames(take)):
+        layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
+    elif frame in proposed_frames(take):
+        text = label("Frame {frame} is proposed, not posed yet", frame=frame)
+        layout.label(text=text, icon="KEYFRAME", translate=False)
+    else:
+        layout.label(text=label("Frame {frame} is not posed", frame=frame), icon="DOT", translate=False)
+
+
+class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
+    """Which frames to pose, and where they are kept."""
+
+    bl_label = "Proposals"
+    bl_parent_id = "KEYMARK_PT_keyframes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw what proposes frames, and the Action with the keyframes."""
+        take, column = active_take(context.scene), self.column()
         column.prop(take, "keyframe_count")
         column.operator("keymark.propose_keyframes", icon="MARKER_HLT")
         column.separator()
         column.prop(take, "keyframe_action", text="Action")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_keyframes,))
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_proposals)
+)

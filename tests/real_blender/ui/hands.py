@@ -120,6 +120,17 @@ class Hands:
         found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
         return found is not None
 
+    def invoke(self, command: str, kind: str = "VIEW_3D", **settings: object) -> Steps[None]:
+        """Call an operator as its button would, where that is in a folded panel.
+
+        Where a panel's header is no script can see.
+        """
+        group, _, name = command.partition(".")
+        area, region = self.area(kind), self.region(kind, "WINDOW")
+        with bpy.context.temp_override(window=self.window, area=area, region=region):
+            getattr(getattr(bpy.ops, group), name)("INVOKE_DEFAULT", True, **settings)
+        yield from turns(3)
+
     def fill(self, field: str, value: str, kind: str = "VIEW_3D") -> Steps[None]:
         """Double-click on a field that shows the property `field`, and write a value into it."""
         found = yield from self._look(kind, "ui.copy_data_path_button", (field,))
@@ -161,9 +172,7 @@ class Hands:
                     return place
         return None
 
-    def _is_at(
-        self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]
-    ) -> Steps[bool]:
+    def _is_at(self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[bool]:
         yield from self.move(*place)
         text = self._copied(kind, copy)
         if text:

@@ -7,6 +7,8 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 from person import Person, keymark
 
+FARTHEST_COLOR = 40.0
+"""Between a pixel of a sleeve and the sleeve's colour over the whole clip, of 255."""
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its colour, as a share of the picture's width."""
 
@@ -60,9 +62,9 @@ def look_through_camera(person: Person) -> Steps[None]:
 def markers(person: Person) -> Steps[None]:
     """Add the five markers, and pick each one's colour from the footage."""
     names = [style.segment for style in person.known.markers]
-    yield from person.undoable("adding a marker", lambda: person.hands.click_button("keymark.add_marker"))
-    while len(person.take.markers) < len(names):
-        yield from person.hands.click_button("keymark.add_marker")
+    yield from person.undoable(
+        "adding the markers", lambda: person.hands.click_button("keymark.add_usual_markers")
+    )
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
     yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
@@ -74,16 +76,30 @@ def markers(person: Person) -> Steps[None]:
             yield from person.undoable("picking a color", lambda pixel=pixel: _pick(person, pixel))
         else:
             yield from _pick(person, pixel)
+    apart = [
+        np.abs(255.0 * np.array(marker.color) - style.color_srgb).max()
+        for marker, style in zip(person.take.markers, person.known.markers, strict=True)
+    ]
+    expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
+    yield from person.hands.click_button("keymark.show_masks")
     yield from person.look("markers")
+    yield from person.hands.click_button("keymark.show_masks")
 
 
 def actor(person: Person) -> Steps[None]:
     """Build the actor from the performer's height, and give it the performer's lengths."""
-    height = person.known.body.actor.stature_m
-    yield from person.hands.fill("stature", f"{height:.3f}")
-    expect(abs(person.take.stature - height) < 1e-3, f"the height is {person.take.stature}, not {height}")
+    actor = person.known.body.actor
+    yield from person.hands.fill("stature", f"{actor.stature_m:.3f}")
+    found = person.take.stature
+    expect(abs(found - actor.stature_m) < 1e-3, f"the height is {found}, not {actor.stature_m}")
     yield from person.undoable("building", lambda: person.hands.click_button("keymark.build_actor"))
     yield from person.look("actor")
+    lengths = person.take.lengths
+    lengths.symmetric = False
+    for name, value in actor.segments_m.items():
+        setattr(lengths, name.replace(".", "_"), value)
+    person.step_done("Write the lengths")
+    yield from person.undoable("applying lengths", lambda: person.hands.invoke("keymark.apply_lengths"))
 
 
 def _browse(person: Person, key: str) -> Steps[None]:
@@ -113,6 +129,7 @@ def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     expect(view is not None, "the viewport does not show the footage")
     x, y = view.to_region(pixel)
     yield from person.hands.click(region.x + x, region.y + y)
+    yield from person.wait_for_job()
 
 
 def _cancel_eyedropper(person: Person) -> Steps[None]:

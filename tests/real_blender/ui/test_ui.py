@@ -54,7 +54,9 @@ def test_a_session_leads_to_the_command_lines_motion(
     words = ["convert", TAKES[name], "--output", output, "--quiet", "--no-report"]
     done = blender.run("--command", "keymark", *words)
     assert done.returncode == 0, done.stdout + done.stderr
-    by_hand, by_command = (_score(file, TAKES[name]) for file in (folder / "motion.json", output / "motion.json"))
+    by_hand, by_command = (
+        _score(file, TAKES[name]) for file in (folder / "motion.json", output / "motion.json")
+    )
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
 

@@ -1,0 +1,286 @@
+"""An actor's lengths from one frame in which the performer stands, the body height and two clicks.
+
+The height between crown and ground fixes distance and place. What the markers show beyond that is weighed
+against average proportions, which vary by four to five percent between people: maximum a posteriori over
+posture, lengths and the markers' places on their segments at once, with the height held. A sleeve may begin
+anywhere on its segment, so a region's own extent says little of the segment's length; where the regions lie
+to each other says more. Arms that point anywhere say nothing of their lengths; stretched sideways, they do.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..body.actor import Actor
+from ..body.human import HUMAN
+from ..body.kinematics import Body, Pose
+from ..body.posture import Posture
+from ..body.skeleton import SIDES
+from ..body.standing import ARMS_LOWERED_RAD, facing_rad, standing_height_m, standing_posture
+from ..footage.camera import Camera
+from ..footage.tracks import RegionTracks
+from ..observation.regions import MarkerPlacement, RegionModel
+from .calibration import (
+    LARGEST,
+    PRIOR_STD,
+    SMALLEST,
+    KnownFrames,
+    placement_slopes,
+    placement_values,
+    placements_from,
+)
+from .placing import ground_place
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, limb_widths
+from .terms.term import student_weight
+
+Array = NDArray[np.float64]
+
+MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
+"""Lengths that are found, left and right alike; hands and feet follow from the height."""
+PROPORTION_STD = 0.045
+"""Spread of the logarithm of a person's proportions about the average (Gordon et al. 2014)."""
+HEIGHT_STD = 0.005
+"""The lengths add up to the height within this share while they are sought; in the end they do exactly."""
+LENGTH_DIFFERENCE = 1e-3
+# How far someone who stands is from the standing posture [m, rad]; arms may be anywhere.
+STANDING_STD = {
+    "pelvis.location": 0.04,
+    "pelvis.rotation_z": 0.30,
+    "pelvis": 0.06,
+    "waist": 0.08,
+    "neck": 0.15,
+    "girdle": 0.10,
+    "shoulder": 0.80,
+    "elbow": 0.60,
+    "forearm": 0.30,
+    "hip": 0.10,
+    "knee": 0.10,
+    "shin": 0.05,
+}
+STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
+"""The same for arms that are held out sideways as well as one can."""
+UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
+MOST_DEVIATIONS = 3.0
+"""Someone whose trunk or legs deviate by more standard deviations does not stand."""
+MISPLACED_WIDTHS, MISPLACED_PX = 1.5, 4.0
+"""Nor does someone whose markers lie farther than this from where they can be explained."""
+ARMS_RAISED_RAD = (0.0, 0.65, 1.3)
+"""The arms are looked for hanging, half raised and stretched out."""
+TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
+LARGEST_STEP = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredActor:
+    """What one frame tells of a performer."""
+
+    body: Body
+    posture: Posture
+    """A single posture: how the performer stands in that frame."""
+    spread: dict[str, float]
+    """How far each of the lengths `MEASURED` may still be off, as a share of it."""
+    stands: bool
+    """Whether the markers are where those of someone who stands can be."""
+    distance_m: float
+    """From the camera to the ground between the feet [m]."""
+
+
+def measure_standing(
+    camera: Camera,
+    frame: int,
+    stature_m: float,
+    crown_px: ArrayLike,
+    ground_px: ArrayLike,
+    regions: RegionTracks | None = None,
+    segments: tuple[str, ...] = (),
+    arms_stretched: bool = False,
+) -> MeasuredActor:
+    """Lengths and place of a performer who stands.
+
+    Args:
+        camera: The camera.
+        frame: The frame's place in the clip, for a moving camera.
+        stature_m: Body height [m].
+        crown_px: (2,) top of the head in the picture [px].
+        ground_px: (2,) the ground between the feet [px].
+        regions: The markers' regions in this frame, as tracks of one frame; without them the lengths are
+            average ones.
+        segments: The segment each marker is bound to.
+        arms_stretched: Whether the performer holds the arms out sideways, across the view.
+
+    Raises:
+        InputError: The height is out of range, or the two places cannot be a person's.
+    """
+    average = Actor.from_stature(stature_m)
+    place = ground_place(camera, frame, stature_m, crown_px, ground_px)
+    heading = facing_rad(camera.pose(frame)[0][:, 2])
+    distance_m = float(np.linalg.norm(place - camera.pose(frame)[1]))
+    if regions is None or not regions.visible.any():
+        body = Body(average)
+        unknown = dict.fromkeys(MEASURED, PROPORTION_STD)
+        return MeasuredActor(body, standing_posture(body, place, heading), unknown, True, distance_m)
+    problem = _Problem(
+        camera,
+        np.array([frame]),
+        average,
+        stature_m,
+        place,
+        heading,
+        ObservedRegions.from_tracks(regions),
+        segments,
+        arms_stretched,
+    )
+    found = [problem.descend(raised) for raised in ((0.0,) if arms_stretched else ARMS_RAISED_RAD)]
+    return problem.measured(min(found, key=problem.cost))
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """The estimation problem.
+
+    Its unknowns x are a tangent step from the standing posture (D) [m, rad], the logarithms of the measured
+    lengths relative to average ones (L), and the markers' places relative to average ones (M * P).
+    """
+
+    camera: Camera
+    frame: NDArray[np.intp]
+    average: Actor
+    height_m: float
+    place: Array
+    heading: float
+    observed: ObservedRegions
+    segments: tuple[str, ...]
+    arms_stretched: bool
+
+    @property
+    def std(self) -> Array:
+        """Belief in each unknown."""
+        steps = []
+        believed = {**STANDING_STD, **(STRETCHED_STD if self.arms_stretched else {})}
+        for name in HUMAN.dof_names:
+            joint = name.split(".")[0]
+            group = f"{joint}.location" if ".location" in name else joint
+            steps.append(believed.get(name, believed[group]))
+        markers = np.tile(PRIOR_STD, len(self.segments))
+        return np.concatenate([steps, np.full(len(MEASURED), PROPORTION_STD), markers])
+
+    def body(self, x: Array) -> Body:
+        """The body with the lengths of x."""
+        lengths = dict(self.average.segments_m)
+        logarithms = x[HUMAN.dof_count : HUMAN.dof_count + len(MEASURED)]
+        for name, logarithm in zip(MEASURED, logarithms, strict=True):
+            for part in (name, *(f"{name}.{side}" for side in SIDES)):
+                if part in lengths:
+                    lengths[part] *= float(np.exp(logarithm))
+        return Body(Actor(lengths))
+
+    def posture(self, x: Array, body: Body) -> Posture:
+        """A batch of one."""
+        return Posture.stack([self.standing(body).plus(x[: HUMAN.dof_count])])
+
+    def standing(self, body: Body) -> Posture:
+        """Where the unknown step begins, a single posture."""
+        lowered = 0.0 if self.arms_stretched else ARMS_LOWERED_RAD
+        return standing_posture(body, self.place, self.heading, lowered)
+
+    def model(self, x: Array) -> RegionModel:
+        """The markers on that body."""
+        average = tuple(MarkerPlacement(segment) for segment in self.segments)
+        change = x[HUMAN.dof_count + len(MEASURED) :].reshape(len(average), -1)
+        values = np.clip(placement_values(average) + change, SMALLEST, LARGEST)
+        return RegionModel(self.body(x), self.camera, placements_from(average, values))
+
+    def descend(self, raised_rad: float) -> Array:
+        """Gauss-Newton with annealed image noise from arms raised by so much."""
+        std = self.std
+        x = np.zeros(len(std))
+        for side, out in zip(SIDES, (1.0, -1.0), strict=True):
+            x[HUMAN.dof_names.index(f"shoulder.{side}.rotation_y")] = -out * raised_rad
+        for temperature in TEMPERATURES:
+            normal, gradient = self._equations(x, temperature)
+            step = -np.linalg.solve(normal, gradient)
+            x = x + step * min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
+        return x
+
+    def cost(self, x: Array) -> float:
+        """Negative logarithm of the probability of x, up to a constant."""
+        residual, information, height = self._residual(x)
+        degrees = RegionNoise().degrees
+        squared = (residual**2 * information).sum(-1) / (degrees * FEATURES)
+        image = 0.5 * degrees * FEATURES * np.log1p(squared).sum()
+        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * height**2)
+
+    def measured(self, x: Array) -> MeasuredActor:
+        """The result at the best x."""
+        normal, _ = self._equations(x, 1.0)
+        found = slice(HUMAN.dof_count, HUMAN.dof_count + len(MEASURED))
+        shares = np.sqrt(np.diag(np.linalg.inv(normal)[found, found]))
+        body = self.body(x)
+        exact = self.height_m / standing_height_m(body)
+        body = Body(Actor({name: exact * length for name, length in body.actor.segments_m.items()}))
+        spread = dict(zip(MEASURED, map(float, shares), strict=True))
+        distance_m = float(np.linalg.norm(self.place - self.camera.pose(int(self.frame[0]))[1]))
+        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), distance_m)
+
+    def _stands(self, x: Array) -> bool:
+        model = self.model(x)
+        predicted = model.evaluate(self._pose(x, model), self.frame)
+        apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
+        width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
+        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX)
+        upright = [name.split(".")[0] in UPRIGHT_PARTS for name in HUMAN.dof_names]
+        deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
+        return bool(explained.all() and deviations.max() <= MOST_DEVIATIONS)
+
+    def _pose(self, x: Array, model: RegionModel) -> Pose:
+        return model.body.pose(self.posture(x, model.body))
+
+    def _residual(self, x: Array) -> tuple[Array, Array, float]:
+        """Rows (M, 5) [px], their information (M, 5), and how far the height is off in deviations."""
+        model = self.model(x)
+        pose = self._pose(x, model)
+        predicted = model.evaluate(pose, self.frame)
+        residual, _ = feature_rows(self.observed, predicted)
+        noise = RegionNoise()
+        width = limb_widths(model, pose.posture.translation, self.frame)
+        variance = noise.pixel_std_px**2 + noise.surface_std(width) ** 2
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > noise.least_visible)
+        trust = np.where(usable, np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0), 0.0)
+        height = np.log(standing_height_m(model.body) / self.height_m) / HEIGHT_STD
+        return np.nan_to_num(residual[0]), (trust[..., None] / variance)[0], float(height)
+
+    def _equations(self, x: Array, temperature: float) -> tuple[Array, Array]:
+        """Normal matrix (N, N) and gradient (N,)."""
+        residual, information, height = self._residual(x)
+        squared = (residual**2 * information / temperature).sum(-1)
+        weight = information / temperature * student_weight(squared, RegionNoise().degrees, FEATURES)[:, None]
+        by_x, height_by_x = self._slopes(x, residual, height)
+        rows = by_x.reshape(-1, len(x))
+        normal = (rows.T * weight.ravel()) @ rows + np.diag(self.std**-2.0)
+        normal += np.outer(height_by_x, height_by_x)
+        gradient = rows.T @ (weight * residual).ravel() + x / self.std**2 + height_by_x * height
+        return normal, gradient
+
+    def _slopes(self, x: Array, residual: Array, height: float) -> tuple[Array, Array]:
+        """Of the rows (M, 5, N) and of the height (N,)."""
+        model = self.model(x)
+        pose = self._pose(x, model)
+        predicted = model.evaluate(pose, self.frame, jacobian=True)
+        _, jacobian = feature_rows(self.observed, predicted)
+        assert jacobian is not None
+        slopes, by_height = np.zeros((*residual.shape, len(x))), np.zeros(len(x))
+        dofs = HUMAN.dof_count
+        slopes[..., :dofs] = jacobian[0] @ self.standing(model.body).plus_jacobian(x[:dofs])
+        for column in range(dofs, dofs + len(MEASURED)):
+            nudged = x.copy()
+            nudged[column] += LENGTH_DIFFERENCE
+            other, _, taller = self._residual(nudged)
+            slopes[..., column] = (other - residual) / LENGTH_DIFFERENCE
+            by_height[column] = (taller - height) / LENGTH_DIFFERENCE
+        known = KnownFrames(pose, self.frame, self.observed)
+        by_place = placement_slopes(model.body, self.camera, known, model)[0]  # (M, 5, P)
+        for marker in range(len(by_place)):
+            first = dofs + len(MEASURED) + marker * by_place.shape[-1]
+            slopes[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
+        return np.nan_to_num(slopes), by_height

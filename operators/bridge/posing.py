@@ -1,0 +1,172 @@
+"""Posing an actor by what one frame of the footage shows: the way from a scene to core's fit and back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.human import HUMAN
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
+from ...core.errors import InputError
+from ...core.estimate.actor_measure import MeasuredActor, measure_standing
+from ...core.estimate.placing import place_standing
+from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame, uncalibrated
+from ...core.estimate.terms.regions import ObservedRegions
+from ...core.footage.marker_style import MarkerStyle
+from ...core.footage.one_frame import regions_of_frame
+from ...core.footage.reading import Reading
+from ...core.footage.reading_key import of_same_footage, reading_key
+from ...core.footage.tracks import ExpectedRegions, RegionTracks
+from ...core.observation.regions import MarkerPlacement, RegionModel
+from ...core.prior.belief import belief_from_keyframes, belief_from_pose, belief_from_standing
+from ...core.prior.keyframes import Keyframe
+from .actor_lengths import read_body
+from .footage import Footage
+from .frame_times import scene_frames
+from .keyframes import NEAREST, read_keyframes
+from .pose import read_posture
+from .scene_camera import read_camera
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FrameInFootage:
+    """The scene's current frame as a frame of the footage."""
+
+    footage: Footage
+    styles: tuple[MarkerStyle, ...]
+    reading: Reading | None
+    """What was read of the clip, where that is of this very footage and these markers."""
+    clip_frames: Array
+    """(F,) scene frame of every frame of the clip; reckoned from its header where it was not read."""
+    index: int
+    """The current frame's place in the clip."""
+
+    @property
+    def segments(self) -> tuple[str, ...]:
+        """The segment each marker is bound to."""
+        return tuple(style.segment for style in self.styles)
+
+    def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
+        """The markers' regions in the frame: what was read, else found now.
+
+        Args:
+            expected: Where they are expected, (1, M), which tells markers of like colour apart.
+
+        Raises:
+            InputError: A colour is nowhere in the clip, or the clip cannot be read.
+        """
+        if self.reading is not None:
+            return self.reading.tracks.frame(self.index)
+        time_s = (float(self.clip_frames[self.index]) - self.footage.first_frame) / self.footage.rate
+        return regions_of_frame(self.footage.open(), time_s, self.styles, expected)
+
+
+def frame_in_footage(
+    footage: Footage, styles: Sequence[MarkerStyle], reading: Reading | None = None
+) -> FrameInFootage:
+    """Where in the footage the scene's current frame lies.
+
+    Args:
+        footage: Clip and camera in their scene.
+        styles: The markers.
+        reading: What was read of the clip earlier; it is taken if it is of this footage and these markers.
+
+    Raises:
+        InputError: The clip is not there, or the current frame lies outside it.
+    """
+    key = reading_key(footage.path, footage.rate, styles, None)
+    if reading is not None and of_same_footage(reading.key, key):
+        frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
+    else:
+        reading = None
+        frames = footage.first_frame + np.arange(footage.clip.frame_duration, dtype=np.float64)
+    current = footage.scene.frame_current_final
+    index = int(np.argmin(np.abs(frames - current)))
+    if abs(float(frames[index]) - current) > NEAREST + 1e-6:
+        raise InputError(
+            f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
+        )
+    return FrameInFootage(footage, tuple(styles), reading, frames, index)
+
+
+def posed_standing(frame: FrameInFootage, body: Body, regions: RegionTracks | None) -> Posture:
+    """A body that stands where the performer is in the frame."""
+    camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
+    return place_standing(body, camera, 0, regions, frame.segments)
+
+
+def fit_to_frame(
+    frame: FrameInFootage,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action | None,
+    start: str,
+) -> FrameFit:
+    """The actor's posture by what the frame shows; scene, Action and pose are as before.
+
+    Args:
+        frame: The frame.
+        armature_object: The actor.
+        action: Where the animator keyed; None for no keyframes.
+        start: KEYFRAMES for the nearest ones (standing where there are none), POSE for the actor's pose as it
+            is, STANDING for a body that stands where the performer is.
+
+    Raises:
+        InputError: No marker is seen in the frame, or what is needed to see them is missing.
+    """
+    body = read_body(armature_object, HUMAN)
+    posed = _keyframes(frame, armature_object, action, body)
+    indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
+    camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
+    model = RegionModel(body, camera, tuple(MarkerPlacement(segment) for segment in frame.segments))
+    if start == "POSE":
+        belief = belief_from_pose(read_posture(armature_object, body).posture)
+    elif start == "KEYFRAMES" and posed:
+        belief = belief_from_keyframes(posed, frame.index, frame.footage.rate)
+    else:
+        belief = belief_from_standing(posed_standing(frame, body, frame.regions()))
+    regions = frame.regions(expected_in_frame(model, belief, len(posed)))
+    if not regions.visible.any():
+        raise InputError(
+            f"none of the markers is seen in frame {frame.clip_frames[frame.index]:g}; pose the actor by hand"
+        )
+    evidence = uncalibrated(model)
+    if frame.reading is not None and posed:
+        seen = ObservedRegions.from_tracks(frame.reading.tracks)[indices]
+        evidence = calibrated(
+            model, seen, Posture.stack([keyframe.posture for keyframe in posed]), np.arange(len(posed))
+        )
+    return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed))
+
+
+def _keyframes(
+    frame: FrameInFootage, armature_object: bpy.types.Object, action: bpy.types.Action | None, body: Body
+) -> tuple[Keyframe, ...]:
+    """The animator's keyframes at other frames."""
+    if action is None:
+        return ()
+    found = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames)
+    return tuple(keyframe for keyframe in found.keyframes if keyframe.index != frame.index)
+
+
+def measured_in_frame(
+    frame: FrameInFootage,
+    stature_m: float,
+    crown_px: tuple[float, ...],
+    ground_px: tuple[float, ...],
+    arms_stretched: bool,
+) -> MeasuredActor:
+    """The performer as measured in a frame in which they stand; see `measure_standing`.
+
+    Raises:
+        InputError: The two places in the picture cannot be a person's.
+    """
+    camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
+    regions = frame.regions() if frame.styles else None
+    return measure_standing(
+        camera, 0, stature_m, crown_px, ground_px, regions, frame.segments, arms_stretched
+    )

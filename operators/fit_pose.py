@@ -1,0 +1,77 @@
+"""Assisted posing: fit the actor's pose to the markers of the current frame."""
+
+import bpy
+import numpy as np
+
+from .failures import reported
+from .marker_styles import marker_styles
+from .requirements import actor, all_met, camera, footage, idle, markers
+from .say import say
+from .takes import active_take, footage_of
+
+
+class KEYMARK_OT_fit_pose(bpy.types.Operator):
+    """Pose the actor so that its markers lie where this frame shows them; nothing is keyed before you do"""
+
+    bl_idname = "keymark.fit_pose"
+    bl_label = "Fit Pose to Markers"
+    bl_options = {"REGISTER", "UNDO"}
+
+    start: bpy.props.EnumProperty(
+        name="Start From",
+        description="The pose that is changed as little as the markers allow",
+        items=[
+            (
+                "KEYFRAMES",
+                "Nearest Keyframes",
+                "The keyframes before and after this frame; standing where none is stored yet",
+            ),
+            (
+                "POSE",
+                "Current Pose",
+                "The pose as it is: set roughly by you, or applied from a pose library",
+            ),
+            ("STANDING", "Standing", "A body that stands where the performer is"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor, and markers to be seen through a camera."""
+        return all_met(cls, context, footage, camera, actor, markers, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Fit it, show it, and say how well it explains the markers."""
+        with reported(self):
+            from .bridge.pose import write_posture
+            from .bridge.posing import fit_to_frame, frame_in_footage
+            from .keyframe_editing import show_keyframes
+            from .results import reading_of
+
+            take = active_take(context.scene)
+            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+            fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start)
+            show_keyframes(take)
+            write_posture(take.armature, fit.posture)
+            if fit.misplaced:
+                names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
+                say(
+                    self,
+                    "WARNING",
+                    "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
+                    names=names,
+                )
+            else:
+                say(
+                    self,
+                    "INFO",
+                    "Markers off by {before:.1f} pixels before, {after:.1f} now; "
+                    "correct the pose where you see it better, then store it",
+                    before=float(np.nanmean(fit.before_px)),
+                    after=float(np.nanmean(fit.residual_px)),
+                )
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_fit_pose,))

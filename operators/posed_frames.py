@@ -1,0 +1,74 @@
+"""Which frames the animator has posed, known without looking at the keys at every redraw."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+_posed: dict[tuple[str, str], tuple[float, ...]] = {}
+"""By the names of an armature and an Action: the frames keyed there."""
+
+
+def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
+    """Scene frames that are keyed in the take's keyframe Action, in order, wherever they were moved."""
+    if take.armature is None or take.keyframe_action is None:
+        return ()
+    names = take.armature.name_full, take.keyframe_action.name_full
+    if names not in _posed:
+        from ..core.body.human import HUMAN
+        from ..core.errors import InputError
+        from .bridge.keyframes import keyed_frames
+
+        try:
+            _posed[names] = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+        except InputError:  # an armature of other bones
+            _posed[names] = ()
+    return _posed[names]
+
+
+def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:
+    """The take's proposed scene frames, in order."""
+    return sorted({proposal.frame for proposal in take.proposals}) if take else []
+
+
+def unposed(take: bpy.types.PropertyGroup | None) -> list[int]:
+    """The proposed frames that have no key yet, in order."""
+    if take is None:
+        return []
+    posed = {round(frame) for frame in posed_frames(take)}
+    return [frame for frame in proposed_frames(take) if frame not in posed]
+
+
+def forget() -> None:
+    """Look at the keys again next time."""
+    _posed.clear()
+
+
+@persistent
+def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    if depsgraph is None or depsgraph.id_type_updated("ACTION"):
+        forget()
+
+
+@persistent
+def _loaded(*_arguments: object) -> None:
+    forget()
+
+
+_ON_CHANGE = ("depsgraph_update_post",)
+_ON_LOAD = ("load_post", "undo_post", "redo_post")
+
+
+def register() -> None:
+    """Forget whenever keys may have changed."""
+    for name in _ON_CHANGE:
+        getattr(bpy.app.handlers, name).append(_changed)
+    for name in _ON_LOAD:
+        getattr(bpy.app.handlers, name).append(_loaded)
+
+
+def unregister() -> None:
+    """Take the handlers away."""
+    for name in _ON_CHANGE:
+        getattr(bpy.app.handlers, name).remove(_changed)
+    for name in _ON_LOAD:
+        getattr(bpy.app.handlers, name).remove(_loaded)
+    forget()

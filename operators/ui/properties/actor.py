@@ -1,0 +1,70 @@
+"""The actor's lengths as the animator edits them, before they are applied to the armature."""
+
+import bpy
+
+SIDED = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
+MIDDLE = ("trunk", "neck_head", "shoulder_width", "hip_width")
+_MEANING = {
+    "upper_arm": ("Upper Arm", "From the shoulder joint to the elbow"),
+    "forearm": ("Forearm", "From the elbow to the wrist"),
+    "hand": ("Hand", "From the wrist to the tip of the fingers"),
+    "thigh": ("Thigh", "From the hip joint to the knee"),
+    "shin": ("Shin", "From the knee to the ankle"),
+    "foot": ("Foot", "From the ankle to the toes"),
+    "trunk": ("Trunk", "From the middle of the hip joints to the middle of the shoulder joints"),
+    "neck_head": ("Neck and Head", "From the middle of the shoulder joints to the middle of the head"),
+    "shoulder_width": ("Shoulder Width", "Between the shoulder joints"),
+    "hip_width": ("Hip Width", "Between the hip joints"),
+}
+
+
+def length_property(name: str) -> str:
+    """The property that holds one of core's lengths: a dot is no part of a Python name."""
+    return name.replace(".", "_")
+
+
+def length_names() -> tuple[str, ...]:
+    """All of core's lengths."""
+    return (*MIDDLE, *(f"{part}.{side}" for part in SIDED for side in ("L", "R")))
+
+
+def _mirror(part: str, side: str) -> "bpy.types.AnyType":
+    other = length_property(f"{part}.{'R' if side == 'L' else 'L'}")
+    own = length_property(f"{part}.{side}")
+
+    def update(lengths: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+        # Only a difference is written, so that the other side's update ends here.
+        if lengths.symmetric and getattr(lengths, other) != getattr(lengths, own):
+            setattr(lengths, other, getattr(lengths, own))
+
+    return update
+
+
+def _length(name: str) -> "bpy.types.AnyType":
+    part, _, side = name.partition(".")
+    label, meaning = _MEANING[part]
+    options = {"update": _mirror(part, side)} if side else {}
+    return bpy.props.FloatProperty(
+        name=f"{label} {side}".rstrip(),
+        description=meaning,
+        subtype="DISTANCE",
+        precision=3,
+        step=0.5,
+        default=0.3,
+        min=0.02,
+        max=2.0,
+        **options,
+    )
+
+
+class KEYMARK_PG_lengths(bpy.types.PropertyGroup):
+    """Lengths of the performer's segments."""
+
+    symmetric: bpy.props.BoolProperty(
+        name="Symmetric", description="Left and right limbs are equally long", default=True
+    )
+
+
+KEYMARK_PG_lengths.__annotations__.update({length_property(name): _length(name) for name in length_names()})
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_lengths,))

@@ -1,0 +1,234 @@
+"""Building, measuring and posing the actor over the footage, scripted as an animator would press it."""
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.human import HUMAN
+from keymark.core.body.standing import hip_height_m, standing_height_m
+from keymark.core.motion import Motion
+from keymark.core.take import Take
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.posed_frames import posed_frames, unposed
+from keymark.operators.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture
+def opened(tiny_take: Take) -> bpy.types.Scene:
+    """The scene with the tiny take opened."""
+    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
+    return bpy.context.scene
+
+
+@pytest.fixture
+def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
+    """The same without an actor."""
+    take = active_take(opened)
+    bpy.data.objects.remove(take.armature)
+    take.armature = take.keyframe_action = None
+    return opened
+
+
+def posture_of(scene: bpy.types.Scene):  # noqa: ANN201
+    """What the actor shows."""
+    armature_object = active_take(scene).armature
+    return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
+
+
+def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
+    """Mean distance of the 13 points from the truth at a scene frame."""
+    body = motion.body
+    return float(
+        np.linalg.norm(body.points(body.pose(posture_of(scene))) - motion.points[frame - 1], axis=-1).mean()
+    )
+
+
+def test_one_click_stands_the_actor_at_the_performer(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion
+) -> None:
+    """The hips within decimetres along the view, and much nearer across it."""
+    unposed_scene.frame_set(1)
+    assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
+    true = wave_motion.posture.translation[0]
+    found = posture_of(unposed_scene).translation
+    assert abs(found[1] - true[1]) < 0.5
+    assert np.linalg.norm((found - true)[[0, 2]]) < 0.12
+
+
+def test_without_footage_the_actor_stands_at_the_origin() -> None:
+    """In an empty scene, with a take of its own."""
+    bpy.ops.keymark.build_actor(stature=1.6)
+    scene = bpy.context.scene
+    body = read_body(active_take(scene).armature, HUMAN)
+    np.testing.assert_allclose(posture_of(scene).translation, [0.0, 0.0, hip_height_m(body)], atol=1e-5)
+    assert active_take(scene).lengths.trunk == pytest.approx(0.285 * 1.6)
+
+
+def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.types.Scene) -> None:
+    """No second armature, no key lost, no pose moved."""
+    take = active_take(opened)
+    armature_object, action = take.armature, take.keyframe_action
+    opened.frame_set(7)
+    before, keys = posture_of(opened), keyed_frames(armature_object, action, HUMAN)
+    objects = len(bpy.data.objects)
+    bpy.ops.keymark.build_actor(stature=1.9)
+    assert (take.armature, take.keyframe_action, len(bpy.data.objects)) == (armature_object, action, objects)
+    assert keyed_frames(armature_object, action, HUMAN) == keys
+    assert read_body(armature_object, HUMAN).actor.stature_m == pytest.approx(1.9, rel=1e-4)
+    opened.frame_set(7)
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-4)
+
+
+def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
+    """Symmetric ones come in pairs; nonsense is refused by the property itself."""
+    take = active_take(opened)
+    take.lengths.symmetric = True
+    take.lengths.forearm_L = 0.31
+    assert take.lengths.forearm_R == pytest.approx(0.31)
+    take.lengths.symmetric = False
+    take.lengths.shin_R = 0.5
+    assert take.lengths.shin_L != pytest.approx(0.5)
+    bpy.ops.keymark.apply_lengths()
+    segments = read_body(take.armature, HUMAN).actor.segments_m
+    assert (segments["forearm.R"], segments["shin.R"]) == pytest.approx((0.31, 0.5), rel=1e-4)
+
+
+def test_a_standing_performer_is_measured_from_two_pixels(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion, tiny_take: Take
+) -> None:
+    """Place to a few centimetres, height exactly."""
+    unposed_scene.frame_set(1)
+    body = wave_motion.body
+    hips = wave_motion.posture.translation[0]
+    ground = hips - [0.0, 0.0, hip_height_m(body)]
+    height = standing_height_m(body)
+    head, floor = tiny_take.camera.project(np.stack([ground + [0.0, 0.0, height], ground]))[0]
+    result = bpy.ops.keymark.measure_actor(stature=height, head_pixel=head, floor_pixel=floor)
+    assert result == {"FINISHED"}
+    found = posture_of(unposed_scene).translation
+    assert np.linalg.norm(found - hips) < 0.12
+    assert standing_height_m(read_body(active_take(unposed_scene).armature, HUMAN)) == pytest.approx(height)
+    with pytest.raises(RuntimeError, match="below the ground"):
+        bpy.ops.keymark.measure_actor(stature=height, head_pixel=floor, floor_pixel=head)
+
+
+@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "STANDING"])
+def test_fitting_brings_the_pose_to_the_markers(
+    opened: bpy.types.Scene, wave_motion: Motion, start: str
+) -> None:
+    """Between two keyframes, from whatever start; no key is set, and a redraw keeps the pose."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
+    write_posture(take.armature, rough)
+    before = off_m(opened, wave_motion, 4)
+    keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    assert bpy.ops.keymark.fit_pose(start=start) == {"FINISHED"}
+    fitted = posture_of(opened)
+    assert off_m(opened, wave_motion, 4) < (0.25 if start == "STANDING" else 0.8 * before)
+    bpy.context.view_layer.update()
+    bpy.context.evaluated_depsgraph_get().update()
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
+    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == keys
+    assert take.armature.animation_data.action == take.keyframe_action
+
+
+def test_what_was_fitted_is_stored_and_read_back(opened: bpy.types.Scene) -> None:
+    """The key holds the pose although other keys surround it."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    bpy.ops.keymark.fit_pose()
+    fitted = posture_of(opened)
+    bpy.ops.keymark.store_keyframe()
+    opened.frame_set(1)
+    opened.frame_set(4)
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-4)
+    assert 4.0 in posed_frames(take)
+
+
+def test_the_first_keyframe_is_fitted_from_standing(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion
+) -> None:
+    """Nothing is keyed yet: nearest keyframes means standing."""
+    unposed_scene.frame_set(5)
+    bpy.ops.keymark.build_actor(stature=1.72)
+    before = off_m(unposed_scene, wave_motion, 5)
+    bpy.ops.keymark.fit_pose()
+    assert off_m(unposed_scene, wave_motion, 5) < 0.95 * before
+
+
+def test_fitting_outside_the_footage_says_where_it_is(opened: bpy.types.Scene) -> None:
+    """And leaves the pose."""
+    opened.frame_set(40)
+    before = posture_of(opened)
+    with pytest.raises(RuntimeError, match="whose frames are 1 to 13"):
+        bpy.ops.keymark.fit_pose()
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-9)
+
+
+def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.types.Scene) -> None:
+    """The pose of the motion becomes a keyframe; the motion's Action gets no key."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    assert take.armature.animation_data.action == take.motion_action
+    opened.frame_set(4)
+    shown = posture_of(opened)
+    bpy.ops.keymark.store_keyframe()
+    assert take.armature.animation_data.action == take.keyframe_action
+    assert 4.0 in keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    assert keyed_frames(take.armature, take.motion_action, HUMAN) == ()
+    np.testing.assert_allclose(posture_of(opened).minus(shown), 0.0, atol=1e-4)
+
+
+def test_fitting_while_the_motion_is_shown_shows_the_keyframes(opened: bpy.types.Scene) -> None:
+    """The fitted pose is what is seen, not the Action's."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    opened.frame_set(4)
+    bpy.ops.keymark.fit_pose(start="STANDING")
+    fitted = posture_of(opened)
+    assert take.armature.animation_data.action == take.keyframe_action
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
+    opened.frame_set(4)
+    assert np.abs(posture_of(opened).minus(fitted)).max() > 0.01
+
+
+def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.Scene) -> None:
+    """A key moved in the Dope Sheet counts at its new frame."""
+    take = active_take(opened)
+    take.proposals.clear()
+    for frame in (1, 4, 7, 10, 13):
+        take.proposals.add().frame = frame
+    assert posed_frames(take) == (1.0, 7.0, 13.0)
+    assert unposed(take) == [4, 10]
+    opened.frame_set(4)
+    bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
+    assert opened.frame_current == 10
+    bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
+    assert opened.frame_current == 4
+    for fcurve in take.keyframe_action.layers[0].strips[0].channelbags[0].fcurves:
+        fcurve.keyframe_points[1].co.x = 4.0
+        fcurve.update()
+    take.keyframe_action.update_tag()
+    bpy.context.view_layer.update()
+    assert posed_frames(take) == (1.0, 4.0, 13.0)
+    assert unposed(take) == [7, 10]
+
+
+def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
+    """And the count with it."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.keymark.store_keyframe()
+    bpy.ops.ed.undo_push(message="stored")
+    assert 4.0 in posed_frames(take)
+    bpy.ops.ed.undo()
+    take = active_take(bpy.context.scene)
+    assert 4.0 not in posed_frames(take)

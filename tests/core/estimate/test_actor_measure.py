@@ -1,0 +1,76 @@
+"""An actor's lengths from a frame in which the performer stands."""
+
+import numpy as np
+import pytest
+from _scene import CAMERA, SEGMENTS, film
+from keymark.core.body.actor import Actor
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.body.standing import standing_height_m, standing_posture
+from keymark.core.estimate.actor_measure import MEASURED, MeasuredActor, measure_standing
+from keymark.core.observation.regions import MarkerPlacement, RegionModel
+
+PLACE = np.array([0.2, 0.3, 0.0])
+
+
+def someone(rng: np.random.Generator) -> Body:
+    """A body whose proportions differ from the average as people's do."""
+    lengths = dict(Actor.from_stature(1.75).segments_m)
+    for name in MEASURED:
+        factor = float(np.exp(0.045 * rng.normal()))
+        lengths |= {key: factor * length for key, length in lengths.items() if key.split(".")[0] == name}
+    return Body(Actor(lengths))
+
+
+def measured(body: Body, step: np.ndarray, stretched: bool = False) -> tuple[MeasuredActor, Posture]:
+    """Measure a body that stands a tangent step from the standing posture."""
+    lowered = 0.0 if stretched else 1.3
+    posture = standing_posture(body, PLACE, 0.0, lowered).plus(step)
+    model = RegionModel(body, CAMERA, tuple(MarkerPlacement(name) for name in SEGMENTS))
+    regions = film(Posture.stack([posture]), noise_px=0.2, seed=1, model=model)
+    height = standing_height_m(body)
+    pixels, _ = CAMERA.project(np.stack([PLACE + [0.0, 0.0, height], PLACE]))
+    return measure_standing(CAMERA, 0, height, *pixels, regions, SEGMENTS, stretched), posture
+
+
+def log_errors(found: Body, body: Body) -> np.ndarray:
+    """How far each measured length is off, as a share."""
+    names = [f"{n}.L" if f"{n}.L" in body.actor.segments_m else n for n in MEASURED]
+    return np.array([np.log(found.actor.segments_m[n] / body.actor.segments_m[n]) for n in names])
+
+
+def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> None:
+    """Over several people with their arms out: nearer on the whole, the place right to some centimetres."""
+    rng = np.random.default_rng(2)
+    before, after = [], []
+    for _ in range(5):
+        body = someone(rng)
+        step = np.where(np.arange(34) < 6, 0.0, 0.03) * rng.normal(size=34)
+        found, posture = measured(body, step, stretched=True)
+        assert found.stands
+        assert standing_height_m(found.body) == pytest.approx(standing_height_m(body), rel=1e-9)
+        assert np.linalg.norm(found.posture.translation - posture.translation) < 0.08
+        average = Body(Actor.from_stature(standing_height_m(body)))
+        before.append(log_errors(average, body))
+        after.append(log_errors(found.body, body))
+    assert np.sqrt(np.mean(np.square(after))) < 0.92 * np.sqrt(np.mean(np.square(before)))
+
+
+def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
+    """Hanging arms may point anywhere; legs are told better."""
+    found, _ = measured(someone(np.random.default_rng(3)), np.zeros(34))
+    assert found.stands
+    assert found.spread["shin"] < found.spread["shoulder_width"] <= 0.0451
+    assert all(0.0 < share < 0.0451 for share in found.spread.values())
+
+
+def test_someone_who_kneels_does_not_stand() -> None:
+    """The knees bent by a right angle, the trunk half a metre lower."""
+    body = Body(Actor.from_stature(1.75))
+    names = body.skeleton.dof_names
+    step = np.zeros(34)
+    step[names.index("pelvis.location_z")] = -0.45
+    for side in "LR":
+        step[names.index(f"knee.{side}.flexion")] = 1.6
+    found, _ = measured(body, step)
+    assert not found.stands

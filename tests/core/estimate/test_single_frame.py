@@ -1,0 +1,132 @@
+"""One frame's posture from its marker regions: nearer to the truth than what was believed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
+from keymark.core.body.posture import Posture
+from keymark.core.body.standing import standing_posture
+from keymark.core.estimate.placing import place_standing
+from keymark.core.estimate.single_frame import FrameFit, fit_frame, uncalibrated
+from keymark.core.estimate.terms.regions import ObservedRegions
+from keymark.core.footage.tracks import RegionTracks
+from keymark.core.prior.belief import (
+    Belief,
+    belief_from_keyframes,
+    belief_from_pose,
+    belief_from_standing,
+)
+from keymark.core.prior.keyframes import Keyframe
+
+TRUTH = exercise(45)
+
+
+def fit(belief: Belief, tracks: RegionTracks, frame: int) -> FrameFit:
+    """Fit one frame of tracks."""
+    observed = ObservedRegions.from_tracks(tracks)
+    return fit_frame(uncalibrated(MODEL), observed[np.array([frame])], belief, frame)
+
+
+def keyframes(*frames: int) -> tuple[Keyframe, ...]:
+    """True postures as keyframes."""
+    return tuple(Keyframe(frame, TRUTH[frame]) for frame in frames)
+
+
+def error_mm(posture: Posture, frame: int) -> float:
+    """Mean distance of the 13 points from the truth."""
+    return 1000.0 * float(point_error_m(Posture.stack([posture]), TRUTH[frame : frame + 1]).mean())
+
+
+def test_the_fit_leads_from_the_keyframe_before_towards_the_truth() -> None:
+    """Ten frames on, over a whole exercise: less than half of what the keyframe is off remains."""
+    tracks = film(TRUTH, noise_px=0.3, seed=1)
+    before, after = [], []
+    for frame in range(10, 45, 5):
+        belief = belief_from_keyframes(keyframes(frame - 10), frame, 30.0)
+        found = fit(belief, tracks, frame)
+        before.append(error_mm(belief.posture, frame))
+        after.append(error_mm(found.posture, frame))
+    assert np.mean(after) < 0.45 * np.mean(before)
+
+
+def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
+    """Fifteen frames from either."""
+    tracks = film(TRUTH, noise_px=0.3, seed=2)
+    before, after = [], []
+    for frame in range(15, 30, 3):
+        belief = belief_from_keyframes(keyframes(frame - 15, frame + 15), frame, 30.0)
+        found = fit(belief, tracks, frame)
+        before.append(error_mm(belief.posture, frame))
+        after.append(error_mm(found.posture, frame))
+    assert np.mean(after) < 0.6 * np.mean(before)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
+    """Whatever is seen: markers moved at random, one hidden, one taken for another."""
+    rng = np.random.default_rng(seed)
+    tracks = film(TRUTH, noise_px=12.0, seed=seed)
+    centroid = np.array(tracks.centroid)
+    centroid[:, 1] = centroid[:, 2]
+    centroid[:, rng.integers(5)] = np.nan
+    tracks = replace(tracks, centroid=centroid)
+    frame = int(rng.integers(10, 45))
+    belief = belief_from_keyframes(keyframes(frame - 10), frame, 30.0)
+    found = fit(belief, tracks, frame)
+    assert np.nansum(np.log1p(found.residual_px**2)) <= np.nansum(np.log1p(found.before_px**2))
+    hidden = ~np.isfinite(tracks.centroid[frame, :, 0])
+    np.testing.assert_array_equal(np.isnan(found.residual_px), hidden)
+
+
+def test_what_is_believed_exactly_stays() -> None:
+    """With nothing seen the belief is the answer."""
+    tracks = film(TRUTH)
+    tracks = replace(tracks, centroid=np.full_like(tracks.centroid, np.nan))
+    found = fit(belief_from_keyframes(keyframes(5), 20, 30.0), tracks, 20)
+    assert np.abs(found.posture.minus(TRUTH[5])).max() < 1e-9
+    assert found.misplaced == ()
+
+
+def test_a_marker_that_no_posture_explains_is_named() -> None:
+    """The left shin's colour is seen in the far corner of the picture."""
+    tracks = film(TRUTH)
+    centroid = np.array(tracks.centroid)
+    centroid[20, 3] = (4.0, 4.0)
+    found = fit(belief_from_keyframes(keyframes(15), 20, 30.0), replace(tracks, centroid=centroid), 20)
+    assert found.misplaced == (3,)
+    assert np.nanmax(np.delete(found.residual_px, 3)) < 3.0
+
+
+def test_hinges_keep_their_range() -> None:
+    """Knees and elbows may pass it by no more than a spring gives way."""
+    tracks = film(TRUTH, noise_px=2.0, seed=5)
+    limits = BODY.skeleton.limits[BODY.skeleton.hinge_dofs]
+    for frame in range(5, 45, 8):
+        angles = fit(belief_from_keyframes(keyframes(frame - 5), frame, 30.0), tracks, frame).posture.angles
+        assert np.all(angles > limits[:, 0] - 0.1)
+        assert np.all(angles < limits[:, 1] + 0.1)
+
+
+def test_a_rough_pose_is_corrected() -> None:
+    """The animator has set the arms some twenty degrees off."""
+    rng = np.random.default_rng(4)
+    tracks = film(TRUTH, noise_px=0.3, seed=4)
+    rough = np.where(np.arange(34) < 6, 0.02, 0.15) * rng.normal(size=34)
+    belief = belief_from_pose(TRUTH[20].plus(rough))
+    found = fit(belief, tracks, 20)
+    assert error_mm(found.posture, 20) < 0.8 * error_mm(belief.posture, 20)
+    assert np.nanmean(found.residual_px) < 0.3 * np.nanmean(found.before_px)
+
+
+def test_someone_who_merely_stands_there_is_fitted_too() -> None:
+    """No keyframe yet: from standing at the place that the regions tell, facing the camera."""
+    tracks = film(TRUTH, noise_px=0.3, seed=3)
+    frame = 8
+    one = tracks.frame(frame)
+    segments = tuple(placement.segment for placement in MODEL.placements)
+    belief = belief_from_standing(place_standing(BODY, CAMERA, 0, one, segments))
+    found = fit(belief, tracks, frame)
+    assert np.nanmax(found.residual_px) < 3.0
+    assert error_mm(found.posture, frame) < 150.0
+    assert error_mm(found.posture, frame) < error_mm(standing_posture(BODY), frame)
