@@ -1,11 +1,12 @@
 """A person's session: from an empty scene through all steps to a motion, by mouse and keys.
 
-Usage: blender-screen --factory-startup --addons MODULE --enable-event-simulate --python session.py -- TAKE FOLDER [STEP]
+Usage: blender-screen --factory-startup --addons MODULE --enable-event-simulate --python session.py
+       -- TAKE FOLDER [STEP]
 
-TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's limbs are,
-where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets the pictures of the
-screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1, begins there instead, with
-the take opened from its files.
+TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's limbs
+are, where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets the pictures of
+the screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1, begins there instead,
+with the take opened from its files.
 """
 
 import sys
@@ -18,7 +19,6 @@ import steps_prepare  # noqa: E402
 import steps_reconstruct  # noqa: E402
 from driver import Camera, Steps, drive  # noqa: E402
 from person import Person  # noqa: E402
-
 
 STEPS = (
     steps_prepare.footage,

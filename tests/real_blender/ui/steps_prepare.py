@@ -119,6 +119,8 @@ def _browse(person: Person, key: str) -> Steps[None]:
     yield from person.hands.press(key)
     yield from until(lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport")
     yield from turns(3)
+    if key == "RET":
+        yield from person.hands.press("ESC")  # a warning of what was loaded pops up, and takes every key
 
 
 def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
@@ -142,14 +144,16 @@ def _cancel_eyedropper(person: Person) -> Steps[None]:
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     """A pixel [px] of the current frame where a person would click for a marker.
 
-    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe has
-    the middle of the limb.
+    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe
+    has the middle of the limb.
     """
     known = person.known
     style, keyframe = known.markers[number], known.keyframes[0]
     expect(keyframe.index == person.scene.frame_current - known.frame_start, "not at the first keyframe")
     points = dict(
-        zip(known.body.skeleton.point_names, known.body.points(known.body.pose(keyframe.posture)), strict=True)
+        zip(
+            known.body.skeleton.point_names, known.body.points(known.body.pose(keyframe.posture)), strict=True
+        )
     )
     middle = np.mean([points[name] for name in _ends(style.segment)], axis=0)
     (centre,), _ = known.camera.project(middle[None])

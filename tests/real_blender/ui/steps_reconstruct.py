@@ -54,7 +54,7 @@ def _store(person: Person) -> Steps[None]:
 
 def _fit(person: Person) -> Steps[None]:
     yield from person.hands.click_button("keymark.fit_pose", "start='KEYFRAMES'")
-    yield from person.wait_forjob()
+    yield from person.wait_for_job()
 
 
 def _watched(person: Person, command: str) -> Steps[None]:
@@ -64,7 +64,7 @@ def _watched(person: Person, command: str) -> Steps[None]:
     yield from until(lambda: progress.fraction > 0.4 or not person.jobs(), "progress", JOB_PATIENCE_S)
     expect(person.jobs(), "the job ended before it was half done")
     yield from person.look("reconstructing")
-    yield from person.wait_forjob()
+    yield from person.wait_for_job()
 
 
 def cancelled(person: Person, command: str) -> Steps[None]:
@@ -76,5 +76,6 @@ def cancelled(person: Person, command: str) -> Steps[None]:
 
 
 def job(person: Person, command: str) -> Steps[None]:
+    """Start a job by its button and wait for its end."""
     yield from person.hands.click_button(command)
-    yield from person.wait_forjob()
+    yield from person.wait_for_job()
