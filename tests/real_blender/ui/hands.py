@@ -61,6 +61,16 @@ class Hands:
         yield from self.move(x, y)
         yield from self.press("LEFTMOUSE", **modifiers)
 
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> Steps[None]:
+        """Drag from one place in the window to another."""
+        yield from self.move(*start)
+        self.window.event_simulate(type="LEFTMOUSE", value="PRESS", x=self.x, y=self.y)
+        yield from turns(2)
+        for share in (0.3, 0.7, 1.0):
+            yield from self.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
+        self.window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=self.x, y=self.y)
+        yield from turns(3)
+
     def write(self, text: str) -> Steps[None]:
         """Write text, letter by letter."""
         names = {".": "PERIOD", "-": "MINUS", "/": "SLASH", " ": "SPACE", "_": "MINUS"}

@@ -37,7 +37,7 @@ def session(take: Path, folder: Path, camera: Camera, first: int) -> Steps[None]
     person = Person(take, folder, camera)
     yield from steps_prepare.start_empty(person)
     if first > 0:
-        yield from steps_prepare.opened(person)
+        yield from steps_prepare.opened(person, first > STEPS.index(steps_reconstruct.reconstruct))
     for step in STEPS[first:]:
         yield from step(person)
 

@@ -46,8 +46,10 @@ def review(person: Person) -> Steps[None]:
     yield from person.hands.invoke("keymark.show_view", view="SIDE")
     yield from person.look("side")
     yield from person.hands.invoke("keymark.show_view", view="FOOTAGE")
-    area = person.hands.area("DOPESHEET_EDITOR")
-    area.ui_type = "FCURVES"
+    person.hands.area("DOPESHEET_EDITOR").ui_type = "FCURVES"
+    yield from turns(3)
+    yield from person.hands.move_over("GRAPH_EDITOR")
+    yield from person.hands.press("HOME")
     yield from person.look("confidence_curves")
     person.hands.area("GRAPH_EDITOR").ui_type = "TIMELINE"
     yield from turns(3)
