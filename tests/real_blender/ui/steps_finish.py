@@ -86,6 +86,7 @@ def finish(person: Person) -> Steps[None]:
     print(f"{settings.keys_after} of {settings.keys_before} keys, {apart:.1f} mm from the motion")
     expect(apart < LARGEST_CHANGE_MM, f"the final motion is {apart:.1f} mm from the reconstructed one")
     bpy.ops.wm.save_as_mainfile(filepath=str(person.folder / "session.blend"))
+    person.step_done("Save")
     yield from turns(3)
     yield from person.undoable("marking the asset", lambda: person.hands.invoke("keymark.mark_asset"))
     expect(settings_of(person).action.asset_data is not None, "the final Action is no asset")
