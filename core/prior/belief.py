@@ -93,12 +93,17 @@ def belief_from_pose(posture: Posture) -> Belief:
     return Belief(posture, TOUCHED_UP * _farthest(posture.skeleton), Posture.stack([posture]))
 
 
-def belief_from_standing(posture: Posture) -> Belief:
-    """What a body says that merely stands about where the performer is: anything is possible."""
+def belief_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> Belief:
+    """What a body says that merely stands about where the performer is: anything is possible.
+
+    Args:
+        posture: How it stands.
+        depth_std_m: How far the points may lie off in depth [m]; less where the place was measured.
+    """
     std = _farthest(posture.skeleton)
     std[:3] = UNKNOWN_PLACE_M
     std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
-    return Belief(posture, std, turned(posture, HEADINGS_RAD), UNKNOWN_DEPTHS_M)
+    return Belief(posture, std, turned(posture, HEADINGS_RAD), depth_std_m)
 
 
 def _farthest(skeleton: Skeleton) -> Array:
