@@ -75,8 +75,15 @@ test-blender: .venv-test/ready ## run the tests in a real Blender, and install t
 	echo "== Inside $$blender"; \
 	.venv-test/bin/python tools/test_in_blender.py "$$blender" $(TESTS) || status=$$?; \
 	echo "== The package, installed in $$blender"; \
-	BLENDER="$$blender" .venv-test/bin/python -m pytest tests/real_blender || status=$$?; \
+	BLENDER="$$blender" .venv-test/bin/python -m pytest -m 'not ui' tests/real_blender || status=$$?; \
 	exit $$status
+
+# Mouse and keys in a Blender with a screen; build/screenshots/ then shows every step.
+.PHONY: test-ui
+test-ui: .venv-test/ready ## go through all steps by mouse and keys in a real Blender, with pictures of each
+	@blender=$${BLENDER:-$$(sh tools/fetch_blender.sh)} || exit 1; \
+	echo "== A session in $$blender"; \
+	BLENDER="$$blender" .venv-test/bin/python -m pytest -m ui tests/real_blender/ui $(TESTS)
 
 .PHONY: lint
 lint: .venv-dev/ready ## check style, formatting and types

@@ -10,10 +10,12 @@ from threadpoolctl import threadpool_limits
 from .body.kinematics import Body
 from .body.posture import Posture
 from .errors import InputError
+from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
-from .estimate.whole_clip import estimate_whole_clip
+from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
+from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
 from .notes import clip_notes, evidence_notes, marker_notes
@@ -49,6 +51,8 @@ class Reconstruction:
     """What a person should know of the result, one sentence each."""
     model: RegionModel
     """What the motion predicts of the markers: calibrated on the keyframes, or average placements."""
+    solution: WholeClipResult | None = None
+    """What method `map` found, for another to start from."""
 
     @property
     def tracks(self) -> RegionTracks:
@@ -56,7 +60,12 @@ class Reconstruction:
         return self.reading.tracks
 
 
-def reconstruct(take: Take, method: str = "map", reading: Reading | None = None) -> Job[Reconstruction]:
+def reconstruct(
+    take: Take,
+    method: str = "map",
+    reading: Reading | None = None,
+    earlier: Reconstruction | None = None,
+) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     Args:
@@ -64,6 +73,7 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
         reading: What `read_footage` or an earlier reconstruction has read of the same clip, which is then not
             opened again.
+        earlier: A reconstruction to start from; what no longer holds of it is found out and not used.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -76,16 +86,27 @@ def reconstruct(take: Take, method: str = "map", reading: Reading | None = None)
         ConversionError: No motion could be computed.
         ValueError: The reading is one of other markers.
     """
+    check_reconstructible(take, method)
+    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return (yield from _reconstruct(take, method, reading, earlier))
+
+
+def check_reconstructible(take: Take, method: str) -> None:
+    """Refuse at once what no reading of the clip could mend.
+
+    Raises:
+        InputError: The method is unknown, or there are too few keyframes.
+    """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
         raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
-    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
-    with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading))
 
 
-def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Reconstruction]:
+def _reconstruct(
+    take: Take, method: str, reading: Reading | None, earlier: Reconstruction | None
+) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
         reading = yield from stretch(read_footage(take), 0.0, EXTRACTION_SHARE)
@@ -96,15 +117,24 @@ def _reconstruct(take: Take, method: str, reading: Reading | None) -> Job[Recons
     tracks = reading.tracks
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion, model = baseline, _average_model(take)
+    motion, model, solution = baseline, _average_model(take), None
     if method == "map":
-        motion, model, of_the_keyframes = yield from _whole_clip(take, reading, prior, begun)
-        notes += of_the_keyframes
+        solution = yield from _whole_clip(take, reading, prior, begun, _usable(earlier, reading))
+        motion, model = _solved(take, tracks, solution), solution.evidence.model
+        notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model)
+    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model, solution)
+
+
+def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
+    """The estimate that an earlier reconstruction made of the same pictures, if it did."""
+    if earlier is None or (earlier.reading.album is None) != (reading.album is None):
+        return None
+    known = earlier.reading is reading or of_same_footage(earlier.reading.key, reading.key)
+    return earlier.solution if known else None
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
@@ -126,7 +156,9 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
-    expected = expected_regions(take, take.frame_count or clip.frame_count) if take.keyframes else None
+    expected = (
+        expected_regions(take, take.frame_count or clip.frame_count) if len(take.keyframes) > 1 else None
+    )
     # Before a camera that moves, no background stands still to tell the performer from.
     with_album = not take.camera.is_moving
     reading = yield from within(
@@ -171,19 +203,22 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 
 def _whole_clip(
-    take: Take, reading: Reading, prior: Posture, begun: float
-) -> Job[tuple[Motion, RegionModel, tuple[str, ...]]]:
-    tracks = reading.tracks
+    take: Take, reading: Reading, prior: Posture, begun: float, earlier: WholeClipResult | None
+) -> Job[WholeClipResult]:
     estimate = estimate_whole_clip(
         take.body,
         take.camera,
-        tracks,
+        reading.tracks,
         take.marker_segments,
         prior,
         take.keyframe_indices,
         album=reading.album,
+        earlier=earlier,
     )
-    result = yield from within("Estimating the motion", estimate, begun, 1.0)
+    return (yield from within("Estimating the motion", estimate, begun, 1.0))
+
+
+def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult) -> Motion:
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -192,8 +227,7 @@ def _whole_clip(
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
     }
-    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
-    return motion, result.evidence.model, evidence_notes(take, result.evidence)
+    return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
@@ -218,6 +252,8 @@ def _motion(
 ) -> Motion:
     pose = take.body.pose(posture)
     points = take.body.points(pose)
+    distance = keyframe_distance(tracks.frame_count, take.keyframe_indices)
+    said = {"nearness": Memberships().near(distance), **(diagnostics or {})}
     if covariance is None:
         spread = np.full((*points.shape, 3), np.nan)
     else:
@@ -232,7 +268,7 @@ def _motion(
         spread,
         take.keyframe_indices,
         method,
-        MappingProxyType(diagnostics or {}),
+        MappingProxyType(said),
     )
 
 

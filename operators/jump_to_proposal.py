@@ -16,6 +16,7 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
+        description="Which way to go from the current frame",
         items=[
             ("NEXT", "Next", "Go to the next proposed keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),

@@ -6,9 +6,12 @@ import bpy
 
 from .failures import reported
 from .requirements import all_met, idle
-from .takes import add_take, find_take, free_camera
+from .say import say
+from .takes import add_take, find_take
 
-VIDEOS = "*.mp4;*.mov;*.avi;*.mkv;*.webm;*.m4v;*.mpg;*.mts;*.png;*.jpg;*.jpeg;*.tif;*.tiff"
+VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
+IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
 
 class KEYMARK_OT_load_footage(bpy.types.Operator):
@@ -19,9 +22,18 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(
-        name="File Path", description="A video, or one image of a numbered sequence", subtype="FILE_PATH"
+        name="File Path",
+        description="A video, or one image of a numbered sequence",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
     )
-    filter_glob: bpy.props.StringProperty(default=VIDEOS, options={"HIDDEN"})
+    as_new_take: bpy.props.BoolProperty(
+        name="As New Take",
+        description="Add a take for this clip, instead of giving the active take another clip",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     @classmethod
@@ -30,26 +42,43 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         return all_met(cls, context, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
+        """Ask for the file, unless one was dropped; a dropped one never takes another's place."""
+        if not self.filepath:
+            context.window_manager.fileselect_add(self)
+            return {"RUNNING_MODAL"}
+        take = find_take(context.scene)
+        self.as_new_take = take is not None and take.clip is not None
+        return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Load it."""
         with reported(self):
-            from .bridge.scene_footage import attach_footage
+            from .bridge.scene_footage import load_footage
+            from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for
 
             scene = context.scene
             path = Path(bpy.path.abspath(self.filepath))
-            take = find_take(scene)
-            camera = free_camera(scene, take)
-            clip, camera = attach_footage(scene, path, camera)
-            take = take or add_take(scene, path.stem)
-            take.clip, take.camera = clip, camera
-            self.report(
-                {"INFO"},
-                f"Loaded {clip.name}: {clip.frame_duration} frames of {clip.size[0]} x {clip.size[1]}",
+            clip = load_footage(path)
+            take = None if self.as_new_take else find_take(scene)
+            take = take or add_take(scene, name_for(path))
+            give_footage(take, clip)
+            look_through_camera(context, take)
+            say(
+                self,
+                "INFO",
+                "Loaded {name}: {count} frames of {width} x {height} pixels",
+                name=clip.name,
+                count=clip.frame_duration,
+                width=clip.size[0],
+                height=clip.size[1],
             )
+            if lens_is_guess(take):
+                say(
+                    self,
+                    "WARNING",
+                    "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
+                    lens=take.guessed_lens_mm,
+                )
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -29,6 +29,16 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     return styles
 
 
+def picked_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
+    """Those of a take's markers that were given a color.
+
+    Raises:
+        InputError: Two markers have one name or one segment.
+    """
+    pairs = zip(take.markers, marker_styles(take), strict=True)
+    return tuple(style for marker, style in pairs if marker.is_picked)
+
+
 def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: tuple[int, int, int]) -> None:
     """Set a marker's color from bytes."""
     marker.color = [value / FULL_SCALE for value in color_srgb]

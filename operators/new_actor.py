@@ -11,13 +11,13 @@ EVEN_M = 5e-4
 
 
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
-    """Build the armature; it becomes the take's actor, without keyframes or motion yet."""
+    """Build the armature, named after the take; it becomes its actor, without keyframes or motion yet."""
     scene, layer = context.scene, context.view_layer
     if layer.objects.active is not None and layer.objects.active.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     for selected in list(layer.objects.selected):
         selected.select_set(False, view_layer=layer)
-    armature_object = build_armature(scene, body)
+    armature_object = build_armature(scene, body, f"{take.name} Actor")
     armature_object.select_set(True, view_layer=layer)
     layer.objects.active = armature_object
     take.armature = armature_object

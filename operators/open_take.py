@@ -6,6 +6,7 @@ import bpy
 
 from .failures import reported
 from .requirements import all_met, idle, object_mode_possible
+from .say import say
 
 
 class KEYMARK_OT_open_take(bpy.types.Operator):
@@ -16,7 +17,10 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(
-        name="File Path", description="The take's folder, or the take.json in it", subtype="FILE_PATH"
+        name="File Path",
+        description="The take's folder, or the take.json in it",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
     )
     keyframes: bpy.props.StringProperty(
         name="Keyframes",
@@ -32,28 +36,34 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
         return all_met(cls, context, object_mode_possible, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file."""
+        """Ask for the file, unless one was dropped."""
+        if self.filepath:
+            return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
+            from .take_footage import look_through_camera
             from .take_scene import read_for_scene, show_take
+            from .takes import active_take
 
             folder = _take_folder(self.filepath)
             opened = read_for_scene(folder, self.keyframes)
             show_take(context, opened)
+            look_through_camera(context, active_take(context.scene))
             for note in opened.notes:
                 self.report({"WARNING"}, note)
-            self.report({"INFO"}, f"Opened {folder.name} with {len(opened.take.keyframes)} keyframes")
+            count = len(opened.take.keyframes)
+            say(self, "INFO", "Opened {name} with {count} keyframes", name=folder.name, count=count)
             return {"FINISHED"}
         return {"CANCELLED"}
 
 
 def _take_folder(filepath: str) -> Path:
     path = Path(bpy.path.abspath(filepath))
-    return path.parent if path.name == "take.json" else path
+    return path.parent if path.suffix == ".json" else path
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

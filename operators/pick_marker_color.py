@@ -1,15 +1,56 @@
-"""Pick the active marker's colour from the footage."""
+"""Pick a marker's colour from the footage, and see at once how well it is found."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import bpy
 
+from .add_marker import append_marker, free_name, next_segment
+from .check_markers import show_frame
 from .failures import reported
-from .marker_styles import set_marker_color
-from .requirements import all_met, footage, idle, markers
+from .job_operator import JobOperator
+from .marker_readouts import look_at_markers, write_readouts
+from .marker_styles import marker_styles, set_marker_color
+from .requirements import all_met, footage, idle
+from .say import label, say
 from .takes import active_take, footage_of
+from .ui.properties.marker import segment_title
+
+if TYPE_CHECKING:
+    from ..core.footage.marker_check import MarkerCheck
+    from ..core.footage.marker_style import MarkerStyle
+    from ..core.progress import Job
+
+NAVIGATION = {
+    *(
+        "MIDDLEMOUSE",
+        "WHEELUPMOUSE",
+        "WHEELDOWNMOUSE",
+        "TRACKPADPAN",
+        "TRACKPADZOOM",
+        "MOUSEPAN",
+        "MOUSEZOOM",
+    ),
+    *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
+}
+REQUESTS = {
+    ".L": "Click on the marker: {segment}, the performer's own left",
+    ".R": "Click on the marker: {segment}, the performer's own right",
+}
+MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 
-class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
-    """Click on the marker in the footage to take its color from there"""
+@dataclass(frozen=True, eq=False)
+class Picked:
+    """What a click found."""
+
+    color: tuple[int, int, int]
+    styles: "tuple[MarkerStyle, ...]"
+    check: "MarkerCheck"
+
+
+class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
+    """Click on the marker in the footage to take its color from there, and look for it all over the clip"""
 
     bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
@@ -21,61 +62,145 @@ class KEYMARK_OT_pick_marker_color(bpy.types.Operator):
         size=2,
         options={"SKIP_SAVE"},
     )
+    add: bpy.props.BoolProperty(
+        name="Add",
+        description="Give the color to a new marker on the next body part instead of the active one",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage, and a marker to give the color to."""
-        return all_met(cls, context, footage, markers, idle)
+        """There must be footage."""
+        return all_met(cls, context, footage, idle)
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The tooltip: which marker gets the color."""
+        if properties.add:
+            return "Click on another marker in the footage, to add it on the next body part in its color"
+        return "Click on the active marker in the footage, to take its color from there and look for it"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on the footage."""
         from .ui.footage_view import shows_footage
 
-        if not shows_footage(context, active_take(context.scene)):
+        take = active_take(context.scene)
+        if not shows_footage(context, take):
             self.report(
                 {"ERROR"},
                 "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
             )
             return {"CANCELLED"}
+        segment = self._segment(take)
+        if segment is None:
+            self.report({"ERROR"}, "Every body part has a marker already")
+            return {"CANCELLED"}
+        sentence = label(REQUESTS.get(segment[-2:], MIDDLE_REQUEST), segment=label(segment_title(segment)))
+        context.window_manager.keymark_progress.show("", 0.0)
+        context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set("Click on the marker in the footage   |   Esc: Cancel")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Pick at the click, or stop."""
+        """Wait for the click, then go on with the job that it starts."""
+        if self._job is not None:
+            return super().modal(context, event)
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.cancel(context)
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            from .ui.footage_view import pixel_under
+            return self._clicked(context, event)
+        # What moves the view lets the animator go nearer to the marker or to another frame.
+        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
-            pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+    def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        from .ui.footage_view import pixel_under
+
+        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+        if pixel is None:
             self.cancel(context)
-            if pixel is None:
-                self.report({"ERROR"}, "That is not on the footage; click on a marker in it")
-                return {"CANCELLED"}
-            self.pixel = pixel
-            return self.execute(context)
-        return {"RUNNING_MODAL"}
+            self.report({"ERROR"}, "That is not on the footage; click on a marker in it")
+            return {"CANCELLED"}
+        self.pixel = pixel
+        context.window.cursor_modal_restore()
+        with reported(self):
+            self.begin(context)
+            return {"RUNNING_MODAL"}
+        self.cancel(context)
+        return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Give the cursor back; Blender calls this as well."""
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
+        """Give the cursor back and stop the job; Blender calls this as well."""
+        if self._job is None:
+            context.window.cursor_modal_restore()
+        super().cancel(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read the pixel from the footage's file, free of the viewport's colors."""
-        with reported(self):
-            from .bridge.footage_color import footage_color
+    def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
+        """Read the pixel from the footage's file, free of the viewport's colors; look for its color."""
+        from .bridge.footage_color import footage_color
 
-            take = active_take(context.scene)
-            color = footage_color(footage_of(context.scene, take), self.pixel)
-            marker = take.markers[min(take.active_marker, len(take.markers) - 1)]
-            set_marker_color(marker, color)
-            self.report({"INFO"}, f"Marker {marker.name} has the color {color}")
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(scene)
+        footage_shown = footage_of(scene, take)
+        color = footage_color(footage_shown, self.pixel)
+        styles = self._styles(take, color)
+        check = yield from look_at_markers(footage_shown, styles)
+        return Picked(color, styles, check)
+
+    def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
+        """Give the color to the marker, and store what was found of all of them."""
+        take = active_take(scene)
+        if self._adds(take):
+            append_marker(take, str(next_segment(take)))
+        marker = take.markers[min(take.active_marker, len(take.markers) - 1)]
+        set_marker_color(marker, result.color)
+        write_readouts(take, result.styles, result.check)
+        show_frame(scene)
+        for sentence in marker.warning.splitlines():
+            self.report({"WARNING"}, sentence)
+        say(
+            self,
+            "INFO",
+            "Marker {name} has the color {color}, found in {found} of {sampled} frames",
+            name=marker.name,
+            color=result.color,
+            found=marker.found,
+            sampled=marker.sampled,
+        )
+
+    def _adds(self, take: bpy.types.PropertyGroup) -> bool:
+        return bool(self.add or not len(take.markers))
+
+    def _segment(self, take: bpy.types.PropertyGroup) -> str | None:
+        """The body part whose marker is picked; None where there is none left to add one on."""
+        if self._adds(take):
+            return next_segment(take)
+        return str(take.markers[min(take.active_marker, len(take.markers) - 1)].segment)
+
+    def _styles(
+        self, take: bpy.types.PropertyGroup, color: tuple[int, int, int]
+    ) -> "tuple[MarkerStyle, ...]":
+        """The markers as they will be.
+
+        Raises:
+            InputError: Two markers have one name or one segment, or every body part has one.
+        """
+        from ..core.errors import InputError
+        from ..core.footage.marker_style import MarkerStyle
+
+        picked = None if self._adds(take) else min(take.active_marker, len(take.markers) - 1)
+        styles = [
+            replace(style, color_srgb=color) if index == picked else style
+            for index, style in enumerate(marker_styles(take))
+            if index == picked or take.markers[index].is_picked
+        ]
+        if picked is None:
+            segment = next_segment(take)
+            if segment is None:
+                raise InputError("every body part has a marker already; choose the one to pick a color for")
+            styles.append(MarkerStyle(free_name(take, segment), segment, color))
+        return tuple(styles)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

@@ -1,5 +1,6 @@
 """Propose frames worth posing, from how fast the markers move."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
@@ -7,10 +8,24 @@ import bpy
 from .job_operator import JobOperator
 from .marker_styles import marker_styles
 from .requirements import all_met, footage, idle, markers
-from .takes import active_take, footage_of
+from .results import keep_reading, reading_of
+from .say import say
+from .takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
+    from ..core.footage.reading import Reading
     from ..core.progress import Job
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the job hands over to the scene."""
+
+    take: str
+    """The take's identifier."""
+    reading: "Reading"
+    frames: tuple[int, ...]
+    """Scene frames worth posing."""
 
 
 class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
@@ -25,27 +40,34 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         """The markers are followed through the footage."""
         return all_met(cls, context, footage, markers, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[list[int]]":
-        """Find the frames."""
-        from ..core.footage.markers import track_markers
+    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+        """Find the frames; a clip that was read before for these markers is not read again."""
+        from ..core.footage.read_clip import read_clip
+        from ..core.footage.reading_key import of_same_footage, reading_key
         from ..core.prior.speed import marker_speed, propose_keyframes
         from ..core.progress import within
         from .bridge.frame_times import scene_frames
 
         take = active_take(scene)
-        footage, styles = footage_of(scene, take), marker_styles(take)
-        tracks = yield from within("Following the markers", track_markers(footage.open(), styles), 0.0, 1.0)
-        chosen = propose_keyframes(marker_speed(tracks), take.keyframe_count or None)
-        frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)[chosen]
-        return [round(float(frame)) for frame in frames]
+        identifier, count = take.identifier, take.keyframe_count or None
+        footage, styles, reading = footage_of(scene, take), marker_styles(take), reading_of(take)
+        clip, first, rate = footage.open(), footage.first_frame, footage.rate
+        if reading is None or not of_same_footage(
+            reading.key, reading_key(clip.path, clip.fps, styles, None)
+        ):
+            reading = yield from within("Following the markers", read_clip(clip, styles), 0.0, 1.0)
+        chosen = propose_keyframes(marker_speed(reading.tracks), count)
+        frames = scene_frames(reading.tracks.time_s, first, rate)[chosen]
+        return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames))
 
-    def finish(self, scene: bpy.types.Scene, result: list[int]) -> None:
-        """Keep them with the take."""
-        proposals = active_take(scene).proposals
-        proposals.clear()
-        for frame in result:
-            proposals.add().frame = frame
-        self.report({"INFO"}, f"{len(result)} keyframes proposed")
+    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+        """Keep them with the take, and what was read of the clip for the reconstruction."""
+        take = take_called(scene, result.take)
+        keep_reading(take, result.reading)
+        take.proposals.clear()
+        for frame in result.frames:
+            take.proposals.add().frame = frame
+        say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

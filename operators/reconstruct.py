@@ -1,29 +1,38 @@
 """Reconstruct the motion between the keyframes from the footage."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .job_operator import JobOperator, stretch
+from .job_operator import JobOperator
+from .live_preview import LivePreview
 from .marker_styles import marker_styles
 from .requirements import actor, all_met, footage, idle, keyframes, markers
-from .takes import active_take, footage_of
+from .results import keep_reading, keep_review, keep_solved, reading_of, solved_before
+from .reviewing import show_review
+from .say import say
+from .takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
-    from ..core.motion import Motion
-    from ..core.progress import Job
+    from ..core.progress import Job, Progress
+    from ..core.reconstruct import Reconstruction
+    from ..core.review import Review
 
-READING_SHARE = 0.05
-"""Share of the job that reading the scene and the clip's times is."""
+TIMES, READ, SOLVED = 0.05, 0.4, 0.97
+"""Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """What the job hands over to the scene."""
 
-    motion: "Motion"
-    rate: float
+    take: str
+    """The take's identifier."""
+    frames: Any
+    """(F,) scene frames."""
+    reconstruction: "Reconstruction"
+    review: "Review"
     notes: tuple[str, ...]
 
 
@@ -33,6 +42,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
     bl_options = {"REGISTER", "UNDO"}
+    preview: LivePreview | None = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -40,35 +50,63 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         return all_met(cls, context, footage, actor, markers, keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
-        """Read the scene's take and reconstruct it."""
-        from ..core.reconstruct import reconstruct
+        """Read the scene's take and reconstruct it, beginning with what is known of it already."""
+        from ..core.progress import Progress, stretch
+        from ..core.reconstruct import check_reconstructible, read_footage, reconstruct
+        from ..core.review import review
+        from .bridge.frame_times import scene_frames
         from .bridge.scene_take import read_scene_take
 
         settings = active_take(scene)
-        method = settings.method
-        reading = read_scene_take(
-            footage_of(scene, settings), settings.armature, settings.keyframe_action, marker_styles(settings)
+        identifier, method, armature = settings.identifier, settings.method, settings.armature
+        watched, kept, earlier = settings.live_preview, reading_of(settings), solved_before(settings)
+        reading_scene = read_scene_take(
+            footage_of(scene, settings), armature, settings.keyframe_action, marker_styles(settings)
         )
-        take, notes = yield from stretch(reading, 0.0, READING_SHARE)
-        result = yield from stretch(reconstruct(take, method), READING_SHARE, 1.0)
-        return Outcome(result.motion, take.fps, (*notes, *result.notes))
+        take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+        check_reconstructible(take, method)
+        reading = yield from stretch(read_footage(take, kept), TIMES, READ)
+        frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
+        self.preview = LivePreview(scene, armature, frames) if watched else None
+        result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
+        yield Progress("Judging the motion", SOLVED)
+        return Outcome(identifier, frames, result, review(take, result, frames), (*notes, *result.notes))
+
+    def watch(self, progress: "Progress") -> None:
+        """Let the actor follow."""
+        if self.preview is not None and progress.preview is not None:
+            self.preview.show(progress.preview)
+
+    def unwatch(self) -> None:
+        """Leave actor and scene as they were."""
+        if self.preview is not None:
+            self.preview.end()
+            self.preview = None
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Write the motion's Action and let it animate the actor; the keyframes stay in theirs."""
         from .bridge.fcurves import write_motion
-        from .bridge.frame_times import scene_frames
 
-        settings, motion = active_take(scene), result.motion
-        frames = scene_frames(motion.time_s, motion.frame_start, result.rate)
-        settings.motion_action = write_motion(
-            settings.armature, motion, settings.motion_action, settings.keyframe_action, frames
+        take, motion = take_called(scene, result.take), result.reconstruction.motion
+        take.motion_action = write_motion(
+            take.armature, motion, take.motion_action, take.keyframe_action, result.frames
         )
-        settings.motion_action.use_fake_user = True
+        take.motion_action.use_fake_user = True
+        keep_reading(take, result.reconstruction.reading)
+        keep_solved(take, result.reconstruction)
+        keep_review(take, result.review)
+        show_review(take, result.review)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        take.notes.clear()
         for note in result.notes:
+            take.notes.add().text = note
             self.report({"WARNING"}, note)
-        self.report(
-            {"INFO"}, f"Reconstructed {len(frames)} frames from {len(motion.keyframe_indices)} keyframes"
+        say(
+            self,
+            "INFO",
+            "Reconstructed {frames} frames from {keyframes} keyframes",
+            frames=len(result.frames),
+            keyframes=len(motion.keyframe_indices),
         )
 
 

@@ -4,6 +4,7 @@ import bpy
 
 from .requirements import all_met, markers
 from .takes import active_take
+from .ui.properties.marker import clear_readouts
 
 
 class KEYMARK_OT_remove_marker(bpy.types.Operator):
@@ -20,10 +21,12 @@ class KEYMARK_OT_remove_marker(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it; the one before becomes active."""
-        settings = active_take(context.scene)
-        index = min(settings.active_marker, len(settings.markers) - 1)
-        settings.markers.remove(index)
-        settings.active_marker = max(0, index - 1)
+        take = active_take(context.scene)
+        index = min(take.active_marker, len(take.markers) - 1)
+        if take.markers[index].is_picked:
+            clear_readouts(take)
+        take.markers.remove(index)
+        take.active_marker = max(0, index - 1)
         return {"FINISHED"}
 
 

@@ -26,14 +26,31 @@ def actor(context: bpy.types.Context) -> str | None:
     """The scene has an actor."""
     take = find_take(context.scene)
     armature_object = take.armature if take else None
-    there = armature_object is not None and armature_object.name in context.scene.objects
-    return None if there else "Build the actor first, or choose its armature"
+    if armature_object is None or armature_object.name not in context.scene.objects:
+        return "Build the actor first, or choose its armature"
+    if armature_object.library is not None:
+        return "The actor is linked; make a library override of it first (Object > Library Override)"
+    return None
 
 
 def markers(context: bpy.types.Context) -> str | None:
     """There are markers."""
     take = find_take(context.scene)
     return None if take and len(take.markers) else "Add the markers that the performer wears first"
+
+
+def a_color(context: bpy.types.Context) -> str | None:
+    """A marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and any(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the color of a marker first"
+
+
+def all_colors(context: bpy.types.Context) -> str | None:
+    """Every marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and all(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the colors of all markers first, or remove those that have none"
 
 
 def keyframes(context: bpy.types.Context) -> str | None:
@@ -52,6 +69,14 @@ def turntable(context: bpy.types.Context) -> str | None:
     """There are views of the actor from other sides."""
     take = find_take(context.scene)
     return None if take and take.turntable.collection else "Set up the turntable first"
+
+
+def weak_frames(context: bpy.types.Context) -> str | None:
+    """There are frames worth another keyframe."""
+    take = find_take(context.scene)
+    if take is None or take.review.frame_count == 0:
+        return "Reconstruct the motion first"
+    return None if len(take.review.weak_frames) else "No frame needs another keyframe"
 
 
 def object_mode_possible(context: bpy.types.Context) -> str | None:

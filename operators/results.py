@@ -6,10 +6,10 @@ for the disk twice.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import bpy
 
@@ -119,7 +119,7 @@ def forget() -> None:
 
 
 def _kept(
-    remembered: Remembered[Result], key: str, from_arrays: "Callable[[Mapping[str, Any]], Result]"
+    remembered: Remembered[Result], key: str, from_arrays: "Callable[[Arrays], Result]"
 ) -> Result | None:
     if not key:
         return None

@@ -16,9 +16,11 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
 
     which: bpy.props.EnumProperty(
         name="Show",
+        description="Which of the take's Actions",
         items=[
             ("KEYFRAMES", "Keyframes", "Let the keyframes you posed animate the actor"),
             ("MOTION", "Motion", "Let the reconstructed motion animate the actor"),
+            ("FINAL", "Final", "Let the finished motion animate the actor"),
         ],
     )
 
@@ -30,7 +32,11 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Assign the Action."""
         settings = active_take(context.scene)
-        action = settings.keyframe_action if self.which == "KEYFRAMES" else settings.motion_action
+        action = {
+            "KEYFRAMES": settings.keyframe_action,
+            "MOTION": settings.motion_action,
+            "FINAL": settings.finish.action,
+        }[self.which]
         if action is None:
             self.report({"ERROR"}, f"There is no {self.which.lower()} Action yet")
             return {"CANCELLED"}

@@ -1,11 +1,15 @@
 """The takes of a scene: finding, adding and switching between them."""
 
+from collections.abc import Iterable
 from uuid import uuid4
 
 import bpy
 
 from ..core.errors import InputError
-from .bridge.footage import Footage
+from .bridge.footage import Footage, set_scene_range
+
+VERSION = 1
+"""Version of Keymark's properties; a scene says by which it was written."""
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
@@ -28,16 +32,36 @@ def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     return settings.takes[min(settings.active_take, len(settings.takes) - 1)]
 
 
+def take_called(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
+    """The take of an identifier, whichever is worked on now.
+
+    Raises:
+        InputError: It has been removed.
+    """
+    for take in scene.keymark.takes:
+        if take.identifier == identifier:
+            return take
+    raise InputError("the take that the job was about has been removed meanwhile; nothing was changed")
+
+
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Add a take, which becomes the active one; a number makes its name unique."""
     settings = scene.keymark
-    names = {take.name for take in settings.takes}
+    settings.version = max(settings.version, VERSION)
     take = settings.takes.add()
-    numbered = (f"{name}.{number:03d}" for number in range(1, len(names) + 1))
-    take.name = name if name not in names else next(free for free in numbered if free not in names)
+    take.name = name  # made unique, see `unique_name`
     take.identifier = uuid4().hex
     settings.active_take = len(settings.takes) - 1
     return take
+
+
+def unique_name(name: str, others: Iterable[str]) -> str:
+    """A name that none of the others has, by a number like Blender's own."""
+    taken = set(others)
+    stem, _, number = name.rpartition(".")
+    base = stem if stem and len(number) == 3 and number.isdigit() else name
+    numbered = (f"{base}.{number:03d}" for number in range(1, len(taken) + 2))
+    return name if name not in taken else next(free for free in numbered if free not in taken)
 
 
 def ensure_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
@@ -50,14 +74,6 @@ def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage
     return Footage(scene, take.clip, take.camera)
 
 
-def free_camera(scene: bpy.types.Scene, take: bpy.types.PropertyGroup | None) -> bpy.types.Object | None:
-    """The camera to put a take's footage behind: its own, else the scene's where no other take has it."""
-    if take is not None and take.camera is not None:
-        return take.camera
-    taken = {other.camera for other in scene.keymark.takes}
-    return scene.camera if scene.camera not in taken else None
-
-
 def bring_forward(scene: bpy.types.Scene) -> None:
     """Let the scene show the active take: its clip, its camera, its range of frames."""
     take = find_take(scene)
@@ -65,6 +81,14 @@ def bring_forward(scene: bpy.types.Scene) -> None:
         return
     if take.camera is not None and take.camera.name in scene.objects:
         scene.camera = take.camera
-    if take.clip is not None and take.clip != scene.active_clip:
-        scene.active_clip = take.clip
-        footage_of(scene, take).set_scene_range()
+    clip = take.clip
+    if clip is None or clip == scene.active_clip:
+        return
+    scene.active_clip = clip
+    if clip.frame_duration and all(clip.size):
+        footage = footage_of(scene, take)
+        # Blender forgets the rate of a clip whose file is missing, and images have none of their own.
+        rate = take.clip_state.rate or footage.rate
+        size = (clip.size[0], clip.size[1])
+        set_scene_range(scene, size, rate, footage.first_frame, clip.frame_duration)
+        scene.frame_current = min(max(scene.frame_current, scene.frame_start), scene.frame_end)

@@ -18,12 +18,17 @@ class Blender:
     command: tuple[str, ...]
     user: Path
 
-    def run(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    def run(self, *arguments: str | Path, patience_s: float = 900.0) -> subprocess.CompletedProcess[str]:
         """Run it to its end with `arguments`, without a terminal; standard output and error are kept."""
         environment = {**os.environ, "BLENDER_USER_RESOURCES": str(self.user)}
         words = [*self.command, *(str(argument) for argument in arguments)]
         return subprocess.run(
-            words, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900
+            words,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=patience_s,
         )
 
     def install(self, package: Path) -> subprocess.CompletedProcess[str]:

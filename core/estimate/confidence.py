@@ -8,8 +8,8 @@ the estimate cannot know of itself:
 * Where the footage moved a point far from the interpolated keyframes, these tell little there, and what the
   footage cannot see, depth above all, is off by a share of what it sees. The estimate's covariance does not
   grow with that movement; true errors do.
-* Where the footage contradicts the motion by more than it should, the covariance is scaled up by as much,
-  the factor of Birge (1932, *The calculation of errors by the method of least squares*).
+* Where most of the markers contradict the motion by more than they should, the covariance is scaled up by as
+  much, the factor of Birge (1932, *The calculation of errors by the method of least squares*).
 """
 
 import numpy as np
@@ -58,10 +58,12 @@ def misfits(distance_px: Array, expected_px: Array) -> Array:
 
 
 def _doubt(misfit: Array) -> Array:
-    """(F,) factor, at least one, by which the compared markers (F, M) contradict the covariance."""
-    compared = np.isfinite(misfit)
-    total = np.where(compared, misfit, 0.0).sum(axis=1)
-    return np.asarray(np.maximum(total / np.maximum(compared.sum(axis=1), 1), 1.0))
+    """(F,) factor, at least one, by which the compared markers (F, M) contradict the covariance.
+
+    It is the median marker's: one that went astray has lost its weight in the estimate already.
+    """
+    compared = np.isfinite(misfit).any(axis=1)
+    return np.maximum(np.nanmedian(np.where(compared[:, None], misfit, 1.0), axis=1), 1.0)
 
 
 def _within(covariance: Array, tolerance_m: float) -> Array:

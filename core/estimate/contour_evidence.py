@@ -4,6 +4,7 @@ From some frames it is learned how the parts of the body and the background look
 the posture is known best, how thick the parts are and where they sit; then edges are measured everywhere.
 """
 
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,8 +46,10 @@ class ContourEvidence:
     model: ContourModel
     """The contours of the performer's own parts."""
 
-    def term(self, posture: Posture, frame: NDArray[np.intp]) -> ContourTerm:
+    def term(self, posture: Posture, frame: NDArray[np.intp]) -> Generator[float, None, ContourTerm]:
         """Measure the edges near the contours of F postures, as far as they are known.
+
+        It yields the fraction done.
 
         Args:
             posture: The F postures.
@@ -63,13 +66,16 @@ class ContourEvidence:
             edge[chunk] = np.where(found[..., None], place, np.nan)
             normal[chunk] = predicted.normal
             variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
+            yield (chunk[-1] + 1) / len(frame)
         return ContourTerm(model, edge, normal, variance)
 
 
 def learn_contours(
     body: Body, camera: Camera, album: Album, posture: Posture, keyframes: NDArray[np.intp]
-) -> ContourEvidence | None:
+) -> Generator[None, None, ContourEvidence | None]:
     """Learn how performer and background look, and the shapes of the performer's parts.
+
+    It yields now and then, so that whoever waits can stop waiting.
 
     Args:
         body: The actor's body.
@@ -85,24 +91,29 @@ def learn_contours(
     if camera.is_moving or not all(int(index) in album for index in frame):
         return None
     model = ContourModel.average(body, camera)
-    appearance = _learn(model, album, posture, frame)
+    appearance = yield from _learn(model, album, posture, frame)
     if not appearance.steady:
         return None
     known = keyframes[np.linspace(0, len(keyframes) - 1, min(len(keyframes), MOST_KEYFRAMES)).astype(np.intp)]
-    return ContourEvidence(album, appearance, _fitted(model, album, appearance, posture[known], known))
+    fitted = yield from _fitted(model, album, appearance, posture[known], known)
+    return ContourEvidence(album, appearance, fitted)
 
 
 def _chunks(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     return np.array_split(index, max(1, -(-len(index) // CHUNK_FRAMES)))
 
 
-def _learn(model: ContourModel, album: Album, posture: Posture, frame: NDArray[np.intp]) -> Appearance:
+def _learn(
+    model: ContourModel, album: Album, posture: Posture, frame: NDArray[np.intp]
+) -> Generator[None, None, Appearance]:
     count = min(LEARNED_FRAMES, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
     parts = model.covers(model.body.pose(posture[chosen]), frame[chosen])
     images = [album.picture(int(index)) for index in frame[chosen]]
     size = images[0].shape[1], images[0].shape[0]
+    yield
     labels = [part_map(parts, i, size, album.factor) for i in range(len(chosen))]
+    yield
     return learn_appearance(images, labels, len(model.parts.segments))
 
 
@@ -125,15 +136,15 @@ def _look(
 
 def _fitted(
     model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
-) -> ContourModel:
+) -> Generator[None, None, ContourModel]:
     """The model with shapes that explain the edges of postures known best."""
     chunks = _chunks(np.arange(len(frame)))
     pictures = [_pictures(album, frame[k]) for k in chunks]
     for _ in range(ROUNDS):
-        known = [
-            _look(model, album, appearance, posture[k], frame[k], seen)
-            for k, seen in zip(chunks, pictures, strict=True)
-        ]
+        known = []
+        for chunk, seen in zip(chunks, pictures, strict=True):
+            yield
+            known.append(_look(model, album, appearance, posture[chunk], frame[chunk], seen))
         model = model.with_shape(_fitted_shape(model, known, album.factor))
     return model
 

@@ -5,7 +5,7 @@ characteristics and the a priori depths correct it (eqs. 11, 12, 14 to 18). Post
 steps are taken with `plus`, innovations of angles are wrapped, and a covariance is that of a tangent step.
 """
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,6 +29,7 @@ from ..observation.line_ends import (
     observed_characteristics,
     residual,
 )
+from ..progress import Part, Preview
 from . import fuzzy
 from .filter_options import FilterOptions
 from .measurement_update import normalized_innovation_squared, update
@@ -38,6 +39,8 @@ Array = NDArray[np.float64]
 LEAST_QUALITY = 0.05
 """Below this a region's noise grows no further; its gate still holds."""
 LEAST_ANGLE_WEIGHT = 1e-3
+PREVIEWED = 12
+"""Frames that are handed out together for watching."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,7 +220,7 @@ def filter_clip(
     prior: Posture,
     keyframes: Sequence[int],
     options: FilterOptions | None = None,
-) -> Generator[float, None, FilterResult]:
+) -> Part[FilterResult]:
     """Estimate every frame of a clip by the paper's method.
 
     Args:
@@ -230,7 +233,7 @@ def filter_clip(
         options: noise and fuzzy sets.
 
     Yields:
-        The fraction of frames done.
+        The fraction of frames done, and from time to time the frames just estimated.
 
     Returns:
         Posture and covariance of every frame.
@@ -256,6 +259,8 @@ def filter_clip(
         done.append(estimator.correct(state, frame, observed[frame], tracks.quality[frame]))
         state = done[-1].state
         yield (frame + 1) / frames
+        if (frame + 1) % PREVIEWED == 0:
+            yield Preview(frame + 1 - PREVIEWED, Posture.stack([one.state.mean for one in done[-PREVIEWED:]]))
     return FilterResult(
         posture=Posture.stack([one.state.mean for one in done]),
         covariance=np.stack([one.state.covariance for one in done]),

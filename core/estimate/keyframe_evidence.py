@@ -7,6 +7,7 @@ and placements and lens are the most probable ones given those sizes. Regions th
 (Student's t), and a marker that never fits is distrusted in all frames.
 """
 
+from collections.abc import Generator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -101,8 +102,10 @@ def read_keyframes(
     width_px: Array,
     posture: Posture,
     frame: NDArray[np.intp],
-) -> KeyframeEvidence:
+) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate the markers on the keyframes and judge the keyframes by the markers.
+
+    It yields now and then, so that whoever waits can stop waiting.
 
     Args:
         model: The region model with average placements.
@@ -122,16 +125,23 @@ def read_keyframes(
     distrust = np.ones(len(model.placements))
     scale, timing = SCALE_MEDIAN, 0.0
     for iteration in range(ITERATIONS):
+        yield
         seen = _differences(calibrated, model, known, variance, posing[judged], velocity[judged])
+        yield
         if iteration > 0:  # before, nothing tells a careless keyframe from a marker that is something else
-            scale, timing = _most_likely_sizes(seen, weight)
+            scale, timing = yield from _most_likely_sizes(seen, weight)
         change, squared = _calibrate(seen, weight, scale, timing)
         calibrated = _changed(model, change)
         distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
         trust = student_weight(squared / distrust**2, DEGREES, FEATURES) / distrust**2
         weight = np.repeat(trust, FEATURES, axis=1)
-    total = scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :]
-    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, np.linalg.inv(total))
+    information = keyframe_information(posing, velocity, scale, timing)
+    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, information)
+
+
+def keyframe_information(posing: Array, velocity: Array, scale: float, timing: float) -> Array:
+    """(K, D, D) inverse covariance of keyframes whose usual error (K, D, D) and velocity (K, D) are given."""
+    return np.linalg.inv(scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :])
 
 
 def _changed(model: RegionModel, change: Array) -> RegionModel:
@@ -191,9 +201,12 @@ def _whole_areas(ratio: Array) -> Array:
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
-def _most_likely_sizes(seen: _Differences, weight: Array) -> tuple[float, float]:
+def _most_likely_sizes(seen: _Differences, weight: Array) -> Generator[None, None, tuple[float, float]]:
     """Means over the posterior of the posing error's size and of the timing error."""
-    logarithm = np.stack([_log_likelihoods(seen, seen.noise(weight, scale, 0.0)) for scale in SCALES])
+    logarithm = np.empty((len(SCALES), len(TIMINGS)))
+    for row, scale in zip(logarithm, SCALES, strict=True):
+        row[:] = _log_likelihoods(seen, seen.noise(weight, scale, 0.0))
+        yield
     logarithm -= 0.5 * (np.log(SCALES[:, None] / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 + TIMINGS / TIMING_MEAN
     probability = np.exp(logarithm - logarithm.max())
     probability /= probability.sum()

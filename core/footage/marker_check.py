@@ -14,7 +14,7 @@ from .clip_samples import ClipSamples
 from .colour_model import ColourModel
 from .colour_overlap import colour_claims
 from .marker_style import MarkerStyle
-from .marker_warnings import Likeness, marker_warnings
+from .marker_warnings import Likeness, alike_warnings, marker_warnings
 from .own_regions import DEAREST_PIECE, own_regions
 from .regions import find_regions
 from .tracks import ExpectedRegions
@@ -152,7 +152,9 @@ def _readout(
             f"{name} is in none of the {sampled} frames looked at, or something larger has its colour; pick "
             "it anew, or wear another"
         )
-        return MarkerReadout(name, 0, sampled, 0.0, 0.0, 0.0, (sentence,))
+        return MarkerReadout(
+            name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)
+        )
     typical = float(np.median(area[area > 0.0]))
     own = 1.0 - likeness.background - sum(share for _, share in likeness.claimed)
     return MarkerReadout(

@@ -41,12 +41,7 @@ def marker_warnings(
         grid_area: its usual area in pixels of the measuring grid.
         likeness: what else looks like it.
     """
-    sentences = []
-    if likeness.alike:
-        sentences.append(
-            f"{name} has almost the same colour as {' and '.join(likeness.alike)}; only keyframes and paths "
-            "tell which is which"
-        )
+    sentences = alike_warnings(name, likeness.alike)
     sentences += [
         f"{name} and {other} have colours too alike: {_percent(share)} of {name} would pass for {other}"
         for other, share in likeness.claimed
@@ -71,6 +66,16 @@ def marker_warnings(
             f"{name} is small in the picture, so its place and direction are uncertain; film from nearer"
         )
     return tuple(sentences)
+
+
+def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
+    """Return a sentence on markers that no colour tells from one, where there are any."""
+    if not alike:
+        return []
+    return [
+        f"{name} has almost the same colour as {' and '.join(alike)}; only keyframes and paths tell which is "
+        "which"
+    ]
 
 
 def _percent(share: float) -> str:

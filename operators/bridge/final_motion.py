@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
+from ...core.body.skeleton import SIDES, Skeleton
 from ...core.errors import InputError
+from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.rig import Rig, Shown, channel_count
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import bone_path, moved_paths, posture_columns
 from .joint_frames import posture_from_frames
+from .keyframes import keyed_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
 from .rotation_modes import rotation_path
 
@@ -68,7 +71,8 @@ def read_values(
 ) -> Generator[float, None, list[Array]]:
     """What an Action's curves say at scene frames, bone by bone; the scene is not touched.
 
-    Channels without a curve have the value that the armature has now, as when Blender plays the Action.
+    Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
+    plays the Action.
 
     Args:
         armature_object: The actor.
@@ -87,7 +91,7 @@ def read_values(
     columns: list[list[Array]] = [[] for _ in rig.bones]
     for number, (bone, _, path, index) in enumerate(channels):
         fcurve = channelbag.fcurves.find(path, index=index) if channelbag is not None else None
-        if fcurve is None:
+        if fcurve is None or fcurve.mute:
             unkeyed = armature_object.path_resolve(path)[index]
             columns[bone].append(np.full(len(frames), float(unkeyed)))
         else:
@@ -132,13 +136,58 @@ def shown_postures(
 def with_planted_legs(
     armature_object: bpy.types.Object, rig: Rig, values: Sequence[Array], planted: Posture
 ) -> list[Array]:
-    """Values in which the hips and legs are those of other postures; all else stays as the animator has it."""
+    """Values with the hips and legs of other postures; all else stays as the animator has it."""
     stored = {(path, index): column for path, index, _, column in posture_columns(armature_object, planted)}
     changed = [column.copy() for column in values]
     for bone, column, path, index in rig_channels(rig):
         if rig.bones[bone].name.partition(".")[0] in CHANGED_BY_FEET:
             changed[bone][:, column] = stored[path, index]
     return changed
+
+
+def furthest_from(rig: Rig, shown: Shown, body: Body, posture: Posture) -> float:
+    """The largest distance of a leg's joint or end between what a rig shows and postures [m]."""
+    pose = body.pose(posture)
+    worst = 0.0
+    for index, bone in enumerate(rig.bones):
+        if bone.name.partition(".")[0] in CHANGED_BY_FEET:
+            end = body.segment_ends(pose, bone.name)[1]
+            there = shown.points[:, rig.point_slices[index].start + 1]
+            worst = max(worst, float(np.linalg.norm(end - there, axis=-1).max()))
+    return worst
+
+
+def posed_positions(
+    armature_object: bpy.types.Object,
+    keyframe_action: bpy.types.Action | None,
+    skeleton: Skeleton,
+    frames: Array,
+) -> NDArray[np.intp]:
+    """Positions among the frames of those that the animator posed."""
+    if keyframe_action is None:
+        return np.zeros(0, dtype=np.intp)
+    posed = np.array(keyed_frames(armature_object, keyframe_action, skeleton))
+    return np.flatnonzero(np.isin(frames, np.round(posed)))
+
+
+def tolerances(
+    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held: float
+) -> Array:
+    """(F, P) how far each of the rig's points may be off [m].
+
+    Args:
+        rig: The actor.
+        frame_count: F.
+        tolerance_m: What is allowed in general [m].
+        contacts: Rests of the ankles, left and right.
+        held: Share of it that is left to an ankle that rests.
+    """
+    allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
+    row = {bone.name: index for index, bone in enumerate(rig.bones)}
+    for contact in contacts:
+        ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
+        allowed[contact.first : contact.last + 1, ankle] = held * tolerance_m
+    return allowed
 
 
 def write_final(

@@ -75,16 +75,6 @@ class Footage:
 
         return Clip.open(self.path, fps=self.rate)
 
-    def set_scene_range(self) -> None:
-        """Give the scene the clip's size, rate and range.
-
-        Raises:
-            InputError: There is no clip.
-        """
-        size = (self.clip.size[0], self.clip.size[1])
-        if self.clip.frame_duration:
-            set_scene_range(self.scene, size, self.rate, self.first_frame, self.clip.frame_duration)
-
 
 def clip_path(clip: bpy.types.MovieClip) -> Path:
     """The file of a movie clip.
@@ -94,7 +84,9 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     """
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
-        raise InputError(f"{path}: the footage is not there; load it again from where it is now")
+        raise InputError(
+            f"{path}: the footage is not there; say where it is now with Find Clip in the Footage panel"
+        )
     return path
 
 

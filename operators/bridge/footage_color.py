@@ -4,13 +4,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.errors import InputError
-from ...core.footage.clip import Clip
+from ...core.footage.frame_reader import FrameReader
 from .footage import Footage
 
 REACH_PX = 2
 """Pixels around the one that is picked: the median of 5 x 5 is free of noise and chroma subsampling."""
-EARLY = 1e-4
-"""Rounding of times [frames]."""
 
 
 def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
@@ -30,9 +28,7 @@ def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
     x, y = np.floor(np.asarray(pixel, dtype=np.float64)).astype(int)
     if not (0 <= x < width and 0 <= y < height):
         raise InputError(f"pixel ({x}, {y}) lies outside the footage, which is {width} x {height} pixels")
-    source = footage.open()
-    index = shown_index(footage, source)
-    image = next((image for _, image in source.source.at([index])), None) if index >= 0 else None
+    image = FrameReader(footage.open()).image_at(shown_time(footage))
     if image is None:
         raise InputError(
             f"the footage has no frame at scene frame {footage.scene.frame_current}; go to one it has"
@@ -42,13 +38,10 @@ def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def shown_index(footage: Footage, source: Clip) -> int:
-    """Index of the last frame that begins no later than the scene's current time; -1 outside the clip."""
-    elapsed = footage.scene.frame_current - footage.first_frame
-    shown = -1
-    for index, time_s in enumerate(source.source.time_stamps()):
-        if time_s * footage.rate > elapsed + EARLY:
-            return shown
-        shown = index
-    # Past the last frame nothing is shown, the last frame itself lasts one scene frame.
-    return shown if elapsed < shown + 1 or shown < 0 else -1
+def shown_time(footage: Footage) -> float:
+    """Time [s] of the scene's current frame from the clip's first.
+
+    Raises:
+        InputError: There is no clip.
+    """
+    return (footage.scene.frame_current - footage.first_frame) / footage.rate

@@ -48,11 +48,10 @@ def keyed_frames(
     if channelbag is None:
         return ()
     wanted = set(moved_paths(armature_object, skeleton))
-    frames: set[float] = set()
-    for fcurve in channelbag.fcurves:
-        if fcurve.data_path in wanted:
-            frames.update(round(float(frame), 3) for frame in animator_frames(fcurve))
-    return tuple(sorted(frames))
+    frames = [animator_frames(fcurve) for fcurve in channelbag.fcurves if fcurve.data_path in wanted]
+    if not frames:
+        return ()
+    return tuple(np.unique(np.round(np.concatenate(frames), 3)).tolist())
 
 
 def read_keyframes(

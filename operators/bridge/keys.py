@@ -18,6 +18,7 @@ SAME_FRAME = 1e-3
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
 ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
+FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
 
 
 def _enum_value(name: str, item: str) -> int:
@@ -28,9 +29,9 @@ def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
     """Every property of every key: (N,) or, for pairs, (N, 2)."""
     points = fcurve.keyframe_points
     keys: Keys = {}
-    for name in (*PAIRS, *FLOATS, *ENUMS):
+    for name in (*PAIRS, *FLOATS, *ENUMS, *FLAGS):
         count = len(points) * (2 if name in PAIRS else 1)
-        values = np.empty(count, np.int32 if name in ENUMS else np.float32)
+        values = np.empty(count, _kind(name))
         points.foreach_get(name, values)
         keys[name] = values.reshape(-1, 2) if name in PAIRS else values
     return keys
@@ -41,18 +42,28 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     points.clear()
     points.add(len(keys["co"]))
     # Handle types come before handles: setting a type moves the handles.
-    for name in (*ENUMS, *FLOATS, *PAIRS):
+    for name in (*ENUMS, *FLOATS, *PAIRS, *FLAGS):
         points.foreach_set(name, keys[name].ravel())
     fcurve.update()
 
 
+def _kind(name: str) -> type[np.generic]:
+    """How Blender stores a property of keys."""
+    if name in FLAGS:
+        return np.bool_
+    return np.int32 if name in ENUMS else np.float32
+
+
 def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
+    """Keys that are not selected, so that what the animator does next does not move them."""
     count = len(frames)
     places = np.column_stack([frames, values]).astype(np.float32)
     keys: Keys = {name: places.copy() for name in PAIRS}
     for name in FLOATS:
         default = bpy.types.Keyframe.bl_rna.properties[name].default
         keys[name] = np.full(count, default, np.float32)
+    for name in FLAGS:
+        keys[name] = np.zeros(count, np.bool_)
     chosen = {
         "interpolation": interpolation,
         "easing": "AUTO",
@@ -67,9 +78,12 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     """Frames (N,) of the keys that are not GENERATED."""
-    keys = _read_keys(fcurve)
-    own = keys["type"] != _enum_value("type", "GENERATED")
-    return np.asarray(keys["co"][own, 0], dtype=np.float64)
+    # Only what is needed: this is asked for all of an armature's curves while the timeline is drawn.
+    points = fcurve.keyframe_points
+    places, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
+    points.foreach_get("co", places.ravel())
+    points.foreach_get("type", types)
+    return np.asarray(places[types != _enum_value("type", "GENERATED"), 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...core.errors import InputError
 from ...core.footage.camera import Camera
 from .footage import Footage
+from .footage_camera import may_move
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
@@ -91,7 +92,7 @@ def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
 
 def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Array) -> Array:
     """(4, 4) of a camera that stands, (F, 4, 4) of one that moves."""
-    if not _may_move(camera_object):
+    if not may_move(camera_object):
         return _rigid(camera_object)
     poses = np.empty((len(frames), 4, 4))
     with at_scene_frame(scene) as go_to:
@@ -100,16 +101,6 @@ def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Arra
             poses[row] = _rigid(camera_object)
     still = np.abs(poses - poses[0]).max() < STILL
     return poses[0] if still else poses
-
-
-def _may_move(blender_object: bpy.types.Object | None) -> bool:
-    while blender_object is not None:
-        data = blender_object.animation_data
-        driven = data is not None and (data.action is not None or len(data.drivers) or len(data.nla_tracks))
-        if driven or len(blender_object.constraints) or blender_object.parent_type != "OBJECT":
-            return True
-        blender_object = blender_object.parent
-    return False
 
 
 def _rigid(camera_object: bpy.types.Object) -> Array:

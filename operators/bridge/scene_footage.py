@@ -4,7 +4,6 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ...core.body.rotations import continuous_quaternions, to_quaternions
@@ -13,11 +12,10 @@ from ...core.footage.camera import Camera
 from ...core.footage.image_sequence import find_images
 from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
+from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose
 from .keys import add_generated_keys
 
 Array = NDArray[np.float64]
-
-CAMERA_NAME = "Footage Camera"
 
 
 def load_footage(path: Path) -> bpy.types.MovieClip:
@@ -26,10 +24,9 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
     Raises:
         InputError: Blender cannot read it.
     """
-    images = find_images(path)
-    file = path if images is None else images[0]
+    file = clip_file(path)
     try:
-        clip = bpy.data.movieclips.load(str(file.resolve()), check_existing=True)
+        clip = bpy.data.movieclips.load(stored_path(file), check_existing=True)
     except RuntimeError as error:
         raise InputError(f"{file}: Blender cannot read this clip; name a video or numbered images") from error
     if not clip.frame_duration:  # Blender gives what it cannot decode a size, but no frames
@@ -38,6 +35,27 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
             f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images"
         )
     return clip
+
+
+def clip_file(path: Path) -> Path:
+    """The file by which Blender knows a clip: the video, or the first image of a sequence.
+
+    Raises:
+        InputError: A folder or pattern without an image.
+    """
+    images = find_images(path)
+    return path if images is None else images[0]
+
+
+def stored_path(file: Path) -> str:
+    """How Blender notes a file: relative to the .blend, where that has a place and the animator wants so."""
+    place = str(file.resolve())
+    if not (bpy.data.filepath and bpy.context.preferences.filepaths.use_relative_paths):
+        return place
+    try:
+        return str(bpy.path.relpath(place))
+    except ValueError:  # on another drive
+        return place
 
 
 def show_footage(
@@ -73,9 +91,9 @@ def show_footage(
     clip = load_footage(clip_path)
     clip.frame_start = frame_start
     set_scene_range(scene, camera.resolution, clip_rate(clip, fps), frame_start, frame_count)
-    set_tracking_camera(clip, camera)
-    camera_object = camera_object or _new_camera(scene)
-    _set_lens(camera_object.data, camera)
+    set_clip_lens(clip, camera)
+    camera_object = camera_object or new_camera(scene)
+    set_lens(camera_object.data, camera)
     if frames is None:
         frames = frame_start + np.arange(len(camera.matrix_world), dtype=np.float64)
     _set_pose(camera_object, camera, frames)
@@ -85,81 +103,9 @@ def show_footage(
     return camera_object
 
 
-def attach_footage(
-    scene: bpy.types.Scene, path: Path, camera_object: bpy.types.Object | None = None
-) -> tuple[bpy.types.MovieClip, bpy.types.Object]:
-    """Put a clip behind a camera and give the scene the clip's size, rate and range.
-
-    Args:
-        scene: The scene to change.
-        path: The clip.
-        camera_object: The camera; by default a new one at eye height, four metres in front of the world's
-            origin.
-
-    Returns:
-        The clip and the camera, which are the scene's own now.
-
-    Raises:
-        InputError: Blender cannot read the clip.
-    """
-    clip = load_footage(path)
-    rate = clip_rate(clip, scene.render.fps / scene.render.fps_base)
-    size, count = (clip.size[0], clip.size[1]), clip.frame_duration
-    if camera_object is None:
-        stand = np.array(
-            [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, -4.0], [0.0, 1.0, 0.0, 1.2], [0.0, 0.0, 0.0, 1.0]]
-        )
-        return clip, show_footage(scene, Camera(35.0, 36.0, size, stand), path, rate, clip.frame_start, count)
-    set_scene_range(scene, size, rate, clip.frame_start, count)
-    set_background(camera_object.data, clip)
-    scene.camera, scene.active_clip = camera_object, clip
-    return clip, camera_object
-
-
-def set_tracking_camera(clip: bpy.types.MovieClip, camera: Camera) -> None:
-    """Tell the clip its lens, so that Blender's tracking and undistortion know it too."""
-    tracking = clip.tracking.camera
-    tracking.units = "MILLIMETERS"
-    tracking.sensor_width = camera.sensor_width_mm
-    tracking.focal_length = camera.lens_mm
-    tracking.distortion_model = "POLYNOMIAL"
-    tracking.k1, tracking.k2, tracking.k3 = camera.distortion
-    x, y = camera.principal_point
-    tracking.principal_point_pixels = (x, camera.resolution[1] - y)  # Blender counts from the bottom
-
-
-def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> None:
-    """Show the clip behind everything the camera sees, filling the frame."""
-    images = camera_data.background_images
-    background = next((image for image in images if image.source == "MOVIE_CLIP"), None) or images.new()
-    background.source = "MOVIE_CLIP"
-    background.clip = clip
-    background.frame_method = "FIT"
-    background.alpha = 1.0
-    tracking = clip.tracking.camera
-    # Blender's camera has no distortion of its own: a body drawn over the footage fits straightened footage.
-    background.clip_user.use_render_undistorted = any((tracking.k1, tracking.k2, tracking.k3))
-    camera_data.show_background_images = True
-
-
-def _new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
-    camera_object = bpy.data.objects.new(CAMERA_NAME, bpy.data.cameras.new(CAMERA_NAME))
-    scene.collection.objects.link(camera_object)
-    return camera_object
-
-
-def _set_lens(data: bpy.types.Camera, camera: Camera) -> None:
-    data.type = "PERSP"
-    data.sensor_fit = "HORIZONTAL"
-    data.sensor_width = camera.sensor_width_mm
-    data.lens = camera.lens_mm
-    data.shift_x, data.shift_y = camera.shift_x, camera.shift_y
-
-
 def _set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> None:
     if not camera.is_moving:
-        camera_object.animation_data_clear()
-        camera_object.matrix_world = Matrix(camera.matrix_world.tolist())
+        set_still_pose(camera_object, camera)
         return
     camera_object.rotation_mode = "QUATERNION"
     action = bpy.data.actions.new(f"{camera_object.name} Motion")

@@ -28,13 +28,15 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
 
 
 @contextmanager
-def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
-    """Let `action` animate the armature meanwhile; then give back its Action and its unkeyed pose."""
+def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
+    """Let `action`, or nothing, animate the armature meanwhile; then give back Action and unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
     bones = armature_object.pose.bones
     pose = {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
-    if data.action != action:
+    if action is None:
+        data.action = None
+    elif data.action != action:
         assign_action(armature_object, action)
     try:
         yield

@@ -143,6 +143,11 @@ def add_turntable(
         _follow_hips(centre, armature_object)
     pivot = _empty(collection, f"{name} Pivot")
     pivot.parent = centre
+    for layer in scene.view_layers:
+        layer.update()  # it does not know the new objects yet
+        for empty in (centre, pivot):  # lines from each camera to them would lie over the actor
+            if empty.name in layer.objects:
+                empty.hide_set(True, view_layer=layer)
     _turn_once(pivot, scene.frame_start, scene.frame_end + 1)
     distance = _distance(scene, stage, lens_mm)
     sideways = stage.heading_rad + (pi / 2.0 if side == "LEFT" else -pi / 2.0)
@@ -188,12 +193,12 @@ def show_reference(
         first_frame: Scene frame of its first frame.
     """
     images = camera_object.data.background_images
-    images.clear()
     camera_object.data.show_background_images = clip is not None
     if clip is None:
+        images.clear()
         return
     clip.frame_start = first_frame + clip.frame_offset
-    background = images.new()
+    background = images[0] if images else images.new()  # where the animator moved it, it stays
     background.source = "MOVIE_CLIP"
     background.clip = clip
     background.frame_method = "FIT"

@@ -11,7 +11,7 @@ from keymark.core.footage.camera import Camera
 from keymark.core.take import Take
 from keymark.operators.bridge.footage import Footage
 from keymark.operators.bridge.scene_camera import read_camera
-from keymark.operators.bridge.scene_footage import attach_footage, load_footage, show_footage
+from keymark.operators.bridge.scene_footage import load_footage, show_footage
 from mathutils import Vector
 
 FRAMES = np.arange(1.0, 14.0)
@@ -121,19 +121,6 @@ def test_a_take_uses_its_camera_again(tiny_take: Take, camera: Camera, turned: C
     assert again == first
     assert len(first.data.background_images) == 1
     assert len([o for o in bpy.data.objects if o.type == "CAMERA"]) == 1
-
-
-def test_the_animators_camera_keeps_its_lens(tiny_take: Take) -> None:
-    """Loading footage into a scene with a camera puts it behind that camera."""
-    data = bpy.data.cameras.new("Mine")
-    data.lens = 77.0
-    mine = bpy.data.objects.new("Mine", data)
-    bpy.context.collection.objects.link(mine)
-    bpy.context.scene.camera = mine
-    clip, _ = attach_footage(bpy.context.scene, tiny_take.clip, mine)
-    assert bpy.context.scene.camera == mine
-    assert data.lens == 77.0
-    assert data.background_images[0].clip == clip
 
 
 def test_a_file_that_is_no_clip_is_refused(tmp_path) -> None:  # noqa: ANN001

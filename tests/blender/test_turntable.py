@@ -58,6 +58,7 @@ def seen(camera: bpy.types.Object, actor: bpy.types.Object, bone: str) -> Vector
 def test_the_front_view_sees_the_actors_face(actor: bpy.types.Object) -> None:
     """Its left side is on the picture's right; the whole of it is in the picture in every frame."""
     made = views(actor)
+    assert made.front.parent.hide_get()  # or lines to it would lie over the actor
     for frame in (1, 7, 13):
         bpy.context.scene.frame_set(frame)
         left, right = (seen(made.front, actor, f"forearm.{side}") for side in "LR")

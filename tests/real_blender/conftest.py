@@ -11,7 +11,7 @@ import pytest
 from installed_blender import Blender
 
 SYSTEMS = {"Linux": "linux-x64", "Windows": "windows-x64", "Darwin": "macos-arm64"}
-SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX"]
+SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 +extension GLX"]
 
 
 @pytest.fixture(scope="session")

@@ -1,10 +1,11 @@
-"""Drawing into a region: lines, filled shapes, pictures and words, on Blender 4.5 to 5.2.
+"""Drawing into a region: lines, filled shapes and words, and pictures to draw, on Blender 4.5 to 5.2.
 
 To be called from a draw function of `registry`, which has switched blending on. Colours are red, green, blue
 and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first call: without a window a
 Blender has no shaders.
 """
 
+from collections.abc import Sequence
 from typing import Literal
 
 import blf
@@ -19,7 +20,7 @@ from .figures import triangles
 Color = tuple[float, float, float, float]
 Array = NDArray[np.float64]
 
-HALO: Color = (0.0, 0.0, 0.0, 0.55)
+HALO: Color = (0.0, 0.0, 0.0, 0.75)
 """What sets lines off from footage of any brightness."""
 INK: Color = (1.0, 1.0, 1.0, 1.0)
 HALO_PX = 1.25
@@ -36,9 +37,9 @@ def ui_scale() -> float:
     return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
 
 
-def faded(color: ArrayLike, opacity: float) -> Color:
+def faded(color: Sequence[float], opacity: float) -> Color:
     """A colour of three or four numbers with its alpha multiplied by `opacity`."""
-    red, green, blue, *alpha = (float(value) for value in np.asarray(color, dtype=np.float64))
+    red, green, blue, *alpha = color
     return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
 
 
@@ -110,29 +111,13 @@ def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
     """A picture on the graphics card; keep it, making one takes time.
 
     Args:
-        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first.
+        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first; the texture's own
+            coordinates begin at the bottom.
     """
     rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
     height, width, _ = rows.shape
     data = gpu.types.Buffer("FLOAT", rows.size, rows.ravel())
     return gpu.types.GPUTexture((width, height), format="RGBA8", data=data)
-
-
-def image(picture: gpu.types.GPUTexture, corners: ArrayLike, opacity: float = 1.0) -> None:
-    """Draw a picture into a four-sided place.
-
-    Args:
-        picture: What `texture` made.
-        corners: (4, 2) region pixels: bottom left, bottom right, top right, top left.
-        opacity: Its alpha is multiplied by this.
-    """
-    shader = gpu.shader.from_builtin("IMAGE_COLOR")
-    places = np.asarray(corners, dtype=np.float64)[[0, 1, 2, 0, 2, 3]]
-    ends = np.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]], dtype=np.float32)
-    batch = batch_for_shader(shader, "TRIS", {"pos": _positions(places), "texCoord": ends})
-    shader.uniform_sampler("image", picture)
-    shader.uniform_float("color", (1.0, 1.0, 1.0, opacity))
-    batch.draw(shader)
 
 
 def text(
@@ -156,7 +141,7 @@ def text(
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, 0.8 * color[3])
+    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, color[3])
     blf.shadow_offset(FONT, 0, 0)
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)

@@ -3,6 +3,8 @@
 Places are region pixels unless a function says otherwise. A place that is not finite breaks a line.
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -67,11 +69,15 @@ def _dashed_run(places: Array, dash: float, gap: float) -> Array:
 
 def circles(centres: ArrayLike, radii: ArrayLike, corners: int = 24) -> Array:
     """(N, corners, 2) circles around centres (N, 2) with radii (N,) or one for all."""
-    turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
-    unit = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     middle = np.asarray(centres, dtype=np.float64).reshape(-1, 1, 2)
     reach = np.broadcast_to(np.asarray(radii, dtype=np.float64), middle.shape[:1])
-    return middle + reach[:, None, None] * unit
+    return middle + reach[:, None, None] * _unit_circle(corners)
+
+
+@cache
+def _unit_circle(corners: int) -> Array:
+    turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 
 
 def diamonds(centres: ArrayLike, radius: float) -> Array:

@@ -1,93 +1,110 @@
 """A legend in the corner: a sample of each kind of line, and what it means."""
 
-from dataclasses import dataclass, field
+from enum import Enum
+from functools import lru_cache
 
 import bpy
 import numpy as np
-from bpy.app.translations import pgettext_iface
-from numpy.typing import NDArray
 
+from .drawing import text_size
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Label, Stroke
-from .style import CORE, DASH, DIAMOND, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
+from .style import CORE, CORE_SHARE, DASH, DIAMOND, DOT, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
 
-Array = NDArray[np.float64]
-
-SAMPLE, LINE, MARGIN = 26.0, 18.0, 12.0
-"""Length of a sample, height of a line, distance from the corner [px]."""
+GROUND = (0.0, 0.0, 0.0, 0.35)
+DOTS = 3
+SAMPLE, GAP_AFTER, LINE, MARGIN = 26.0, 8.0, 18.0, 12.0
+"""Length of a sample, distance to its words, height of a line, distance from the corner [px]."""
+MIDDLE_OF_LETTERS = 4.0
+"""Above their base line [px]."""
+THIN, THICK = 1.5, 3.6
 ABOVE_CACHE = 22.0
 """The Movie Clip editor draws its cached frames at the bottom [px]."""
 
 
-@dataclass
-class Legend:
-    """Lines of a legend, from the bottom up."""
+class Sample(Enum):
+    """What stands before a line of words."""
 
-    x: float
-    y: float
-    style: Style
-    items: list[Item] = field(default_factory=list)
+    NONE = "none"
+    SOLID = "solid"
+    DASHED = "dashed"
+    PAST = "past"
+    FUTURE = "future"
+    LEFT = "left"
+    RIGHT = "right"
+    RING = "ring"
+    DIAMOND = "diamond"
 
-    def solid(self, words: str) -> None:
-        """A solid line."""
-        self._row(words, [Stroke(self._sample(), self.style.color(MIDDLE), 1.5, self.style.halo)])
 
-    def dashed(self, words: str) -> None:
-        """A dashed line."""
-        (line,) = self._sample()
-        parts = dashes(line, DASH * self.style.scale, GAP * self.style.scale)
-        self._row(words, [Stroke(parts, self.style.color(MIDDLE), 1.5, self.style.halo)])
+Row = tuple[Sample, str]
 
-    def limb(self, words: str, side: str) -> None:
-        """A left limb's line, or a right one's."""
-        line, style = self._sample(), self.style
-        color = LEFT if side == "L" else RIGHT
-        drawn: list[Item] = [Stroke(line, style.color(color), 3.0, style.halo)]
-        if side == "R":
-            drawn.append(Stroke(line, style.color(CORE), 1.2))
-        self._row(words, drawn)
 
-    def ring(self, words: str) -> None:
-        """An uncertain point."""
-        (rim,) = circles(self._middle(), JOINT * self.style.scale, 16)
-        stroke = Stroke(segments(rim, closed=True), self.style.color(MIDDLE), 1.5, self.style.halo)
-        self._row(words, [stroke])
+@lru_cache(maxsize=16)
+def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
+    """Rows of a legend on a dark ground that sets it off from bright footage.
 
-    def diamond(self, words: str) -> None:
-        """A keyframe."""
-        marks = diamonds(self._middle(), DIAMOND * self.style.scale)
-        color = self.style.color(MIDDLE)
-        self._row(
-            words, [Stroke(segments(marks, closed=True), color, 1.5, self.style.halo), Fill(marks, color)]
+    Args:
+        rows: Samples and words, from the top down.
+        x: Left end of the samples.
+        y: Base line of the last row.
+        style: How to draw.
+    """
+    if not rows:
+        return ()
+    strokes: list[Stroke] = []
+    fills: list[Fill] = []
+    labels: list[Label] = []
+    for place, (sample, words) in enumerate(reversed(rows)):
+        base = y + place * LINE * style.scale
+        drawn = _sample(sample, x, base + MIDDLE_OF_LETTERS * style.scale, style)
+        strokes += [item for item in drawn if isinstance(item, Stroke)]
+        fills += [item for item in drawn if isinstance(item, Fill)]
+        indent = (SAMPLE + GAP_AFTER) * style.scale if drawn else 0.0
+        labels.append(Label(words, x + indent, base))
+    edge = 0.5 * MARGIN * style.scale
+    right = max(label.x + text_size(label.words)[0] for label in labels) + edge
+    left, bottom, top = x - edge, y - edge, labels[-1].y + LINE * style.scale
+    ground = np.array([[[left, bottom], [right, bottom], [right, top], [left, top]]])
+    # Thick lines below thin ones, and each kind together: few calls draw them all.
+    strokes.sort(key=lambda stroke: -stroke.width)
+    return (Fill(ground, style.color(GROUND)), *strokes, *fills, *labels)
+
+
+def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
+    color = style.color(MIDDLE)
+    line = np.array([[x, y], [x + SAMPLE * style.scale, y]])
+    middle = line.mean(axis=0, keepdims=True)
+    whole = line[None]
+    if sample in (Sample.LEFT, Sample.RIGHT):
+        limb = Stroke(whole, style.color(LEFT if sample is Sample.LEFT else RIGHT), THICK, style.halo)
+        return (
+            [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), CORE_SHARE * THICK)]
         )
-
-    def sentence(self, words: str) -> None:
-        """Words without a sample."""
-        self.items.append(Label(words, self.x, self.y, self.style.color(MIDDLE)))
-        self.y += LINE * self.style.scale
-
-    def _row(self, words: str, sample: list[Item]) -> None:
-        self.items += sample
-        x = self.x + (SAMPLE + 8.0) * self.style.scale
-        self.items.append(Label(pgettext_iface(words), x, self.y, self.style.color(MIDDLE)))
-        self.y += LINE * self.style.scale
-
-    def _middle(self) -> Array:
-        return np.array([[self.x + 0.5 * SAMPLE * self.style.scale, self.y + 4.0 * self.style.scale]])
-
-    def _sample(self) -> Array:
-        y = self.y + 4.0 * self.style.scale
-        return np.array([[[self.x, y], [self.x + SAMPLE * self.style.scale, y]]])
+    if sample is Sample.RING:
+        rim = segments(circles(middle, JOINT * style.scale, 16), closed=True)
+        return [Stroke(rim, color, THIN, style.halo)]
+    if sample is Sample.DIAMOND:
+        marks = diamonds(middle, DIAMOND * style.scale)
+        return [Stroke(segments(marks, closed=True), color, THIN, style.halo), Fill(marks, color)]
+    if sample is Sample.NONE:
+        return []
+    dashed = sample in (Sample.DASHED, Sample.FUTURE)
+    parts = dashes(line, DASH * style.scale, GAP * style.scale) if dashed else whole
+    items: list[Item] = [Stroke(parts, color, THIN, style.halo)]
+    if sample in (Sample.PAST, Sample.FUTURE):
+        dots = np.linspace(line[0], line[1], DOTS + 2)[1:-1]
+        items.append(Fill(circles(dots, (DOT + 1.0) * style.scale, 8), color))
+    return items
 
 
 def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
-    """The bottom left corner of what no toolbar covers of a region [region px]."""
+    """The bottom left corner of what no toolbar or operator's panel covers of a region [region px]."""
     left = bottom = 0.0
     for other in area.regions:
         covers = other.width > 1 and other.height > 1 and other != region
         if covers and other.alignment == "LEFT":
             left = max(left, float(other.x + other.width - region.x))
-        elif covers and other.alignment == "BOTTOM" and other.y <= region.y:
+        elif covers and (other.type == "HUD" or (other.alignment == "BOTTOM" and other.y <= region.y)):
             bottom = max(bottom, float(other.y + other.height - region.y))
     lift = ABOVE_CACHE if area.type == "CLIP_EDITOR" else 0.0
     return left + MARGIN * scale, bottom + (MARGIN + lift) * scale

@@ -5,19 +5,19 @@ from typing import TYPE_CHECKING, Protocol
 
 import bpy
 import numpy as np
-from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
 from ...results import review_of
+from ...say import label
 from ...takes import find_take
 from ..footage_view import FootageView
 from . import drawing
-from .legend import Legend, corner
+from .legend import Row, Sample, corner, legend
 from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_outlines
-from .paths import path, window
+from .paths import paths, window
 from .picture import Item
 from .skeleton import skeleton
-from .style import Style
+from .style import Style, body_scale
 
 if TYPE_CHECKING:
     from ....core.review import Review
@@ -69,7 +69,9 @@ def picture(
     context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
 ) -> list[Item]:
     """Everything that is switched on, and a legend that explains it."""
-    style = Style(settings.opacity, settings.line_width, drawing.ui_scale())
+    scale = drawing.ui_scale()
+    metre = view.pixels_per_metre(what.review, what.index)
+    style = Style(settings.opacity, settings.line_width, scale, body_scale(metre, scale))
     items: list[Item] = []
     if settings.show_paths:
         items += _paths(what, view, settings, style)
@@ -77,12 +79,10 @@ def picture(
         items += _outlines(what, view.footage, settings, style)
     if settings.show_skeleton:
         (places,) = view.places(what.review, np.array([what.index]))
-        metre = view.pixels_per_metre(what.review, what.index)
         items += skeleton(what.review, what.index, places, metre, settings.uncertain_beyond, style)
     if settings.show_legend:
-        legend = Legend(*corner(context.area, context.region, style.scale), style)
-        _explain(legend, what, view, settings)
-        items += legend.items
+        rows = _rows(what, view, settings)
+        items += legend(rows, *corner(context.area, context.region, scale), style)
     return items
 
 
@@ -102,31 +102,31 @@ def _outlines(
 def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, style: Style) -> list[Item]:
     review = what.review
     frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
-    places = view.places(review, frames)
-    keyframes = review.keyframe_indices.tolist()
-    items: list[Item] = []
-    for point, name in enumerate(review.point_names):
-        if name in settings.path_points:
-            items += path(name, places[:, point], frames, what.index, keyframes, style)
-    return items
+    chosen = [point for point, name in enumerate(review.point_names) if name in settings.path_points]
+    names = [review.point_names[point] for point in chosen]
+    places = np.swapaxes(view.places(review, frames)[:, chosen], 0, 1)
+    return paths(names, places, frames, what.index, review.keyframe_indices, style)
 
 
-def _explain(legend: Legend, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> None:
-    """Lines of the legend from the bottom up: only of what is drawn."""
-    if settings.show_paths:
-        legend.diamond("Keyframe")
-        legend.dashed("Path to come")
-        legend.solid("Path so far")
-    if settings.show_skeleton:
-        if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
-            legend.ring("Uncertain point")
-        legend.limb("Performer's right", "R")
-        legend.limb("Performer's left", "L")
+def _rows(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> tuple[Row, ...]:
+    """What the legend explains: only what is drawn."""
+    rows: list[Row] = []
     if view.footage is not None:
-        if settings.show_predicted:
-            legend.dashed("Marker as the motion predicts it")
         if settings.show_observed:
-            legend.solid("Marker as seen")
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:
-                legend.sentence(pgettext_iface("Hidden: {markers}").format(markers=", ".join(hidden)))
+                words = label("Hidden: {markers}", markers=", ".join(hidden))
+                rows.append((Sample.NONE, words))
+            rows.append((Sample.SOLID, label("Marker as seen")))
+        if settings.show_predicted:
+            rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
+    if settings.show_skeleton:
+        rows.append((Sample.LEFT, label("Performer's left")))
+        rows.append((Sample.RIGHT, label("Performer's right")))
+        if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
+            rows.append((Sample.RING, label("Uncertain point")))
+    if settings.show_paths:
+        rows.append((Sample.PAST, label("Path so far")))
+        rows.append((Sample.FUTURE, label("Path to come")))
+        rows.append((Sample.DIAMOND, label("Keyframe")))
+    return tuple(rows)

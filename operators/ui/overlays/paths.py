@@ -1,13 +1,13 @@
 """The ways of points through time: past solid, future dashed, a dot a frame, diamonds at keyframes."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Stroke
-from .style import DASH, DIAMOND, DOT, GAP, Style, side_color
+from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, Style, side_color
 
 Array = NDArray[np.float64]
 
@@ -17,34 +17,36 @@ def window(index: int, before: int, after: int, frame_count: int) -> NDArray[np.
     return np.arange(max(0, index - before), min(frame_count, index + after + 1))
 
 
-def path(
-    name: str,
+def paths(
+    names: Sequence[str],
     places: Array,
     frames: NDArray[np.intp],
     index: int,
-    keyframe_indices: Iterable[int],
+    keyframe_indices: NDArray[np.intp],
     style: Style,
 ) -> list[Item]:
-    """The way of one point.
+    """The ways of N points.
 
     Args:
-        name: The point's name.
-        places: (I, 2) where it is in the region in each frame of the window.
+        names: The points' names.
+        places: (N, I, 2) where they are in the region in each frame of the window.
         frames: (I,) those frames' places in the clip.
         index: The current frame's place in the clip.
         keyframe_indices: Those of the keyframes.
         style: How to draw.
     """
-    color = style.color(side_color(name))
-    past, future = places[frames <= index], places[frames >= index]
-    ahead = dashes(future, DASH * style.scale, GAP * style.scale)
-    seen = np.isfinite(places).all(axis=-1)
-    keyed = np.isin(frames, list(keyframe_indices)) & seen
-    marks = diamonds(places[keyed], DIAMOND * style.scale)
-    return [
-        Stroke(segments(past), color, style.width, style.halo),
-        Stroke(ahead, color, style.width, style.halo),
-        Fill(circles(places[seen & ~keyed], (DOT + 0.5 * style.width) * style.scale, 8), color),
-        Stroke(segments(marks, closed=True), color, 1.5, style.halo),
-        Fill(marks, color),
-    ]
+    keyed = np.isin(frames, keyframe_indices)
+    dots, marks = places[:, ~keyed].reshape(-1, 2), places[:, keyed]
+    items: list[Item] = []
+    for name, way in zip(names, places, strict=True):
+        color = style.color(side_color(name))
+        ahead = dashes(way[frames >= index], DASH * style.scale, GAP * style.scale)
+        items.append(Stroke(segments(way[frames <= index]), color, style.width, style.halo))
+        items.append(Stroke(ahead, color, style.width, style.halo))
+    items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
+    for name, mark in zip(names, marks, strict=True):
+        color = style.color(side_color(name))
+        corners = diamonds(mark, style.size(DIAMOND))
+        items.append(Stroke(segments(corners, closed=True), color, 1.5, style.halo))
+        items.append(Fill(corners, color))
+    return items

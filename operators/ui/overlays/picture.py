@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Literal
 
 import numpy as np
@@ -51,11 +52,42 @@ Item = Stroke | Fill | Label
 
 
 def paint(items: Iterable[Item]) -> None:
-    """Draw everything, the first at the bottom."""
-    for item in items:
+    """Draw everything, the first at the bottom; neighbours that are alike in one go."""
+    for item in merged(items):
         if isinstance(item, Stroke):
             drawing.lines(item.segments, item.color, item.width, item.halo)
         elif isinstance(item, Fill):
             drawing.polygons(item.corners, item.color)
         else:
             drawing.text(item.words, item.x, item.y, item.color, align=item.align)
+
+
+def merged(items: Iterable[Item]) -> list[Item]:
+    """Neighbouring lines of one thickness become one item, and neighbouring polygons of as many corners."""
+    done: list[Item] = []
+    for _, group in groupby(items, key=_kind):
+        alike = list(group)
+        first = alike[0]
+        if isinstance(first, Stroke) and len(alike) > 1:
+            parts = [(item.segments, item.color) for item in alike if isinstance(item, Stroke)]
+            done.append(Stroke(*_joined(parts), first.width, first.halo))
+        elif isinstance(first, Fill) and len(alike) > 1:
+            done.append(
+                Fill(*_joined([(item.corners, item.color) for item in alike if isinstance(item, Fill)]))
+            )
+        else:
+            done += alike
+    return done
+
+
+def _kind(item: Item) -> tuple[object, ...]:
+    if isinstance(item, Stroke):
+        return ("stroke", item.width, item.halo)
+    return ("fill", item.corners.shape[-2]) if isinstance(item, Fill) else ("label",)
+
+
+def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:
+    """Places one after the other, and a colour for each."""
+    places = np.concatenate([place for place, _ in parts])
+    colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(place), 4)) for place, color in parts]
+    return places, np.concatenate(colors)

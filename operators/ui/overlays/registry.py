@@ -29,8 +29,11 @@ class Overlay:
 
 
 OVERLAYS = (
+    Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
+    Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
+    Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
 """All of them; those of one place are drawn in this order."""
 

@@ -1,23 +1,33 @@
 """The reconstructed body as lines between its 13 points, and how certain each point is."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .figures import circles, dashes, segments
+from .figures import circles, segments
 from .picture import Fill, Item, Stroke
-from .style import CORE, DASH, GAP, JOINT, SIDES, Style, side_color
+from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, Style, side_color
 
 if TYPE_CHECKING:
     from ....core.review import Review
 
 Array = NDArray[np.float64]
 
-ARM, LEG = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
-BODY = 1.6
-"""How much thicker than outlines the limbs are drawn."""
+NECK, PELVIS = "neck", "pelvis"
+"""The middle between the shoulders, and between the hips."""
+LIMBS = (
+    ("", "head", NECK),
+    ("", NECK, PELVIS),
+    ("", "shoulder.L", "shoulder.R"),
+    ("", "hip.L", "hip.R"),
+    *(
+        (side, f"{start}.{side}", f"{end}.{side}")
+        for side in ("L", "R")
+        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+    ),
+)
+"""Side and ends of each line."""
 
 
 def skeleton(
@@ -33,43 +43,42 @@ def skeleton(
         limit_m: A point whose standard deviation is larger is uncertain.
         style: How to draw.
     """
-    items: list[Item] = []
-    width = BODY * style.width
-    for side, line in limbs(review.point_names, places):
-        parts = segments(line)
-        items.append(Stroke(parts, style.color(SIDES[side]), width, style.halo))
-        if side == "R":
-            items.append(Stroke(parts, style.color(CORE), 0.4 * width))
     sigma = review.sigma_m[index]
     uncertain = sigma > limit_m
-    for point, name in enumerate(review.point_names):
-        items += _joint(places[point], name, bool(uncertain[point]), style)
-    for point in np.flatnonzero(uncertain):
-        (reach,) = circles(places[point : point + 1], sigma[point] * pixels_per_metre[point], 48)
-        rim = dashes(reach, DASH * style.scale, GAP * style.scale, closed=True)
-        items.append(Stroke(rim, style.color(side_color(review.point_names[point])), 1.0, style.halo))
-    return items
-
-
-def limbs(names: Sequence[str], places: Array) -> list[tuple[str, Array]]:
-    """Side and line (N, 2) of each part of the body, from its points (13, 2)."""
-    at = dict(zip(names, places, strict=True))
-    neck = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
-    pelvis = 0.5 * (at["hip.L"] + at["hip.R"])
-    lines = [
-        ("", np.stack([at["head"], neck, pelvis])),
-        ("", np.stack([at["shoulder.L"], at["shoulder.R"]])),
-        ("", np.stack([at["hip.L"], at["hip.R"]])),
+    colors = np.array([style.color(side_color(name)) for name in review.point_names])
+    return [
+        *_limbs(review.point_names, places, style),
+        *_joints(places, uncertain, colors, style),
+        _doubt(places[uncertain], (sigma * pixels_per_metre)[uncertain], colors[uncertain], style),
     ]
-    for side in ("L", "R"):
-        for chain in (ARM, LEG):
-            lines.append((side, np.stack([at[f"{joint}.{side}"] for joint in chain])))
-    return lines
 
 
-def _joint(place: Array, name: str, uncertain: bool, style: Style) -> list[Item]:
-    """A disc, or a ring where the point is uncertain."""
-    color = style.color(side_color(name))
-    (rim,) = circles(place[None], JOINT * style.scale, 16)
-    edge = Stroke(segments(rim, closed=True), color, 1.5, style.halo)
-    return [edge] if uncertain else [edge, Fill(rim[None], color)]
+def _limbs(names: tuple[str, ...], places: Array, style: Style) -> list[Item]:
+    """Lines with sides' colours; those on the right have a dark core."""
+    at = dict(zip(names, places, strict=True))
+    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
+    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
+    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
+    colors = np.array([style.color(SIDES[side]) for side, _, _ in LIMBS])
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    hollow = seen & np.array([side == "R" for side, _, _ in LIMBS])
+    width = LIMB * style.width * style.body_scale
+    return [
+        Stroke(lines[seen], colors[seen], width, style.halo),
+        Stroke(lines[hollow], style.color(CORE), CORE_SHARE * width),
+    ]
+
+
+def _joints(places: Array, uncertain: NDArray[np.bool_], colors: Array, style: Style) -> list[Item]:
+    """Discs, and rings where a point is uncertain."""
+    rims = circles(places, style.size(JOINT), 16)
+    seen = np.isfinite(places).all(axis=-1)
+    edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
+    return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
+
+
+def _doubt(places: Array, radii: Array, colors: Array, style: Style) -> Stroke:
+    """Dashed circles as large as the points' standard deviations."""
+    seen = np.isfinite(places).all(axis=-1) & np.isfinite(radii)
+    parts = segments(circles(places[seen], radii[seen], 48), closed=True)[::2]
+    return Stroke(parts, np.repeat(colors[seen], 24, axis=0), 1.0, style.halo)

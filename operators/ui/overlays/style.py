@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .drawing import Color, faded
 
@@ -15,10 +16,16 @@ CORE: Color = (0.08, 0.08, 0.08, 1.0)
 """What makes a line hollow."""
 SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
 DASH, GAP = 6.0, 4.0
-JOINT, DOT, DIAMOND = 3.5, 1.6, 5.0
+JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
+CORE_SHARE = 0.45
+"""Share of a hollow line's thickness that its core has."""
+LIMB = 2.4
+"""How much thicker than outlines limbs are drawn."""
+METRE, SMALLEST = 160.0, 0.35
+"""A body of which a metre is smaller than this is drawn with finer marks, down to a share of the usual."""
 PALER = 0.5
 """How far towards white the prediction's colour is moved, so that dashes show over a solid line."""
-HALO = 0.8
+HALO = 0.9
 
 
 @dataclass(frozen=True)
@@ -29,15 +36,28 @@ class Style:
     width: float
     scale: float
     """Pixels of the screen for one of a plain one."""
+    body_scale: float = 1.0
+    """How much smaller than usual what belongs to the body is drawn, as it is far away."""
 
     def color(self, color: Color | tuple[float, float, float]) -> Color:
         """A colour with the chosen opacity."""
         return faded(color, self.opacity)
 
+    def size(self, plain: float) -> float:
+        """A length of what belongs to the body [region px]."""
+        return plain * self.body_scale * self.scale
+
     @property
     def halo(self) -> float:
         """Opacity of lines' dark edges."""
         return HALO * self.opacity
+
+
+def body_scale(pixels_per_metre: NDArray[np.float64], scale: float) -> float:
+    """How large a body is drawn of which a metre is so large at each point (N,) [region px]."""
+    seen = pixels_per_metre[np.isfinite(pixels_per_metre)]
+    metre = float(np.median(seen)) / scale if len(seen) else METRE
+    return float(np.clip(metre / METRE, SMALLEST, 1.0))
 
 
 def side_color(name: str) -> Color:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...job_operator import job_is_running
 from ...takes import find_take
 
 
@@ -33,3 +34,16 @@ class TakePanel(SubPanel):
     def poll(cls, context: bpy.types.Context) -> bool:
         """There is a take."""
         return find_take(context.scene) is not None
+
+
+def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
+    """Draw how far the running job is; return whether one runs. An eyedropper that waits does no work."""
+    progress = context.window_manager.keymark_progress
+    if not job_is_running(context) or not progress.stage:
+        return False
+    percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
+    layout.progress(factor=progress.fraction, text=percent)
+    row = layout.row()
+    row.label(text="Esc cancels", icon="EVENT_ESC")
+    row.label(text=progress.time_left, translate=False)
+    return True

@@ -1,9 +1,23 @@
-"""The main panel: the running job, or the takes of the scene."""
+"""The main panel: the running job, or the takes of the scene and what to do next."""
 
 import bpy
 
-from ...job_operator import job_is_running
-from .base import SidebarPanel
+from ...takes import find_take
+from ...upgrade import is_newer
+from ..next_step import next_step
+from .base import SidebarPanel, draw_progress
+
+STEPS = (
+    ("FILE_MOVIE", "Footage: load the clip, or open a take"),
+    ("EYEDROPPER", "Markers: pick each sleeve's color in the footage"),
+    ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
+    ("KEY_HLT", "Keyframes: pose the actor at proposed frames"),
+    ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
+    ("OVERLAY", "Review: see where another keyframe helps"),
+    ("CHECKMARK", "Finish: bake, mark as asset, export"),
+)
+"""Icon and sentence of each step."""
+BIG = 1.6
 
 
 class KEYMARK_UL_takes(bpy.types.UIList):
@@ -20,31 +34,84 @@ class KEYMARK_UL_takes(bpy.types.UIList):
         active_property: str,
     ) -> None:
         """Draw one take."""
+        row = layout.row(align=True)
         done = item.motion_action is not None
-        layout.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
+        row.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
+        if item.clip_state.missing:
+            row.label(text="", icon="ERROR")
+
+
+class KEYMARK_MT_add_take(bpy.types.Menu):
+    """Ways to another take."""
+
+    bl_label = "Add Take"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Same clip, other clip, or one from disk."""
+        layout = self.layout
+        layout.operator("keymark.add_performer", icon="USER")
+        layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
+        layout.menu("KEYMARK_MT_clips", icon="TRACKER")
+        layout.operator("keymark.open_take", icon="FILE_FOLDER")
+
+
+class KEYMARK_PT_guide(bpy.types.Panel):
+    """The way from a video to an Action, in seven lines."""
+
+    bl_label = "How It Works"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_options = {"INSTANCED"}
+    bl_ui_units_x = 16
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw one line a step."""
+        column = self.layout.column(align=True)
+        for icon, text in STEPS:
+            column.label(text=text, icon=icon)
 
 
 class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
-    """What runs, and which takes there are."""
+    """What runs, which takes there are, and what to do next."""
 
     bl_label = "Keymark"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the running job, or the takes."""
-        layout, settings = self.layout, context.scene.keymark
-        if job_is_running(context):
-            progress = context.window_manager.keymark_progress
-            layout.progress(
-                factor=progress.fraction, text=f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
-            )
-            layout.label(text="Esc cancels")
+        """Draw the running job, or the takes and the next step."""
+        layout, take = self.layout, find_take(context.scene)
+        if draw_progress(layout, context):
             return
-        if not len(settings.takes):
-            layout.operator("keymark.load_footage", icon="FILE_MOVIE")
-            layout.operator("keymark.open_take", icon="FILE_FOLDER")
+        if is_newer(context.scene):
+            box = layout.box().column(align=True)
+            box.label(text="A newer Keymark wrote this file", icon="ERROR")
+            box.label(text="Update Keymark before editing", icon="BLANK1")
+        if take is None:
+            _draw_beginning(layout)
             return
-        if len(settings.takes) > 1:
-            layout.template_list("KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=2)
+        _draw_takes(layout, context.scene.keymark)
+        layout.label(text=next_step(take), icon="FORWARD")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_takes, KEYMARK_PT_main))
+def _draw_beginning(layout: bpy.types.UILayout) -> None:
+    """What to begin with in an empty scene."""
+    column = layout.column()
+    column.scale_y = BIG
+    column.operator("keymark.load_footage", icon="FILE_MOVIE")
+    column.operator("keymark.open_take", icon="FILE_FOLDER")
+    column.popover("KEYMARK_PT_guide", icon="HELP")
+    if bpy.data.movieclips:
+        layout.menu("KEYMARK_MT_clips", icon="TRACKER")
+
+
+def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """The list of takes; a single one is a line."""
+    row = layout.row()
+    row.template_list("KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=2, maxrows=4)
+    buttons = row.column(align=True)
+    buttons.menu("KEYMARK_MT_add_take", text="", icon="ADD")
+    buttons.operator("keymark.remove_take", text="", icon="REMOVE")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_UL_takes, KEYMARK_MT_add_take, KEYMARK_PT_guide, KEYMARK_PT_main)
+)

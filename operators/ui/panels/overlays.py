@@ -6,16 +6,22 @@ from ...takes import find_take
 from ..overlays import registry
 from .base import TakePanel
 
+ROWS = (
+    ("head",),
+    *((f"{joint}.L", f"{joint}.R") for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")),
+)
+"""Points as the choice of paths shows them: the performer's left, and right."""
+
 
 def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     for name, sentence in registry.failures().items():
-        layout.label(text=name, icon="ERROR")
+        layout.label(text="Switched off after an error:", icon="ERROR")
+        layout.label(text=name)
         layout.label(text=sentence)
     column = layout.column(heading="Show")
     column.prop(settings, "show_observed")
     column.prop(settings, "show_predicted")
     column.prop(settings, "show_skeleton")
-    column.prop(settings, "show_paths")
     column.prop(settings, "show_legend")
     column = layout.column()
     column.prop(settings, "opacity")
@@ -30,15 +36,19 @@ def _draw_paths(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
     column = layout.column(align=True)
     column.prop(settings, "path_before")
     column.prop(settings, "path_after")
-    grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    grid = layout.column(align=True)
     grid.use_property_split = False
-    grid.prop(settings, "path_points")
+    for row_of_points in ROWS:
+        row = grid.row(align=True)
+        for point in row_of_points:
+            row.prop_enum(settings, "path_points", point)
 
 
 class KEYMARK_PT_overlays(TakePanel, bpy.types.Panel):
     """What is drawn over the viewport."""
 
     bl_label = "Overlays"
+    bl_parent_id = "KEYMARK_PT_review"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

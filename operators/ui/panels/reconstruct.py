@@ -1,9 +1,14 @@
 """From keyframes to the motion."""
 
+from textwrap import wrap
+
 import bpy
 
-from ...takes import active_take
+from ...takes import active_take, find_take
 from .base import TakePanel
+
+LETTER, MARGIN = 6.2, 80.0
+"""Pixels that a letter of a label takes on a plain screen, and those beside the words."""
 
 
 class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
@@ -18,6 +23,7 @@ class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
         row.scale_y = 1.4
         row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         column.prop(take, "method")
+        column.prop(take, "live_preview")
         _draw_show(column, take)
 
 
@@ -36,4 +42,34 @@ def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
         row.operator("keymark.show_action", text=text, depress=depress).which = which
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_reconstruct,))
+class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
+    """What the last run says of its result."""
+
+    bl_label = "Notes"
+    bl_parent_id = "KEYMARK_PT_reconstruct"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There are notes."""
+        take = find_take(context.scene)
+        return take is not None and len(take.notes) > 0
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Show that there is something to read, the panel closed too."""
+        self.layout.label(text="", icon="INFO")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw each note, broken into lines as wide as the sidebar."""
+        scale = context.preferences.system.ui_scale
+        letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
+        column = self.layout.column()
+        for note in active_take(context.scene).notes:
+            lines = column.column(align=True)
+            lines.scale_y = 0.8
+            for number, line in enumerate(wrap(note.text, letters)):
+                lines.label(text=line, icon="DOT" if number == 0 else "BLANK1", translate=False)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PT_reconstruct, KEYMARK_PT_reconstruct_notes)
+)

@@ -12,6 +12,7 @@ class KEYMARK_PT_turntable(TakePanel, bpy.types.Panel):
     """Views of the actor from other sides."""
 
     bl_label = "Turntable"
+    bl_parent_id = "KEYMARK_PT_review"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -28,8 +29,19 @@ class KEYMARK_PT_turntable(TakePanel, bpy.types.Panel):
         choice.active = views.reference is not None
         choice.prop(views, "reference_view")
         choice.prop(views, "reference_offset")
+        _draw_place(choice, views)
         column.separator()
         column.operator("keymark.remove_turntable", icon="X")
+
+
+def _draw_place(layout: bpy.types.UILayout, views: bpy.types.PropertyGroup) -> None:
+    """Where in the view the reference is: it was filmed from another place than the view is seen from."""
+    camera = {"FRONT": views.front, "SIDE": views.side, "TURNING": views.turning}[views.reference_view]
+    if camera is not None and camera.data.background_images:
+        background = camera.data.background_images[0]
+        layout.prop(background, "alpha", text="Opacity", slider=True)
+        layout.prop(background, "offset", text="Move")
+        layout.prop(background, "scale")
 
 
 def _draw_views(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

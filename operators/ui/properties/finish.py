@@ -18,7 +18,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
     keys: bpy.props.EnumProperty(name="Keys", description="How many keys the final Action has", items=KEYS)
     tolerance_mm: bpy.props.FloatProperty(
         name="Tolerance (mm)",
-        description="How far any joint or end of the body may be, in any frame, from the reconstructed motion",
+        description="How far any joint or end of the body may be from the reconstructed motion, in any frame",
         default=5.0,
         min=0.1,
         soft_min=1.0,
@@ -36,7 +36,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         default=True,
     )
     stray_mm: bpy.props.FloatProperty(
-        name="Stray (mm)",
+        name="Foot Stray (mm)",
         description="How far a resting foot may wander and still be held; raise it to hold feet that sway",
         default=25.0,
         min=1.0,

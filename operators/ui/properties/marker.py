@@ -13,19 +13,44 @@ SEGMENTS = (
 """What a marker can be bound to."""
 
 
-def _title(segment: str) -> str:
+def segment_title(segment: str) -> str:
+    """What people call a segment."""
     part, _, side = segment.partition(".")
     return part.replace("_", " ").title() + {"L": " Left", "R": " Right", "": ""}[side]
 
 
-class KEYMARK_PG_marker(bpy.types.PropertyGroup):
-    """One coloured marker."""
+def _take_of(marker: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
+    """The take that a marker belongs to."""
+    takes = marker.id_data.keymark.takes
+    return next((take for take in takes if any(other == marker for other in take.markers)), None)
 
-    name: bpy.props.StringProperty(name="Name", description="The marker's name")
+
+def clear_readouts(take: bpy.types.PropertyGroup) -> None:
+    """Forget what was found of a take's markers: each one's readout depends on all of them."""
+    for marker in take.markers:
+        marker.sampled = 0
+
+
+def _changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    take = _take_of(marker)
+    if take is not None and marker.is_picked:
+        clear_readouts(take)
+
+
+def _segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    if marker.name == marker.named_after:
+        marker.name = marker.named_after = marker.segment
+
+
+class KEYMARK_PG_marker(bpy.types.PropertyGroup):
+    """One coloured marker, and what a look at the footage found of it."""
+
+    name: bpy.props.StringProperty(name="Name", description="The marker's name", update=_changed)
     segment: bpy.props.EnumProperty(
         name="Segment",
         description="The body part that wears the marker; left and right are the performer's own",
-        items=[(segment, _title(segment), "") for segment in SEGMENTS],
+        items=[(segment, segment_title(segment), "") for segment in SEGMENTS],
+        update=_segment_changed,
     )
     color: bpy.props.FloatVectorProperty(
         name="Color",
@@ -35,7 +60,55 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=(0.5, 0.5, 0.5),
+        update=_changed,
+    )
+    named_after: bpy.props.StringProperty(
+        name="Named After",
+        description="The segment that the name was taken from; the name follows it until you change it",
+        options={"HIDDEN"},
+    )
+    sampled: bpy.props.IntProperty(
+        name="Frames Looked At", description="Frames in which the marker was looked for; 0 for none yet"
+    )
+    found: bpy.props.IntProperty(
+        name="Found In", description="Frames, of those looked at, in which the marker was found"
+    )
+    area: bpy.props.FloatProperty(
+        name="Area", description="What the marker usually covers, in pixels of the footage"
+    )
+    area_share: bpy.props.FloatProperty(
+        name="Share of the Picture", description="What the marker usually covers, as a share of the picture"
+    )
+    distinctness: bpy.props.FloatProperty(
+        name="Distinctness",
+        description="How surely its color tells the marker from everything else in the footage, 0 to 1",
+    )
+    warning: bpy.props.StringProperty(
+        name="Warning", description="What may go wrong with the marker, one sentence a line"
+    )
+    checked_clip: bpy.props.StringProperty(
+        name="Checked Clip", description="The file in which the marker was looked for", options={"HIDDEN"}
+    )
+
+    @property
+    def is_picked(self) -> bool:
+        """Whether the marker was ever given a color."""
+        return bool(self.is_property_set("color"))
+
+    def has_readout(self, take: bpy.types.PropertyGroup) -> bool:
+        """Whether what was found holds for the footage of the take it belongs to."""
+        return bool(self.sampled and take.clip is not None and self.checked_clip == take.clip.filepath)
+
+
+def register() -> None:
+    """Register the marker, and the switch for masks, which no file keeps."""
+    bpy.utils.register_class(KEYMARK_PG_marker)
+    bpy.types.WindowManager.keymark_show_masks = bpy.props.BoolProperty(
+        name="Show Masks", description="Draw over the footage what has the markers' colors", default=False
     )
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_marker,))
+def unregister() -> None:
+    """Take both away."""
+    del bpy.types.WindowManager.keymark_show_masks
+    bpy.utils.unregister_class(KEYMARK_PG_marker)

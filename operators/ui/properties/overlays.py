@@ -74,7 +74,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         update=_changed,
     )
     uncertain_beyond: bpy.props.FloatProperty(
-        name="Uncertain Beyond",
+        name="Uncertainty",
         description="A point of larger standard deviation is drawn as a ring within a circle of that size",
         subtype="DISTANCE",
         default=0.05,

@@ -8,11 +8,13 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
 
     stage: bpy.props.StringProperty()
     fraction: bpy.props.FloatProperty(min=0.0, max=1.0)
+    time_left: bpy.props.StringProperty()
 
-    def show(self, stage: str, fraction: float) -> None:
-        """Set both."""
+    def show(self, stage: str, fraction: float, time_left: str = "") -> None:
+        """Set all."""
         self.stage = stage
         self.fraction = fraction
+        self.time_left = time_left
 
 
 def register() -> None:

@@ -2,8 +2,12 @@
 
 import bpy
 
+from ...takes import unique_name
 from .actor import KEYMARK_PG_lengths
+from .clip_state import KEYMARK_PG_clip_state
+from .finish import KEYMARK_PG_finish
 from .marker import KEYMARK_PG_marker
+from .review import KEYMARK_PG_review
 from .turntable import KEYMARK_PG_turntable
 
 METHODS = (
@@ -21,6 +25,25 @@ def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
     return bool(candidate.type == "CAMERA")
 
 
+def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    others = [other.name for other in take.id_data.keymark.takes if other != take]
+    free = unique_name(take.name.strip() or "Take", others)
+    if take.name != free:
+        take.name = free
+
+
+def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ...take_footage import clip_chosen
+
+    clip_chosen(take)
+
+
+def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ...take_footage import camera_chosen
+
+    camera_chosen(take)
+
+
 class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
     """A frame worth posing."""
 
@@ -36,18 +59,31 @@ class KEYMARK_PG_note(bpy.types.PropertyGroup):
 class KEYMARK_PG_take(bpy.types.PropertyGroup):
     """A performer in a clip."""
 
-    name: bpy.props.StringProperty(name="Name", description="What you call this take", default="Take")
+    name: bpy.props.StringProperty(
+        name="Name", description="What you call this take", default="Take", update=_renamed
+    )
     identifier: bpy.props.StringProperty(
         name="Identifier", description="Tells takes apart whatever they are called", options={"HIDDEN"}
     )
     clip: bpy.props.PointerProperty(
-        name="Clip", description="The footage of the performer", type=bpy.types.MovieClip
+        name="Clip",
+        description="The footage of the performer; the scene's size, rate and range follow it",
+        type=bpy.types.MovieClip,
+        update=_clip_chosen,
     )
+    clip_state: bpy.props.PointerProperty(type=KEYMARK_PG_clip_state)
     camera: bpy.props.PointerProperty(
         name="Camera",
         description="The camera that the footage was taken with; if it moves, it is used as it moves",
         type=bpy.types.Object,
         poll=_is_camera,
+        update=_camera_chosen,
+    )
+    guessed_lens_mm: bpy.props.FloatProperty(
+        name="Guessed Lens",
+        description="The focal length that was guessed as nobody had stated one; 0 for none",
+        min=0.0,
+        options={"HIDDEN"},
     )
     turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
@@ -67,7 +103,9 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
-    active_marker: bpy.props.IntProperty(name="Active Marker", default=0, min=0)
+    active_marker: bpy.props.IntProperty(
+        name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
     keyframe_action: bpy.props.PointerProperty(
         name="Keyframes",
         description="The Action that holds the keyframes you pose",
@@ -101,6 +139,8 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     review_key: bpy.props.StringProperty(
         name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
     )
+    review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
+    finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -20,16 +20,16 @@ def test_confidence_is_the_share_of_errors_within_the_tolerance(scales: tuple[fl
 
 
 def test_confidence_falls_with_each_reason_for_doubt() -> None:
-    """A larger covariance, a longer way from the keyframes, and markers elsewhere; not markers in place."""
+    """A larger covariance, a longer way from the keyframes, most markers elsewhere; not a single one."""
     covariance = np.broadcast_to(0.02**2 * np.eye(3), (1, 13, 3, 3))
     still, moved = np.zeros((1, 13)), np.full((1, 13), 0.2)
-    fits, contradicts = np.array([[0.1, 0.9]]), np.array([[0.1, 9.0]])
+    fits, astray, contradicts = (np.array([row]) for row in ([0.1, 0.9, 0.5], [0.1, 90, 0.5], [9, 0.1, 6]))
 
     def believed(covariance: np.ndarray, moved: np.ndarray, misfit: np.ndarray) -> float:
         return float(confidence(expected_covariance(covariance, moved, misfit), 0.045)[0])
 
     usual = believed(covariance, still, NONE_COMPARED)
-    assert believed(covariance, still, fits) == usual
+    assert believed(covariance, still, fits) == believed(covariance, still, astray) == usual
     assert believed(4.0 * covariance, still, fits) < usual - 0.1
     assert believed(covariance, moved, fits) < usual - 0.1
     assert believed(covariance, still, contradicts) < usual - 0.1

@@ -15,6 +15,7 @@ from keymark.core.estimate.whole_clip import estimate_whole_clip
 from keymark.core.footage.album import Album
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import Preview, run
 
 FRAMES = 46
 POSED = np.array([0, 15, 30, 45])
@@ -30,9 +31,9 @@ def album() -> Album:
 
 def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
     """What is measured from roughly known postures."""
-    contours = learn_contours(BODY, CAMERA, album(), posture, keyframes)
+    contours = run(learn_contours(BODY, CAMERA, album(), posture, keyframes))
     assert contours is not None
-    return contours.term(posture, FRAME)
+    return run(contours.term(posture, FRAME))
 
 
 def solve(pictures: Album | None) -> Posture:
@@ -45,7 +46,9 @@ def solve(pictures: Album | None) -> Posture:
     fractions = []
     while True:
         try:
-            fractions.append(next(job))
+            done = next(job)
+            if not isinstance(done, Preview):
+                fractions.append(done)
         except StopIteration as stop:
             assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
             return stop.value.posture
@@ -84,5 +87,5 @@ def test_a_shaken_camera_changes_nothing() -> None:
 def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
     """No contours are read where a picture's background cannot be the others'."""
     moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
-    assert learn_contours(BODY, moving, album(), TRUTH, POSED) is None
-    assert learn_contours(BODY, CAMERA, Album(), TRUTH, POSED) is None
+    assert run(learn_contours(BODY, moving, album(), TRUTH, POSED)) is None
+    assert run(learn_contours(BODY, CAMERA, Album(), TRUTH, POSED)) is None

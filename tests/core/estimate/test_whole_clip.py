@@ -11,6 +11,7 @@ from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_cli
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import Preview
 
 FRAMES = 46
 POSED = (0, 9, 18, 27, 36, 45)
@@ -23,9 +24,11 @@ def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
     fractions = []
     while True:
         try:
-            fractions.append(next(job))
+            done = next(job)
+            if not isinstance(done, Preview):
+                fractions.append(done)
         except StopIteration as stop:
-            assert fractions == sorted(fractions) and 0.0 < fractions[0] <= fractions[-1] <= 1.0
+            assert fractions == sorted(fractions) and 0.0 <= fractions[0] < fractions[-1] <= 1.0
             return stop.value
 
 

@@ -1,0 +1,141 @@
+"""An actor's motion as a file for other programs, written by Blender's own exporters."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import ConversionError, InputError
+from ...core.files.json_file import write_whole
+from .scene_file import write_bvh
+from .scene_frames import showing_action
+
+
+def _write_fbx(_: bpy.types.Object, path: Path) -> None:
+    bpy.ops.export_scene.fbx(
+        filepath=str(path),
+        use_selection=True,
+        object_types={"ARMATURE"},
+        add_leaf_bones=False,
+        bake_anim=True,
+        bake_anim_use_nla_strips=False,
+        bake_anim_use_all_actions=False,
+        bake_anim_simplify_factor=0.0,
+        check_existing=False,
+    )
+
+
+def _write_gltf(_: bpy.types.Object, path: Path) -> None:
+    bpy.ops.export_scene.gltf(
+        filepath=str(path),
+        export_format="GLB",
+        use_selection=True,
+        export_animations=True,
+        export_animation_mode="ACTIVE_ACTIONS",
+        export_frame_range=True,
+        export_force_sampling=True,
+        export_anim_slide_to_zero=True,
+        export_def_bones=False,
+        check_existing=False,
+    )
+
+
+def _write_usd(_: bpy.types.Object, path: Path) -> None:
+    bpy.ops.wm.usd_export(
+        filepath=str(path),
+        selected_objects_only=True,
+        export_animation=True,
+        export_armatures=True,
+        only_deform_bones=False,
+        export_materials=False,
+        check_existing=False,
+    )
+
+
+WRITERS: dict[str, Callable[[bpy.types.Object, Path], None]] = {
+    "BVH": write_bvh,
+    "FBX": _write_fbx,
+    "GLTF": _write_gltf,
+    "USD": _write_usd,
+}
+
+
+def export_motion(
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    frames: tuple[int, int],
+    kind: str,
+    path: Path,
+) -> None:
+    """Write an actor's motion; the scene, its selection and its frame are as before afterwards.
+
+    Args:
+        scene: The scene that holds the actor.
+        armature_object: The actor; nothing else is written.
+        action: The motion.
+        frames: First and last scene frame.
+        kind: A key of `WRITERS`.
+        path: The file; it appears complete or not at all.
+
+    Raises:
+        InputError: The actor is hidden with its collection.
+        ConversionError: The exporter failed, or the file cannot be written.
+    """
+    with _only(scene, armature_object), _frame_range(scene, frames), showing_action(armature_object, action):
+
+        def write(beside: Path) -> None:
+            try:
+                WRITERS[kind](armature_object, beside)
+            except RuntimeError as error:
+                raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
+            if not beside.exists():
+                raise ConversionError(f"{path}: the exporter wrote nothing")
+
+        write_whole(path, write)
+
+
+@contextmanager
+def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[None]:
+    """Let the scene's range be `frames`, without a preview range; then give back range and frame."""
+    names = ("frame_start", "frame_end", "use_preview_range")
+    before = {name: getattr(scene, name) for name in names}
+    at = scene.frame_current, scene.frame_subframe
+    scene.frame_start, scene.frame_end, scene.use_preview_range = *frames, False
+    try:
+        yield
+    finally:
+        scene.use_preview_range = before["use_preview_range"]
+        scene.frame_start, scene.frame_end = before["frame_start"], before["frame_end"]
+        scene.frame_set(at[0], subframe=at[1])
+
+
+@contextmanager
+def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
+    """Let one object be selected and active, in object mode; then give everything back."""
+    layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
+    active, hidden = layer.objects.active, chosen.hide_get(view_layer=layer)
+    mode = active.mode if active is not None else "OBJECT"
+    selected = [one for one in layer.objects if one.select_get(view_layer=layer)]
+    _set_mode("OBJECT", mode)
+    chosen.hide_set(False, view_layer=layer)
+    if not chosen.visible_get(view_layer=layer):
+        raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
+    try:
+        for one in selected:
+            one.select_set(False, view_layer=layer)
+        chosen.select_set(True, view_layer=layer)
+        layer.objects.active = chosen
+        yield
+    finally:
+        for one in layer.objects:
+            one.select_set(one in selected, view_layer=layer)
+        chosen.hide_set(hidden, view_layer=layer)
+        layer.objects.active = active
+        _set_mode(mode, "OBJECT")
+
+
+def _set_mode(mode: str, now: str) -> None:
+    if mode != now and bpy.ops.object.mode_set.poll():
+        bpy.ops.object.mode_set(mode=mode)

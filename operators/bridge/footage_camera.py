@@ -1,0 +1,157 @@
+"""The camera object that footage is shown behind, and what its clip knows of the lens."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ...core.footage.camera import Camera
+
+CAMERA_NAME = "Footage Camera"
+
+UNTOUCHED_CLIP_MM = (24.0, 35.0)
+"""Focal length and sensor width of a clip's tracking camera that nobody has set [mm]."""
+UNTOUCHED_CAMERA_MM = (50.0, 36.0)
+"""The same of a new camera object."""
+STARTUP_PLACE_M = (7.3589, -6.9258, 4.9583)
+"""Where the camera of Blender's startup file stands [m]."""
+SAME = 1e-3
+
+
+def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
+    """Add a camera to a scene."""
+    camera_object = bpy.data.objects.new(CAMERA_NAME, bpy.data.cameras.new(CAMERA_NAME))
+    scene.collection.objects.link(camera_object)
+    return camera_object
+
+
+def set_lens(data: bpy.types.Camera, camera: Camera) -> None:
+    """Give a camera core's lens."""
+    data.type = "PERSP"
+    data.lens_unit = "MILLIMETERS"
+    data.sensor_fit = "HORIZONTAL"
+    data.sensor_width = camera.sensor_width_mm
+    data.lens = camera.lens_mm
+    data.shift_x, data.shift_y = camera.shift_x, camera.shift_y
+
+
+def clip_lens(clip: bpy.types.MovieClip) -> Camera | None:
+    """The lens that someone has told a clip's tracking camera, at the world's origin.
+
+    None where it is as Blender makes it, which says nothing, or where the clip has no size.
+    """
+    tracking, (width, height) = clip.tracking.camera, clip.size
+    if not (width and height):
+        return None
+    x, y = tracking.principal_point_pixels
+    untouched = (
+        _same((tracking.focal_length, tracking.sensor_width), UNTOUCHED_CLIP_MM)
+        and _same((x, y), (width / 2, height / 2))
+        and not any((tracking.k1, tracking.k2, tracking.k3))
+        and not clip.tracking.reconstruction.is_valid
+    )
+    if untouched:
+        return None
+    return Camera(
+        lens_mm=float(tracking.focal_length),
+        sensor_width_mm=float(tracking.sensor_width),
+        resolution=(width, height),
+        matrix_world=np.eye(4),
+        shift_x=(width / 2 - x) / width,
+        shift_y=(height / 2 - y) / width,  # Blender counts from the bottom
+    )
+
+
+def set_clip_lens(clip: bpy.types.MovieClip, camera: Camera) -> None:
+    """Tell the clip its lens, so that Blender's tracking and undistortion know it too."""
+    tracking = clip.tracking.camera
+    tracking.units = "MILLIMETERS"
+    tracking.sensor_width = camera.sensor_width_mm
+    tracking.focal_length = camera.lens_mm
+    tracking.distortion_model = "POLYNOMIAL"
+    tracking.k1, tracking.k2, tracking.k3 = camera.distortion
+    x, y = camera.principal_point
+    tracking.principal_point_pixels = (x, camera.resolution[1] - y)  # Blender counts from the bottom
+
+
+def lens_is_untouched(data: bpy.types.Camera) -> bool:
+    """Whether a camera has the lens that Blender gives every new one."""
+    return _same((data.lens, data.sensor_width), UNTOUCHED_CAMERA_MM) and not (data.shift_x or data.shift_y)
+
+
+def is_startup_camera(camera_object: bpy.types.Object) -> bool:
+    """Whether a camera is that of Blender's startup file, left as it was: it was no footage's."""
+    animated = camera_object.animation_data is not None or len(camera_object.constraints)
+    place = camera_object.matrix_basis.translation
+    return lens_is_untouched(camera_object.data) and not animated and _same(place, STARTUP_PLACE_M)
+
+
+def may_move(blender_object: bpy.types.Object | None) -> bool:
+    """Whether an object or what it hangs on is animated, driven or constrained."""
+    while blender_object is not None:
+        data = blender_object.animation_data
+        driven = data is not None and (data.action is not None or len(data.drivers) or len(data.nla_tracks))
+        if driven or len(blender_object.constraints) or blender_object.parent_type != "OBJECT":
+            return True
+        blender_object = blender_object.parent
+    return False
+
+
+def solver_constraint(
+    scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
+) -> bpy.types.CameraSolverConstraint | None:
+    """The constraint by which a camera moves as the clip's solution says."""
+    for constraint in camera_object.constraints:
+        if constraint.type == "CAMERA_SOLVER" and constraint.enabled:
+            shown = scene.active_clip if constraint.use_active_clip else constraint.clip
+            if shown == clip:
+                return constraint
+    return None
+
+
+def solved_camera(scene: bpy.types.Scene, clip: bpy.types.MovieClip) -> bpy.types.Object | None:
+    """The camera of a scene that moves as the clip's solution says, the scene's own first."""
+    cameras = [scene.camera, *(each for each in scene.objects if each.type == "CAMERA")]
+    return next((each for each in cameras if each and solver_constraint(scene, each, clip)), None)
+
+
+def follow_solution(
+    scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
+) -> None:
+    """Let a camera move as the clip's solution says, whichever clip the scene works on."""
+    constraint = solver_constraint(scene, camera_object, clip)
+    if constraint is None:
+        constraint = camera_object.constraints.new("CAMERA_SOLVER")
+    constraint.clip = clip
+    constraint.use_active_clip = False  # the scene's clip changes with its take
+
+
+def shows_behind(camera_object: bpy.types.Object | None, clip: bpy.types.MovieClip) -> bool:
+    """Whether a camera has the clip behind what it sees."""
+    if camera_object is None or camera_object.type != "CAMERA":
+        return False
+    images = camera_object.data.background_images
+    return any(image.source == "MOVIE_CLIP" and image.clip == clip for image in images)
+
+
+def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> None:
+    """Show the clip behind everything the camera sees, filling the frame."""
+    images = camera_data.background_images
+    background = next((image for image in images if image.source == "MOVIE_CLIP"), None) or images.new()
+    background.source = "MOVIE_CLIP"
+    background.clip = clip
+    background.frame_method = "FIT"
+    background.alpha = 1.0
+    tracking = clip.tracking.camera
+    # Blender's camera has no distortion of its own: a body drawn over the footage fits straightened footage.
+    background.clip_user.use_render_undistorted = any((tracking.k1, tracking.k2, tracking.k3))
+    camera_data.show_background_images = True
+
+
+def set_still_pose(camera_object: bpy.types.Object, camera: Camera) -> None:
+    """Put a camera where a fixed one of core's stands."""
+    camera_object.animation_data_clear()
+    camera_object.matrix_world = Matrix(camera.matrix_world.tolist())
+
+
+def _same(values: tuple[float, ...], others: tuple[float, ...]) -> bool:
+    return bool(np.abs(np.subtract(values, others)).max() < SAME)

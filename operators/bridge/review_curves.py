@@ -1,0 +1,111 @@
+"""How far each frame can be believed, as F-curves beside the motion's own, for the Graph Editor.
+
+They animate custom properties of the armature object, which move nothing: no bone, no exporter by its own
+settings, and no reader of keyframes looks at them.
+"""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.review import Review
+from .actions import channelbag_for
+from .keys import add_generated_keys, remove_generated_keys
+
+Array = NDArray[np.float64]
+
+GROUP = "Keymark Confidence"
+PREFIX = "Keymark "
+"""What the names of all custom properties begin with."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReviewCurve:
+    """One curve and the property it animates."""
+
+    name: str
+    """Of the custom property."""
+    description: str
+    values: Array
+    """(F,) values; frames that are NaN get no key."""
+    soft_max: float
+    """Upper end of the property's slider; the lower is 0."""
+
+
+def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
+    """What is shown of a review: confidence, near-membership, reprojection error and the points' sigmas."""
+    compared = np.isfinite(review.reprojection_px)
+    total = np.where(compared, review.reprojection_px, 0.0).sum(axis=1)
+    count = compared.sum(axis=1)
+    reprojection = np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    curves = [
+        ReviewCurve(
+            "Confidence",
+            "Share of the joints expected within 2.5 % of the performer's height of their true place",
+            review.confidence,
+            1.0,
+        ),
+        ReviewCurve(
+            "Nearness",
+            "Degree to which a keyframe is near: 1 at a keyframe, 0 midway between two",
+            review.nearness,
+            1.0,
+        ),
+        ReviewCurve(
+            "Reprojection",
+            "Mean distance between the markers seen and those predicted, in pixels of the footage",
+            reprojection,
+            10.0,
+        ),
+    ]
+    for point, name in enumerate(review.point_names):
+        curves.append(
+            ReviewCurve(
+                f"Sigma {name}",
+                f"Standard deviation of the point {name}, in millimetres",
+                1e3 * review.sigma_m[:, point],
+                100.0,
+            )
+        )
+    return tuple(curves)
+
+
+def curve_path(name: str) -> str:
+    """Data path of the custom property of a review curve, on the armature object."""
+    return f'["{bpy.utils.escape_identifier(PREFIX + name)}"]'
+
+
+def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Action, review: Review) -> None:
+    """Write all curves into the motion's Action; those of an earlier review are replaced.
+
+    An object that cannot take custom properties, being linked from another file, gets no curves.
+
+    Args:
+        armature_object: The actor.
+        action: The motion's Action.
+        review: What there is to show.
+    """
+    channelbag = channelbag_for(action, armature_object)
+    curves = review_curves(review)
+    remove_generated_keys(channelbag, (curve_path(curve.name) for curve in curves))
+    if not armature_object.is_editable:
+        return
+    for curve in curves:
+        known = np.isfinite(curve.values)
+        if not known.any():
+            armature_object.pop(PREFIX + curve.name, None)
+            continue
+        _ensure_property(armature_object, curve)
+        add_generated_keys(
+            channelbag, curve_path(curve.name), 0, GROUP, review.frames[known], curve.values[known]
+        )
+
+
+def _ensure_property(armature_object: bpy.types.Object, curve: ReviewCurve) -> None:
+    name = PREFIX + curve.name
+    if name not in armature_object:
+        armature_object[name] = 0.0
+    interface = armature_object.id_properties_ui(name)
+    interface.update(min=0.0, soft_min=0.0, soft_max=curve.soft_max, description=curve.description)

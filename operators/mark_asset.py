@@ -1,0 +1,52 @@
+"""Mark a take's motion as an asset."""
+
+import bpy
+
+from .failures import reported
+from .requirements import actor, all_met, idle, motion
+from .say import say
+from .takes import active_take
+
+
+class KEYMARK_OT_mark_asset(bpy.types.Operator):
+    """Offer the motion, finished if it is, in the asset browser: with catalog, tags and a picture"""
+
+    bl_idname = "keymark.mark_asset"
+    bl_label = "Mark Asset"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a motion."""
+        return all_met(cls, context, actor, motion, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the catalog to its file, then mark the Action."""
+        with reported(self):
+            from .bridge.asset_catalogs import catalog_file, ensure_catalog
+            from .bridge.assets import AssetDetails, action_picture, mark_action
+
+            take = active_take(context.scene)
+            settings, action = take.finish, take.finish.action or take.motion_action
+            picture = action_picture(context.scene, take.armature, action)
+            catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
+            tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
+            details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
+            mark_action(action, details, picture)
+            _refresh_asset_browsers(context)
+            say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def _refresh_asset_browsers(context: bpy.types.Context) -> None:
+    """Let open asset browsers read the catalogs again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.ui_type == "ASSETS":
+                with context.temp_override(window=window, area=area):
+                    if bpy.ops.asset.library_refresh.poll():
+                        bpy.ops.asset.library_refresh()
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mark_asset,))

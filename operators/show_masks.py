@@ -1,0 +1,45 @@
+"""Show or hide what has the markers' colours."""
+
+import bpy
+
+from .failures import reported
+from .marker_previews import look_at_frame, preview_of
+from .requirements import a_color, all_met, footage, idle, markers
+from .takes import active_take
+
+
+class KEYMARK_OT_show_masks(bpy.types.Operator):
+    """Draw over the footage what has the markers' colors, in the camera view and the Movie Clip editor"""
+
+    bl_idname = "keymark.show_masks"
+    bl_label = "Show Masks"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be footage, and a color to look for."""
+        return all_met(cls, context, footage, markers, a_color, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Switch over; colors that were not looked for in this session are looked for now."""
+        manager = context.window_manager
+        manager.keymark_show_masks = not manager.keymark_show_masks
+        with reported(self):
+            if manager.keymark_show_masks:
+                if preview_of(active_take(context.scene)) is None:
+                    bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+                look_at_frame(context.scene)
+            redraw_footage(context)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def redraw_footage(context: bpy.types.Context) -> None:
+    """Have every editor that may show footage drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
+                area.tag_redraw()
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_masks,))

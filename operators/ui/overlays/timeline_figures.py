@@ -1,0 +1,103 @@
+"""The figures over the timeline as arrays: a graph, a strip, diamonds and triangles. Nothing is drawn here.
+
+Places are region pixels.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+UNSURE = np.array([0.90, 0.42, 0.10])
+HALFWAY = np.array([0.93, 0.83, 0.35])
+SURE = np.array([0.22, 0.55, 0.90])
+"""From vermilion by yellow to blue, told apart by every kind of eye."""
+DOUBTED = 0.5
+"""Confidence up to which a frame is wholly unsure: no better than chance whether a joint is in place."""
+FINEST_PX = 1.5
+"""Frames nearer than this are drawn as one."""
+
+
+def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
+    """Fewer places where frames lie closer than can be seen, so that drawing takes no longer for a long clip.
+
+    Args:
+        x: (F,) increasing places.
+        values: (F,) what is shown there.
+        lowest: Whether the lowest of the values that fall together is shown, or the highest.
+
+    Returns:
+        Places and values, (N,) each.
+    """
+    if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
+        return x, values
+    column = np.floor((x - x[0]) / FINEST_PX).astype(np.intp)
+    starts = np.flatnonzero(np.diff(column, prepend=-1))
+    pick = np.fmin if lowest else np.fmax
+    return x[starts], pick.reduceat(values, starts)
+
+
+def in_view(x: Array, width: float) -> slice:
+    """The frames (F,) at increasing places that a region of this width shows, and one more on each side."""
+    first, last = np.searchsorted(x, (0.0, width))
+    return slice(max(0, int(first) - 1), int(last) + 1)
+
+
+def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, Array]:
+    """A curve and the area under it.
+
+    Args:
+        x: (N,) places.
+        values: (N,) heights, 0 to 1; NaN leaves a gap.
+        floor: Where 0 lies.
+        height: Distance from 0 to 1.
+
+    Returns:
+        The line (N, 2) and the area's pieces (N - 1, 4, 2).
+    """
+    line = np.stack([x, floor + height * values], axis=-1)
+    foot = np.stack([x, np.full_like(x, floor)], axis=-1)
+    area = np.stack([foot[:-1], foot[1:], line[1:], line[:-1]], axis=1)
+    return line, area
+
+
+def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
+    """A bar a frame: the higher and bluer, the further it can be believed.
+
+    Args:
+        x: (N,) places.
+        confidence: (N,) 0 to 1; NaN leaves a gap.
+        floor: Foot of the bars.
+        height: Height of a bar of confidence 1.
+
+    Returns:
+        Bars (N, 4, 2) and their opaque colours (N, 4).
+    """
+    middles = 0.5 * (x[1:] + x[:-1])
+    reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
+    left = np.concatenate([[x[0] - reach], middles])
+    right = np.concatenate([middles, [x[-1] + reach]])
+    top = floor + height * confidence
+    bottom = np.where(np.isfinite(top), floor, np.nan)
+    bars = np.stack(
+        [
+            np.stack(corner, axis=-1)
+            for corner in ((left, bottom), (right, bottom), (right, top), (left, top))
+        ],
+        axis=1,
+    )
+    return bars, np.column_stack([believed_color(confidence), np.ones(len(x))])
+
+
+def believed_color(confidence: Array) -> Array:
+    """Colours (N, 3) of confidences (N,)."""
+    share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
+    stops = np.stack([UNSURE, HALFWAY, SURE])
+    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
+
+
+def pointers(x: Array, tip: float, size: float) -> Array:
+    """(N, 3, 2) triangles that point down to a height at places (N,)."""
+    half, top = 0.6 * size, np.full_like(x, tip + size)
+    corners = ((x, np.full_like(x, tip)), (x + half, top), (x - half, top))
+    return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)

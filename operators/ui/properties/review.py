@@ -1,0 +1,66 @@
+"""What the animator is told of a take's motion: how far it can be believed, and where to pose again."""
+
+import bpy
+
+REASONS = (
+    ("HIDDEN", "Hidden Marker", "A marker is hidden around this frame", "HIDE_ON", 0),
+    ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
+    ("FAR", "Far From Keyframes", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
+    ("FOOTAGE", "Footage Disagrees", "A marker is not where the motion puts it", "TRACKER", 3),
+)
+
+
+def _chosen(review: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Clicking a frame in the list goes there."""
+    if review.active_weak_frame < len(review.weak_frames):
+        review.weak_frames[review.active_weak_frame].go_to(review.id_data)
+
+
+class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
+    """A frame worth another keyframe."""
+
+    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
+    reason: bpy.props.EnumProperty(name="Reason", description="Why a keyframe helps here", items=REASONS)
+    marker: bpy.props.StringProperty(name="Marker", description="The marker that is the reason, if one is")
+    strength: bpy.props.FloatProperty(
+        name="Worth",
+        description="What a keyframe here is worth, relative to the worst frame's",
+        subtype="FACTOR",
+        min=0.0,
+        max=1.0,
+    )
+    is_posed: bpy.props.BoolProperty(
+        name="Posed", description="A keyframe was added here since the reconstruction"
+    )
+
+    def go_to(self, scene: bpy.types.Scene) -> None:
+        """Let the scene show this frame."""
+        whole = int(self.frame // 1.0)
+        scene.frame_set(whole, subframe=self.frame - whole)
+
+
+class KEYMARK_PG_review(bpy.types.PropertyGroup):
+    """What is known of a take's motion."""
+
+    frame_count: bpy.props.IntProperty(
+        name="Frames", description="Frames that were reconstructed; 0 before the first time", default=0, min=0
+    )
+    confidence: bpy.props.FloatProperty(
+        name="Confidence",
+        description="Share of all joints in all frames that are expected within 2.5 % of the performer's "
+        "height of their true place; negative where the method cannot tell",
+        default=-1.0,
+        min=-1.0,
+        max=1.0,
+    )
+    weak_frames: bpy.props.CollectionProperty(type=KEYMARK_PG_weak_frame)
+    active_weak_frame: bpy.props.IntProperty(
+        name="Weak Frame",
+        description="The frame chosen in the list; choosing one goes there",
+        default=0,
+        min=0,
+        update=_chosen,
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_weak_frame, KEYMARK_PG_review))

@@ -1,0 +1,123 @@
+"""What people read: labels in title case, descriptions without a full stop, sentences that are templates."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from keymark.operators.say import label, say
+
+OWN = "KEYMARK_"
+OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
+"""Names that Blender gives its own meaning; the rest of an operator's properties are Keymark's."""
+SMALL = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "on", "or", "the", "to", "with"}
+"""Words that stay small inside a label, as in Blender's own."""
+
+
+def is_title(text: str) -> bool:
+    """Whether every word but the small ones inside begins with a capital."""
+    words = text.replace("/", " ").split()
+    return all(
+        not word[0].isalpha() or word[0].isupper() or (0 < place and word in SMALL)
+        for place, word in enumerate(words)
+    )
+
+
+def definitions() -> Iterator[tuple[str, str, str]]:
+    """Where, label and description of all that Keymark defines."""
+    for name in dir(bpy.ops.keymark):
+        kind = getattr(bpy.ops.keymark, name).get_rna_type()
+        yield f"keymark.{name}", kind.name, kind.description
+        yield from properties(f"keymark.{name}", kind)
+    yield from properties("keymark", bpy.types.Scene.bl_rna.properties["keymark"].fixed_type)
+
+
+def properties(where: str, kind: bpy.types.Struct) -> Iterator[tuple[str, str, str]]:
+    """The same of what is shown of a class's own properties, with the entries of menus, and of its parts."""
+    for definition in kind.properties:
+        place = f"{where}.{definition.identifier}"
+        if definition.identifier in ("rna_type", *OUTSIDE) or definition.is_hidden:
+            continue
+        if definition.type in ("COLLECTION", "POINTER") and definition.fixed_type.identifier.startswith(OWN):
+            yield from properties(place, definition.fixed_type)
+            continue
+        yield place, definition.name, definition.description
+        for item in definition.enum_items if definition.type == "ENUM" else ():
+            yield f"{place}.{item.identifier}", item.name, item.description or "said by its name"
+
+
+@pytest.mark.usefixtures("registered")
+def test_labels_are_in_title_case() -> None:
+    """Panels, menus, operators, properties and the entries of menus."""
+    found = list(definitions())
+    assert len(found) > 60
+    wrong = [(where, name) for where, name, _ in found if not name or not is_title(name)]
+    drawn = [getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith(OWN)]
+    labels = [(each.__name__, each.bl_label) for each in drawn if hasattr(each, "bl_label")]
+    assert len(labels) > 8
+    wrong += [(where, name) for where, name in labels if not is_title(name)]
+    assert wrong == []
+
+
+@pytest.mark.usefixtures("registered")
+def test_descriptions_are_there_and_end_without_a_full_stop() -> None:
+    """Blender adds the stop itself."""
+    tooltips = [(where, text) for where, _, text in definitions()]
+    assert [(where, text) for where, text in tooltips if not text or text.endswith(".")] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "right"),
+    [
+        ("Load Footage", True),
+        ("Jump to Proposed Keyframe", True),
+        ("Load footage", False),
+        ("to Load", False),
+        ("3D View", True),
+    ],
+)
+def test_title_case_is_told(text: str, right: bool) -> None:
+    """The check above can fail."""
+    assert is_title(text) is right
+
+
+def test_sentences_that_are_said_are_plain_literals(repository: Path) -> None:
+    """Translators' tools read templates from the source, so none may be put together there."""
+    wrong, found = [], 0
+    for file in sorted((repository / "operators").rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
+                place = {"say": 2, "label": 0}.get(node.func.id)
+                if place is None:
+                    continue
+                found += 1
+                template = node.args[place]
+                if not (isinstance(template, ast.Constant) and isinstance(template.value, str)):
+                    wrong.append(f"{file.name}:{node.lineno}")
+    assert found > 5
+    assert wrong == []
+
+
+class Operator:
+    """Keeps what is reported."""
+
+    def report(self, kind: set[str], text: str) -> None:
+        """Keep it."""
+        self.said = (kind, text)
+
+
+def test_a_sentence_is_filled_in_after_translation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The template is what is looked up, in the language that Blender speaks."""
+    words = {"Opened {name}": "{name} geöffnet"}
+    german = SimpleNamespace(pgettext_rpt=words.get, pgettext_iface=words.get)
+    operator = Operator()
+    say(operator, "INFO", "Opened {name}", name="walk")
+    assert operator.said == ({"INFO"}, "Opened walk")
+    monkeypatch.setattr(
+        "keymark.operators.say.bpy", SimpleNamespace(app=SimpleNamespace(translations=german))
+    )
+    say(operator, "INFO", "Opened {name}", name="walk")
+    assert operator.said == ({"INFO"}, "walk geöffnet")
+    assert label("Opened {name}", name="walk") == "walk geöffnet"

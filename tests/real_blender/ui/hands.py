@@ -1,0 +1,189 @@
+"""A person's hands and eyes: mouse, keys, and finding buttons by what they do.
+
+Blender tells scripts nothing of where a panel's buttons are. A person finds them by looking; here the mouse goes
+down the region, and the button under it is asked for its Python command (Ctrl C over a button does the same).
+"""
+
+import bpy
+from driver import Steps, expect, turns, until
+
+ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
+"""Where across a region buttons are looked for; most span the middle."""
+STEP_PX = 13
+"""Buttons are about 20 px high."""
+
+
+class Hands:
+    """Mouse and keyboard of the first window."""
+
+    def __init__(self) -> None:
+        self.x = self.y = 0
+        self._places: dict[tuple[str, ...], tuple[int, int]] = {}
+
+    @property
+    def window(self) -> bpy.types.Window:
+        """The window, found anew: after undo or a new file the old one is gone."""
+        return bpy.context.window_manager.windows[0]
+
+    def area(self, kind: str) -> bpy.types.Area:
+        """The largest area of a kind on the screen."""
+        areas = [area for area in self.window.screen.areas if area.type == kind]
+        expect(areas, f"no {kind} on the screen")
+        return max(areas, key=lambda area: area.width * area.height)
+
+    def region(self, kind: str, part: str) -> bpy.types.Region:
+        """A region of that area: WINDOW, UI (the sidebar), HEADER."""
+        return next(region for region in self.area(kind).regions if region.type == part)
+
+    def move(self, x: float, y: float) -> Steps[None]:
+        """Move the mouse to a place in the window, y up [px]."""
+        self.x, self.y = round(x), round(y)
+        for offset in (1, 0):  # the first one only enters a region
+            self.window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=self.x + offset, y=self.y)
+        yield
+
+    def move_over(self, kind: str) -> Steps[None]:
+        """Move the mouse into the middle of an area, so that keys go there."""
+        region = self.region(kind, "WINDOW")
+        yield from self.move(region.x + 0.45 * region.width, region.y + 0.5 * region.height)
+
+    def press(self, key: str, text: str | None = None, **modifiers: bool) -> Steps[None]:
+        """Press and release a key or a mouse button where the mouse is."""
+        for value in ("PRESS", "RELEASE"):
+            typed = {"unicode": text} if text is not None and value == "PRESS" else {}
+            self.window.event_simulate(type=key, value=value, x=self.x, y=self.y, **typed, **modifiers)
+            yield
+        yield from turns(2)
+
+    def click(self, x: float, y: float, **modifiers: bool) -> Steps[None]:
+        """Click at a place in the window."""
+        yield from self.move(x, y)
+        yield from self.press("LEFTMOUSE", **modifiers)
+
+    def write(self, text: str) -> Steps[None]:
+        """Write text, letter by letter."""
+        names = {".": "PERIOD", "-": "MINUS", "/": "SLASH", " ": "SPACE", "_": "MINUS"}
+        digits = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+        for letter in text:
+            key = digits[int(letter)] if letter.isdigit() else names.get(letter, letter.upper())
+            yield from self.press(key, text=letter)
+
+    def undo(self) -> Steps[None]:
+        """Ctrl Z over the viewport."""
+        yield from self.move_over("VIEW_3D")
+        yield from self.press("Z", ctrl=True)
+
+    def redo(self) -> Steps[None]:
+        """Ctrl Shift Z over the viewport."""
+        yield from self.move_over("VIEW_3D")
+        yield from self.press("Z", ctrl=True, shift=True)
+
+    def open_sidebar(self, kind: str, tab: str) -> Steps[None]:
+        """Show an area's sidebar (N) and click on a tab of it."""
+        yield from self.move_over(kind)
+        if not self.area(kind).spaces.active.show_region_ui:
+            yield from self.press("N")
+        yield from until(lambda: self.region(kind, "UI").width > 20, "the sidebar")
+        region = self.region(kind, "UI")
+        below = 30.0
+        while region.active_panel_category != tab:
+            expect(below < region.height, f"no tab {tab} in the sidebar of the {kind}")
+            yield from self.click(region.x + region.width - 12, region.y + region.height - below)
+            below += 20.0
+            region = self.region(kind, "UI")
+
+    def find_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[tuple[int, int]]:
+        """Look for the button that calls an operator, scrolling the sidebar where it must be.
+
+        Args:
+            command: The operator, as in `keymark.reconstruct`.
+            words: What its call must contain, as in `direction='NEXT'`.
+            kind: The area whose sidebar it is in.
+
+        Returns:
+            Where it is in the window.
+        """
+        wanted = (f"bpy.ops.{command}(", *words)
+        found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
+        expect(found is not None, f"no button for {command} {words} in the sidebar of the {kind}")
+        return found
+
+    def click_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[None]:
+        """Find and click the button that calls an operator."""
+        place = yield from self.find_button(command, *words, kind=kind)
+        yield from self.click(*place)
+
+    def has_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[bool]:
+        """Whether the sidebar shows such a button, ready to be clicked."""
+        wanted = (f"bpy.ops.{command}(", *words)
+        found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
+        return found is not None
+
+    def fill(self, field: str, value: str, kind: str = "VIEW_3D") -> Steps[None]:
+        """Double-click on a field that shows the property `field`, and write a value into it."""
+        found = yield from self._look(kind, "ui.copy_data_path_button", (field,))
+        expect(found is not None, f"no field {field} in the sidebar of the {kind}")
+        yield from self.move(*found)
+        yield from self.press("RET")  # over a number, Enter begins to edit it
+        yield from self.press("A", ctrl=True)
+        yield from self.write(value)
+        yield from self.press("RET")
+
+    def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+        """Where in the sidebar the button is whose copied text contains all that is wanted."""
+        remembered = self._places.get((kind, *wanted))
+        if remembered and (yield from self._is_at(remembered, kind, copy, wanted)):
+            return remembered
+        found = yield from self._search(kind, copy, wanted)
+        if found is None:
+            yield from self._scroll(kind, "WHEELUPMOUSE", 40)
+        for _ in range(8):
+            if found is not None:
+                break
+            found = yield from self._search(kind, copy, wanted)
+            seen = self._showing(kind)
+            if found is None:
+                yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
+                if self._showing(kind) == seen:
+                    break
+        if found is not None:
+            self._places[(kind, *wanted)] = found
+        return found
+
+    def _search(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+        """The same among what the sidebar shows now."""
+        region = self.region(kind, "UI")
+        width = region.width - 25  # the tabs
+        for share in ACROSS:
+            for below in range(30, region.height - 4, STEP_PX):
+                place = round(region.x + share * width), region.y + region.height - below
+                if (yield from self._is_at(place, kind, copy, wanted)):
+                    return place
+        return None
+
+    def _is_at(self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[bool]:
+        yield from self.move(*place)
+        return all(word in self._copied(kind, copy) for word in wanted)
+
+    def _copied(self, kind: str, copy: str) -> str:
+        manager = bpy.context.window_manager
+        manager.clipboard = ""
+        area, region = self.area(kind), self.region(kind, "UI")
+        group, _, name = copy.partition(".")
+        operator = getattr(getattr(bpy.ops, group), name)
+        with bpy.context.temp_override(window=self.window, area=area, region=region):
+            if operator.poll():
+                operator()
+        return str(manager.clipboard)
+
+    def _scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
+        region = self.region(kind, "UI")
+        yield from self.move(region.x + 0.4 * region.width, region.y + 0.5 * region.height)
+        for _ in range(notches):
+            self.window.event_simulate(type=wheel, value="PRESS", x=self.x, y=self.y)
+        yield from turns(4)
+
+    def _showing(self, kind: str) -> tuple[float, float]:
+        """Where the sidebar's contents lie now."""
+        x, y = self.region(kind, "UI").view2d.region_to_view(0, 0)
+        return round(x), round(y)

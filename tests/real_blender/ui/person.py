@@ -1,0 +1,79 @@
+"""The person of a session: hands, what they know of the take, and how they try whether a step can be undone."""
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import bpy
+from driver import JOB_PATIENCE_S, Camera, Steps, expect, turns, until
+from hands import Hands
+from scene_state import differences, scene_state
+
+EXTENSION = "bl_ext.user_default.keymark"
+JOB = "KEYMARK_OT_"
+
+
+def keymark(module: str) -> ModuleType:
+    """A module of the extension as it is installed in this Blender."""
+    return import_module(f"{EXTENSION}.{module}")
+
+
+class Person:
+    """An animator in front of Blender."""
+
+    def __init__(self, take_folder: Path, folder: Path, camera: Camera) -> None:
+        self.known = keymark("core.take").read_take(take_folder)
+        self.folder = folder
+        self.camera = camera
+        self.hands = Hands()
+
+    @property
+    def scene(self) -> bpy.types.Scene:
+        """The scene in the window."""
+        return self.hands.window.scene
+
+    @property
+    def take(self) -> bpy.types.PropertyGroup:
+        """The active take."""
+        return keymark("operators.takes").active_take(self.scene)
+
+    def look(self, name: str) -> Steps[None]:
+        """Let everything be drawn, and take a picture."""
+        yield from turns(4)
+        self.camera.shoot(name)
+
+    def step_done(self, message: str) -> None:
+        """Mark what was done by other means than Keymark's operators as a step that undo comes back to."""
+        bpy.ops.ed.undo_push(message=message)
+
+    def jobs(self) -> list[str]:
+        """The modal operators of Keymark that run in the window."""
+        return [o.bl_idname for o in self.hands.window.modal_operators if o.bl_idname.startswith(JOB)]
+
+    def wait_for_job(self) -> Steps[None]:
+        """Wait until no job runs."""
+        yield from turns(3)
+        yield from until(lambda: not self.jobs(), "the job's end", JOB_PATIENCE_S)
+        yield from turns(3)
+
+    def undoable(self, what: str, do: Callable[[], Steps[Any]]) -> Steps[None]:
+        """Do something; hold that Ctrl Z takes all of it back and Ctrl Shift Z brings all of it again."""
+        before = scene_state()
+        yield from do()
+        after = scene_state()
+        expect(after != before, f"{what} changed nothing")
+        yield from self.hands.undo()
+        left = differences(before, scene_state())
+        expect(not left, f"undoing {what} left: {left}")
+        yield from self.hands.redo()
+        left = differences(after, scene_state())
+        expect(not left, f"redoing {what} gave something else: {left}")
+
+    def changes_nothing(self, what: str, do: Callable[[], Steps[Any]]) -> Steps[None]:
+        """Do something that is cancelled; hold that the scene is as it was."""
+        before = scene_state()
+        yield from do()
+        left = differences(before, scene_state())
+        expect(not left, f"{what} left: {left}")

@@ -1,0 +1,144 @@
+"""The session's first three steps: footage, markers, actor."""
+
+import bpy
+import numpy as np
+from driver import Steps, expect, turns, until
+from mathutils import Matrix
+from numpy.typing import NDArray
+from person import Person, keymark
+
+SEARCH_PX = 0.06
+"""How far from where a sleeve should be a person looks for its colour, as a share of the picture's width."""
+
+
+def start_empty(person: Person) -> Steps[None]:
+    """A scene without anything, and Keymark's tab in the sidebar."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    yield from turns(5)
+    yield from person.hands.open_sidebar("VIEW_3D", "Keymark")
+    person.step_done("Empty scene")
+    yield from person.look("empty")
+
+
+def footage(person: Person) -> Steps[None]:
+    """Load the clip by the file browser, cancelled once, and set the camera up as it stood."""
+    yield from person.changes_nothing("cancelling the file browser", lambda: _browse(person, "ESC"))
+    yield from person.undoable("loading the footage", lambda: _browse(person, "RET"))
+    take, known = person.take, person.known
+    expect(take.clip is not None and take.clip.frame_duration > 1, "the footage was not loaded")
+    expect(person.scene.frame_end == known.frame_start + take.clip.frame_duration - 1, "the range is another")
+    camera = take.camera
+    camera.matrix_world = Matrix(known.camera.matrix_world.tolist())
+    camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", known.camera.sensor_width_mm
+    camera.data.lens = known.camera.lens_mm
+    camera.data.shift_x, camera.data.shift_y = known.camera.shift_x, known.camera.shift_y
+    person.step_done("Align the camera")
+    yield from turns(2)
+    yield from look_through_camera(person)
+    yield from person.look("footage")
+
+
+def look_through_camera(person: Person) -> Steps[None]:
+    """Numpad 0, unless the viewport looks through the camera already; Home fits its frame to the region."""
+    view = person.hands.area("VIEW_3D").spaces.active
+    yield from person.hands.move_over("VIEW_3D")
+    if view.region_3d.view_perspective != "CAMERA":
+        yield from person.hands.press("NUMPAD_0")
+    yield from until(lambda: view.region_3d.view_perspective == "CAMERA", "the camera's view")
+    yield from person.hands.press("HOME")
+    yield from turns(20)  # the view glides there
+
+
+def markers(person: Person) -> Steps[None]:
+    """Add the five markers, and pick each one's colour from the footage."""
+    names = [style.segment for style in person.known.markers]
+    while len(person.take.markers) < len(names):
+        yield from person.undoable("adding a marker", lambda: person.hands.click_button("keymark.add_marker"))
+    found = [marker.segment for marker in person.take.markers]
+    expect(found == names, f"the markers are {found}, the performer wears {names}")
+    yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
+    for number, marker in enumerate(person.take.markers):
+        person.take.active_marker = number
+        person.step_done(f"Choose {marker.name}")
+        pixel = sleeve_pixel(person, number)
+        yield from person.undoable(f"picking {marker.name}", lambda pixel=pixel: _pick(person, pixel))
+    yield from person.look("markers")
+
+
+def actor(person: Person) -> Steps[None]:
+    """Build the actor from the performer's height, and give it the performer's lengths."""
+    height = person.known.body.actor.stature_m
+    yield from person.hands.fill("stature", f"{height:.3f}")
+    expect(abs(person.take.stature - height) < 1e-3, f"the height is {person.take.stature}, not {height}")
+    yield from person.undoable("building", lambda: person.hands.click_button("keymark.build_actor"))
+    yield from person.look("actor")
+
+
+def _browse(person: Person, key: str) -> Steps[None]:
+    """Open the file browser by its button, go to the clip, and press a key there."""
+    bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
+    yield from person.hands.click_button("keymark.load_footage")
+    kinds = {"FILE_BROWSER"}
+    yield from until(lambda: kinds & {a.type for a in person.hands.window.screen.areas}, "the file browser")
+    browser = person.hands.area("FILE_BROWSER").spaces.active
+    yield from until(lambda: browser.params is not None, "the file browser's folder")
+    browser.params.directory = str(person.known.clip.parent).encode()
+    browser.params.filename = person.known.clip.name
+    yield from turns(5)
+    yield from person.hands.move_over("FILE_BROWSER")
+    if key == "RET":
+        yield from person.look("file_browser")
+    yield from person.hands.press(key)
+    yield from until(lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport")
+    yield from turns(3)
+
+
+def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
+    """The eyedropper's button, then a click on a pixel of the footage."""
+    yield from person.hands.click_button("keymark.pick_marker_color")
+    area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
+    view = keymark("operators.ui.footage_view").footage_view(person.scene, person.take, area, region)
+    expect(view is not None, "the viewport does not show the footage")
+    x, y = view.to_region(pixel)
+    yield from person.hands.click(region.x + x, region.y + y)
+    yield from person.wait_for_job()
+
+
+def _cancel_eyedropper(person: Person) -> Steps[None]:
+    yield from person.hands.click_button("keymark.pick_marker_color")
+    expect(person.jobs(), "the eyedropper does not wait for a click")
+    yield from person.hands.press("ESC")
+    expect(not person.jobs(), "Esc does not cancel the eyedropper")
+
+
+def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
+    """A pixel [px] of the current frame where a person would click for a marker.
+
+    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe has
+    the middle of the limb.
+    """
+    known = person.known
+    style, keyframe = known.markers[number], known.keyframes[0]
+    expect(keyframe.index == person.scene.frame_current - known.frame_start, "not at the first keyframe")
+    points = dict(
+        zip(
+            known.body.skeleton.point_names, known.body.points(known.body.pose(keyframe.posture)), strict=True
+        )
+    )
+    middle = np.mean([points[name] for name in _ends(style.segment)], axis=0)
+    (centre,), _ = known.camera.project(middle[None])
+    clip = keymark("core.footage.clip").Clip.open(known.clip, fps=known.fps)
+    _, _, image = next(iter(clip.frames()))
+    rows, columns = np.mgrid[: image.shape[0], : image.shape[1]]
+    pixels = np.stack([columns, rows], axis=-1) + 0.5
+    near = np.linalg.norm(pixels - centre, axis=-1) < SEARCH_PX * image.shape[1]
+    wrong = np.linalg.norm(image[..., ::-1].astype(float) - style.color_srgb, axis=-1)
+    wrong[~near] = np.inf
+    return pixels[np.unravel_index(np.argmin(wrong), wrong.shape)]
+
+
+def _ends(segment: str) -> tuple[str, ...]:
+    part, _, side = segment.partition(".")
+    ends = {"trunk": ("hip.L", "hip.R", "shoulder.L", "shoulder.R"), "forearm": ("elbow", "wrist")}
+    ends |= {"shin": ("knee", "ankle"), "upper_arm": ("shoulder", "elbow"), "thigh": ("hip", "knee")}
+    return tuple(f"{name}.{side}" if side else name for name in ends[part])

@@ -1,0 +1,67 @@
+"""The session's middle: keyframes and the reconstruction."""
+
+import bpy
+from driver import JOB_PATIENCE_S, Steps, expect, until
+from person import Person, keymark
+
+
+def keyframes(person: Person) -> Steps[None]:
+    """Propose frames, go to one of them, and pose and store the keyframes."""
+    propose = "keymark.propose_keyframes"
+    yield from person.changes_nothing("cancelling the proposal", lambda: _cancelled(person, propose))
+    yield from person.undoable("proposing keyframes", lambda: _job(person, propose))
+    expect(len(person.take.proposals) >= 2, "no keyframes were proposed")
+    for direction in ("NEXT", "PREVIOUS"):
+        before = person.scene.frame_current
+        yield from person.hands.click_button("keymark.jump_to_proposal", f"direction='{direction}'")
+        expect(person.scene.frame_current != before, f"{direction} does not leave frame {before}")
+    for number, keyframe in enumerate(person.known.keyframes):
+        frame = keyframe.index + person.known.frame_start
+        person.scene.frame_set(frame)
+        keymark("operators.bridge.pose").write_posture(person.take.armature, keyframe.posture)
+        person.step_done(f"Pose frame {frame}")
+        if number < 2:
+            yield from person.undoable("storing a keyframe", lambda: _store(person))
+        else:
+            yield from _store(person)
+    yield from person.look("keyframes")
+
+
+def reconstruct(person: Person) -> Steps[None]:
+    """Reconstruct, cancelled by Esc once, then to the end."""
+    name = "keymark.reconstruct"
+    yield from person.changes_nothing("cancelling the reconstruction", lambda: _cancelled(person, name))
+    yield from person.hands.click_button(name)
+    yield from _until_under_way(person)
+    yield from person.look("reconstructing")
+    yield from person.wait_for_job()
+    expect(person.take.motion_action is not None, "there is no motion")
+    yield from person.look("reconstructed")
+    first = person.take.motion_action.name
+    count = len(bpy.data.actions)
+    yield from person.undoable("reconstructing again", lambda: _job(person, name))
+    expect(person.take.motion_action.name == first, "running again made another Action")
+    expect(len(bpy.data.actions) == count, "running again left another Action")
+
+
+def _store(person: Person) -> Steps[None]:
+    yield from person.hands.click_button("keymark.store_keyframe")
+
+
+def _until_under_way(person: Person) -> Steps[None]:
+    progress = bpy.context.window_manager.keymark_progress
+    yield from until(lambda: progress.fraction > 0.4 or not person.jobs(), "progress", JOB_PATIENCE_S)
+    expect(person.jobs(), "the job ended before it was half done")
+
+
+def _cancelled(person: Person, command: str) -> Steps[None]:
+    """Start a job by its button and press Esc while it runs."""
+    yield from person.hands.click_button(command)
+    expect(person.jobs(), f"{command} does not run")
+    yield from person.hands.press("ESC")
+    yield from until(lambda: not person.jobs(), "the job to stop")
+
+
+def _job(person: Person, command: str) -> Steps[None]:
+    yield from person.hands.click_button(command)
+    yield from person.wait_for_job()

@@ -1,0 +1,69 @@
+"""A person's session in a Blender with a screen, and its motion held against the command line's."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from installed_blender import Blender
+from keymark.core.body.human import HUMAN
+from keymark.core.score import Score, read_truth, score_points
+from keymark.core.take import read_take
+
+pytestmark = pytest.mark.ui
+
+GEOMETRY = ("0", "0", "1600", "1000")
+STEPS = ("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish")
+"""Each leaves at least one picture of this name."""
+AGREEMENT_MM = 1.5
+"""The eyedropper's colours are a level or two off the take's, and the armature's bones are float32."""
+PATIENCE_S = 3000.0
+
+
+def takes(repository: Path) -> dict[str, Path]:
+    """The takes of the session by name: those beside the repository, else the demonstration take."""
+    shared = repository.parent / "shared" / "takes"
+    found = {name: shared / name for name in ("aerobic", "real_balance")}
+    there = {name: folder for name, folder in found.items() if (folder / "take.json").is_file()}
+    return there or {"demo": repository / "presets" / "demo" / "aerobic"}
+
+
+TAKES = takes(Path(__file__).resolve().parents[3])
+
+
+@pytest.mark.parametrize("name", TAKES)
+def test_a_session_leads_to_the_command_lines_motion(
+    blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path, name: str
+) -> None:
+    """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does."""
+    folder = repository / "build" / "screenshots" / name
+    script = Path(__file__).with_name("session.py")
+    done = blender_on_screen.run(
+        *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
+        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--", TAKES[name], folder),
+        patience_s=PATIENCE_S,
+    )
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    assert "Traceback" not in done.stdout + done.stderr, done.stdout[-4000:] + done.stderr[-4000:]
+    assert "The script went through" in done.stdout
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in STEPS if f"_{step}" not in pictures] == []
+
+    output = tmp_path / "out"
+    words = ["convert", TAKES[name], "--output", output, "--quiet", "--no-report"]
+    done = blender.run("--command", "keymark", *words)
+    assert done.returncode == 0, done.stdout + done.stderr
+    by_hand, by_command = (
+        _score(file, TAKES[name]) for file in (folder / "motion.json", output / "motion.json")
+    )
+    assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
+    assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
+
+
+def _score(motion: Path, folder: Path) -> Score:
+    take = read_take(folder)
+    points = json.loads(motion.read_text(encoding="utf-8"))["points"]
+    places = np.array([points[name] for name in HUMAN.point_names]).swapaxes(0, 1)
+    truth = read_truth(folder / "truth.json", take.frame_start, len(places))
+    return score_points(places, truth, take.keyframe_indices, take.camera)
