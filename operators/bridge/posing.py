@@ -148,7 +148,7 @@ def fit_to_frame(
 
 
 def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> Belief:
-    """About the shown posture where it stands at the performer already, as measured; else one placed there."""
+    """About the shown posture if it stands at the performer already, as measured; else one placed there."""
     regions = frame.regions()
     placed = posed_standing(frame, model.body, regions)
     both = Posture.stack([shown, placed])
