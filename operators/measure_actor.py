@@ -4,8 +4,8 @@ import bpy
 
 from .failures import reported
 from .marker_styles import marker_styles
-from .requirements import all_met, bones_editable, camera, footage, idle
 from .pick_marker_color import NAVIGATION
+from .requirements import all_met, bones_editable, camera, footage, idle
 from .say import label, say
 from .takes import active_take, footage_of
 

@@ -248,9 +248,7 @@ def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.type
     assert read_body(other, HUMAN).actor.stature_m == pytest.approx(1.2, rel=1e-4)
 
 
-def test_a_moving_camera_sees_the_pose_from_where_it_is(
-    opened: bpy.types.Scene, wave_motion: Motion
-) -> None:
+def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
     """Keys on the camera that leave it where the footage was taken from in this frame alone."""
     take = active_take(opened)
     camera = take.camera
