@@ -102,19 +102,18 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
     """
     scene = take.id_data
     others = [other for other in scene.keymark.takes if other != take]
-    wanted_elsewhere = {other.camera for other in others if other.clip != clip}
-    own = take.camera
-    if own is not None and own not in wanted_elsewhere and own.name in scene.objects:
-        return own
-    solved = solved_camera(scene, clip)
-    if solved is not None:
-        return solved
-    for other in others:
-        if other.clip == clip and other.camera is not None and other.camera.name in scene.objects:
-            return other.camera
-    camera = scene.camera
-    free = camera is not None and camera.type == "CAMERA" and camera not in {o.camera for o in others}
-    return camera if free and not is_startup_camera(camera) else None
+    candidates = [
+        *([take.camera] if take.camera not in {each.camera for each in others if each.clip != clip} else []),
+        solved_camera(scene, clip),
+        *(other.camera for other in others if other.clip == clip),
+        *([scene.camera] if scene.camera not in {each.camera for each in others} else []),
+    ]
+    for camera in candidates:
+        if camera is None or camera.type != "CAMERA" or camera.name not in scene.objects:
+            continue
+        if camera == take.camera or not is_startup_camera(camera):
+            return camera
+    return None
 
 
 def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) -> float:
