@@ -81,12 +81,14 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
         return
     look_through(space, take.id_data, camera)
-    # A button's own region is the sidebar.
+    render = take.id_data.render
+    if render.resolution_y <= render.resolution_x or bpy.app.background:
+        return
+    # Blender fits pictures by their width, which shows an upright one in part. A button's region is its own.
     region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
-    if region is not None and not bpy.app.background:
-        with context.temp_override(region=region):
-            if bpy.ops.view3d.view_center_camera.poll():
-                bpy.ops.view3d.view_center_camera()  # the whole of an upright picture, too
+    with context.temp_override(region=region):
+        if bpy.ops.view3d.view_center_camera.poll():
+            bpy.ops.view3d.view_center_camera()
 
 
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
