@@ -84,7 +84,9 @@ def test_confidence_is_told_by_height_and_colour(take: bpy.types.PropertyGroup) 
     ground, bars = items_of(take, Fill)
     heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
     assert heights == pytest.approx(ROOMY.strip * made_up_review().confidence)
-    assert ground.corners[0, :, 0].min() <= bars.corners[..., 0].min() + 10.0
+    (across, up), reach = ground.corners[0].T, (VIEW.places([0.5]), VIEW.places([13.5]))
+    assert (across.min(), across.max()) == (pytest.approx(reach[0]), pytest.approx(reach[1]))
+    assert np.ptp(up) == pytest.approx(ROOMY.strip)
     assert bars.color[0, 2] > bars.color[6, 2] and bars.color[6, 0] > bars.color[0, 0]
     keep_review(take, replace(made_up_review(), confidence=np.full(13, np.nan)))
     assert items_of(take, Fill) == []

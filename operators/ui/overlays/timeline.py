@@ -174,9 +174,10 @@ def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> li
     x, values = joined(x[shown], confidence[shown], lowest=True)
     if not len(x):
         return []
-    height = timeline.sizes.strip * timeline.pixel
-    ground, _ = strip(x[[0, -1]], np.ones(2), timeline.strip_floor, height)
-    bars, colors = strip(x, values, timeline.strip_floor, height)
+    floor, height = timeline.strip_floor, timeline.sizes.strip * timeline.pixel
+    bars, colors = strip(x, values, floor, height)
+    (left, right), top = bars[[0, -1], [0, 1], 0], floor + height
+    ground = np.array([[(left, floor), (right, floor), (right, top), (left, top)]])
     return [Fill(ground, GROUND), Fill(bars, colors)]
 
 

@@ -23,13 +23,13 @@ class KEYMARK_UL_weak_frames(bpy.types.UIList):
         """Draw one frame."""
         row = layout.row(align=True)
         number = row.row()
-        number.ui_units_x = 2.6
+        number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
         words = pgettext_iface(reason.name)
         row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
         worth = row.row()
-        worth.ui_units_x = 2.4
+        worth.ui_units_x = 2.0
         if item.is_posed:
             worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
         else:
@@ -40,7 +40,6 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
     """Confidence, and the frames worth another keyframe."""
 
     bl_label = "Review"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw confidence and the list."""
