@@ -14,6 +14,7 @@ from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
+from keymark.operators.results import review_of
 from keymark.operators.reviewing import clear_review, show_review
 from keymark.operators.takes import active_take
 
@@ -28,6 +29,24 @@ def take(tiny_take: Take, wave_motion: Motion) -> bpy.types.PropertyGroup:
     take.motion_action = write_motion(take.armature, wave_motion)
     show_review(take, made_up_review())
     return take
+
+
+def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
+    """List, curves and what overlays draw from, all of the same motion; a second run replaces them."""
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
+    take = active_take(bpy.context.scene)
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    review = review_of(take)
+    assert take.review.frame_count == len(review.frames) == 13
+    assert take.review.confidence == pytest.approx(review.confidence.mean())
+    assert [weak.frame for weak in take.review.weak_frames] == [
+        review.frames[weak.index] for weak in review.weak_frames
+    ]
+    keys = curve(take, "Confidence").keyframe_points
+    assert [key.co[1] for key in keys] == pytest.approx(review.confidence, abs=1e-5)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    assert take.review.confidence < 0.0 and curve(take, "Confidence") is None
 
 
 def curve(take: bpy.types.PropertyGroup, name: str) -> bpy.types.FCurve | None:
