@@ -4,6 +4,7 @@ import bpy
 
 from .failures import reported
 from .requirements import actor, all_met, idle, motion
+from .say import say
 from .takes import active_take
 
 SAME_FRAME = 0.5
@@ -44,7 +45,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             review, frame = take.review, float(scene.frame_current_final)
             if self.where == "WEAK":
                 if not 0 <= review.active_weak_frame < len(review.weak_frames):
-                    self.report({"ERROR"}, "No weak frame is chosen; reconstruct the motion first")
+                    say(self, "ERROR", "No weak frame is chosen; reconstruct the motion first")
                     return {"CANCELLED"}
                 frame = float(review.weak_frames[review.active_weak_frame].frame)
             action = take.keyframe_action or new_keyframe_action(take.armature)
@@ -58,7 +59,12 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             for weak in review.weak_frames:
                 if abs(weak.frame - frame) < SAME_FRAME:
                     weak.is_posed = True
-            self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
+            say(
+                self,
+                "INFO",
+                "Stored the reconstructed pose at frame {frame:g}; now correct it",
+                frame=frame,
+            )
             return {"FINISHED"}
         return {"CANCELLED"}
 

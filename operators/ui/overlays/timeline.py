@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
 from ...results import Remembered, reading_of, review_of
+from ...say import label
 from ...takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
@@ -162,7 +162,7 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     line, area = graph(x, values, timeline.floor, timeline.height)
     items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
     if timeline.sizes == ROOMY:
-        words = pgettext_iface("Speed of markers")
+        words = label("Speed of markers")
         items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
     return items
 

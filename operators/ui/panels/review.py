@@ -1,8 +1,8 @@
 """How good the motion is, and where another keyframe helps."""
 
 import bpy
-from bpy.app.translations import pgettext_iface
 
+from ...say import label
 from ...takes import active_take
 from .base import TakePanel
 
@@ -26,7 +26,7 @@ class KEYMARK_UL_weak_frames(bpy.types.UIList):
         number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
-        words = pgettext_iface(reason.name)
+        words = label(reason.name)
         row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
         worth = row.row()
         worth.ui_units_x = 2.0
@@ -48,7 +48,7 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
             column.label(text="Reconstruct the motion first", icon="INFO")
             return
         if review.confidence >= 0.0:
-            words = pgettext_iface("Confidence {percent:.0f} %").format(percent=100.0 * review.confidence)
+            words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
             column.progress(factor=review.confidence, text=words, type="BAR")
         if not len(review.weak_frames):
             column.label(text="No frame needs another keyframe", icon="CHECKMARK")
