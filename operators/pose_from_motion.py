@@ -3,12 +3,10 @@
 import bpy
 
 from .failures import reported
+from .posed_frames import forget
 from .requirements import actor, all_met, idle, motion
 from .say import say
 from .takes import active_take
-
-SAME_FRAME = 0.5
-"""A weak frame nearer than this to the keyframe [frames] is posed by it."""
 
 
 class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
@@ -56,9 +54,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             assign_action(take.armature, action)
             whole = int(frame // 1.0)
             scene.frame_set(whole, subframe=frame - whole)
-            for weak in review.weak_frames:
-                if abs(weak.frame - frame) < SAME_FRAME:
-                    weak.is_posed = True
+            forget()
             say(
                 self,
                 "INFO",

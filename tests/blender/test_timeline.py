@@ -9,10 +9,11 @@ from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.take import Take
+from keymark.operators.posed_frames import is_posed
 from keymark.operators.results import keep_reading, keep_review
 from keymark.operators.takes import active_take
 from keymark.operators.ui.overlays.picture import Fill, Label, Stroke
-from keymark.operators.ui.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, posed, relative
+from keymark.operators.ui.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
 from keymark.operators.ui.overlays.timeline_figures import believed_color, graph, in_view, joined, strip
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -56,7 +57,7 @@ def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
     (outline,), (filled,) = items_of(take, Stroke), items_of(take, Fill)
     assert len(outline.segments) == 3 * 4
     assert filled.corners.mean(axis=1)[:, 0] == pytest.approx([30.0, 90.0])
-    assert posed(take, np.array([1.0, 4.0, 7.4])).tolist() == [True, False, True]
+    assert [is_posed(take, frame) for frame in (1.0, 4.0, 7.4)] == [True, False, True]
     bpy.context.scene.keymark.timeline.show_proposals = False
     assert items_of(take, Fill) == []
 
@@ -97,7 +98,7 @@ def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -
     for frame in (4.0, 9.0):
         take.review.weak_frames.add().frame = frame
     assert len(items_of(take, Fill)[0].corners) == 2
-    take.review.weak_frames[0].is_posed = True
+    take.review.weak_frames[0].frame = 7.0  # where a keyframe is
     (triangle,) = items_of(take, Fill)[0].corners
     assert triangle[0, 0] == pytest.approx(110.0) and triangle[0, 1] < triangle[1:, 1].min()
 

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...posed_frames import is_posed
 from ...say import label
 from ...takes import active_take
 from .base import TakePanel
@@ -30,7 +31,7 @@ class KEYMARK_UL_weak_frames(bpy.types.UIList):
         row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
         worth = row.row()
         worth.ui_units_x = 2.0
-        if item.is_posed:
+        if is_posed(active_take(context.scene), item.frame):
             worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
         else:
             worth.progress(factor=item.strength, text="", type="BAR")

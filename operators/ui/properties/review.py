@@ -29,9 +29,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
     )
-    is_posed: bpy.props.BoolProperty(
-        name="Posed", description="A keyframe was added here since the reconstruction"
-    )
 
     def go_to(self, scene: bpy.types.Scene) -> None:
         """Let the scene show this frame."""
