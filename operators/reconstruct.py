@@ -51,7 +51,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
-        from ..core.progress import Progress, stretch
+        from ..core.progress import stretch
         from ..core.reconstruct import check_reconstructible, read_footage, reconstruct
         from ..core.review import review
         from .bridge.frame_times import scene_frames
@@ -69,8 +69,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
         self.preview = LivePreview(scene, armature, frames) if watched else None
         result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
-        yield Progress("Judging the motion", SOLVED)
-        return Outcome(identifier, frames, result, review(take, result, frames), (*notes, *result.notes))
+        judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
+        return Outcome(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
         """Let the actor follow."""
