@@ -7,21 +7,14 @@ import bpy
 from .job_operator import JobOperator
 from .marker_readouts import look_at_markers, write_readouts
 from .marker_styles import picked_styles
-from .requirements import all_met, footage, idle, markers
+from .requirements import a_color, all_met, footage, idle, markers
 from .say import say
-from .takes import active_take, find_take, footage_of
+from .takes import active_take, footage_of
 
 if TYPE_CHECKING:
     from ..core.footage.marker_check import MarkerCheck
     from ..core.footage.marker_style import MarkerStyle
     from ..core.progress import Job
-
-
-def a_color(context: bpy.types.Context) -> str | None:
-    """A marker has a color."""
-    take = find_take(context.scene)
-    picked = take is not None and any(marker.is_picked for marker in take.markers)
-    return None if picked else "Pick the color of a marker first"
 
 
 class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):

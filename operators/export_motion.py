@@ -7,6 +7,7 @@ import bpy
 from .export_formats import FORMATS
 from .failures import reported
 from .requirements import actor, all_met, idle, motion
+from .say import say
 from .takes import active_take
 
 
@@ -70,7 +71,7 @@ class KEYMARK_OT_export_motion(bpy.types.Operator):
             path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), FORMATS[self.format].suffix))
             span = int(frames[0]), int(frames[-1])
             export_motion(context.scene, take.armature, action, span, self.format, path)
-            self.report({"INFO"}, f"Wrote {path}")
+            say(self, "INFO", "Wrote {path}", path=path)
             return {"FINISHED"}
         return {"CANCELLED"}
 

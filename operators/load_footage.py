@@ -54,14 +54,15 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         """Load it."""
         with reported(self):
             from .bridge.scene_footage import load_footage
-            from .take_footage import give_footage, lens_is_guess
+            from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for
 
             scene = context.scene
             path = Path(bpy.path.abspath(self.filepath))
             clip = load_footage(path)
             take = None if self.as_new_take else find_take(scene)
-            take = take or add_take(scene, path.stem)
+            take = take or add_take(scene, name_for(path))
             give_footage(take, clip)
+            look_through_camera(context, take)
             say(
                 self,
                 "INFO",

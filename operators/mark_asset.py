@@ -4,6 +4,7 @@ import bpy
 
 from .failures import reported
 from .requirements import actor, all_met, idle, motion
+from .say import say
 from .takes import active_take
 
 
@@ -33,7 +34,7 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
             details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
             mark_action(action, details, picture)
             _refresh_asset_browsers(context)
-            self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
+            say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -111,6 +111,6 @@ def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
 
 
 def _key(take: bpy.types.PropertyGroup) -> Key:
-    """The footage, and the names and colors of the markers that have one."""
+    """The footage's file, and the names and colors of the markers that have one."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
-    return take.clip.filepath, picked
+    return bpy.path.abspath(take.clip.filepath, library=take.clip.library), picked

@@ -17,7 +17,7 @@ def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: B
         bpy.ops.object.mode_set(mode="OBJECT")
     for selected in list(layer.objects.selected):
         selected.select_set(False, view_layer=layer)
-    armature_object = build_armature(scene, body, take.name)
+    armature_object = build_armature(scene, body, f"{take.name} Actor")
     armature_object.select_set(True, view_layer=layer)
     layer.objects.active = armature_object
     take.armature = armature_object

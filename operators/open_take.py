@@ -45,11 +45,14 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
+            from .take_footage import look_through_camera
             from .take_scene import read_for_scene, show_take
+            from .takes import active_take
 
             folder = _take_folder(self.filepath)
             opened = read_for_scene(folder, self.keyframes)
             show_take(context, opened)
+            look_through_camera(context, active_take(context.scene))
             for note in opened.notes:
                 self.report({"WARNING"}, note)
             count = len(opened.take.keyframes)

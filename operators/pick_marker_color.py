@@ -33,6 +33,11 @@ NAVIGATION = {
     ),
     *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
 }
+REQUESTS = {
+    ".L": "Click on the marker: {segment}, the performer's own left",
+    ".R": "Click on the marker: {segment}, the performer's own right",
+}
+MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +96,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         if segment is None:
             self.report({"ERROR"}, "Every body part has a marker already")
             return {"CANCELLED"}
-        sentence = label(
-            "Click on the {segment}", segment=bpy.app.translations.pgettext_iface(segment_title(segment))
-        )
+        sentence = label(REQUESTS.get(segment[-2:], MIDDLE_REQUEST), segment=label(segment_title(segment)))
         context.window_manager.keymark_progress.show("", 0.0)
         context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
         context.window.cursor_modal_set("EYEDROPPER")

@@ -39,6 +39,20 @@ def markers(context: bpy.types.Context) -> str | None:
     return None if take and len(take.markers) else "Add the markers that the performer wears first"
 
 
+def a_color(context: bpy.types.Context) -> str | None:
+    """A marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and any(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the color of a marker first"
+
+
+def all_colors(context: bpy.types.Context) -> str | None:
+    """Every marker was given a color."""
+    take = find_take(context.scene)
+    picked = take is not None and all(marker.is_picked for marker in take.markers)
+    return None if picked else "Pick the colors of all markers first, or remove those that have none"
+
+
 def keyframes(context: bpy.types.Context) -> str | None:
     """There is an Action with keyframes."""
     take = find_take(context.scene)

@@ -7,6 +7,7 @@ import bpy
 from .failures import reported
 from .marker_styles import marker_styles
 from .requirements import actor, all_met, footage, idle, markers
+from .say import say
 from .takes import active_take, footage_of
 
 
@@ -55,7 +56,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
             write_take(take, folder)
             for note in notes:
                 self.report({"WARNING"}, note)
-            self.report({"INFO"}, f"Saved the take in {folder}")
+            say(self, "INFO", "Saved the take in {folder}", folder=folder)
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -2,10 +2,9 @@
 
 import bpy
 
-from .check_markers import a_color
 from .failures import reported
 from .marker_previews import look_at_frame, preview_of
-from .requirements import all_met, footage, idle, markers
+from .requirements import a_color, all_met, footage, idle, markers
 from .takes import active_take
 
 

@@ -1,6 +1,7 @@
 """A take's footage in its scene: which camera a clip goes behind, and what is known of its file."""
 
 from itertools import islice
+from pathlib import Path
 
 import bpy
 
@@ -8,8 +9,11 @@ from ..core.errors import InputError
 from .bridge.attach_footage import attach_footage, is_guess
 from .bridge.footage import clip_path
 from .bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
+from .show_view import look_through
 from .takes import find_take, footage_of
 
+PLAIN_NAME = "clip"
+"""What the clip in every take's folder is called."""
 LOOKED_AT = 90
 """Frames whose times tell whether the rate varies; a phone's rate varies from the start."""
 
@@ -66,6 +70,25 @@ def is_missing(clip: bpy.types.MovieClip | None) -> bool:
     return False
 
 
+def name_for(path: Path) -> str:
+    """What to call a take of a clip: as its file, or as its folder where the file is just called clip."""
+    return path.parent.name if path.stem == PLAIN_NAME and path.parent.name else path.stem
+
+
+def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    """Let the viewport at work show the footage: otherwise nothing of it would be seen."""
+    space, camera = context.space_data, take.camera
+    if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
+        return
+    look_through(space, take.id_data, camera)
+    # A button's own region is the sidebar.
+    region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
+    if region is not None and not bpy.app.background:
+        with context.temp_override(region=region):
+            if bpy.ops.view3d.view_center_camera.poll():
+                bpy.ops.view3d.view_center_camera()  # the whole of an upright picture, too
+
+
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
     """Whether the take's camera still has the lens that was guessed."""
     return take.camera is not None and is_guess(take.camera.data, take.guessed_lens_mm)
@@ -80,14 +103,15 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
     scene = take.id_data
     others = [other for other in scene.keymark.takes if other != take]
     wanted_elsewhere = {other.camera for other in others if other.clip != clip}
-    if take.camera is not None and take.camera not in wanted_elsewhere:
-        return take.camera
+    own = take.camera
+    if own is not None and own not in wanted_elsewhere and own.name in scene.objects:
+        return own
     solved = solved_camera(scene, clip)
     if solved is not None:
         return solved
-    shared = next((other.camera for other in others if other.clip == clip and other.camera), None)
-    if shared is not None:
-        return shared
+    for other in others:
+        if other.clip == clip and other.camera is not None and other.camera.name in scene.objects:
+            return other.camera
     camera = scene.camera
     free = camera is not None and camera.type == "CAMERA" and camera not in {o.camera for o in others}
     return camera if free and not is_startup_camera(camera) else None

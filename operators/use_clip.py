@@ -1,5 +1,7 @@
 """Use a clip that Blender has already."""
 
+from pathlib import Path
+
 import bpy
 
 from .requirements import all_met, idle
@@ -36,7 +38,7 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it behind the take's camera."""
-        from .take_footage import give_footage
+        from .take_footage import give_footage, look_through_camera, name_for
 
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
@@ -50,7 +52,9 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
             )
             return {"CANCELLED"}
         take = None if self.as_new_take else find_take(scene)
-        give_footage(take or add_take(scene, clip.name.rpartition(".")[0] or clip.name), clip)
+        take = take or add_take(scene, name_for(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
+        give_footage(take, clip)
+        look_through_camera(context, take)
         return {"FINISHED"}
 
 

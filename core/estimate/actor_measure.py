@@ -10,7 +10,7 @@ to each other says more. Arms that point anywhere say nothing of their lengths; 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..body.actor import Actor
 from ..body.human import HUMAN
@@ -90,8 +90,8 @@ def measure_standing(
     camera: Camera,
     frame: int,
     stature_m: float,
-    crown_px: Array,
-    ground_px: Array,
+    crown_px: ArrayLike,
+    ground_px: ArrayLike,
     regions: RegionTracks | None = None,
     segments: tuple[str, ...] = (),
     arms_stretched: bool = False,

@@ -93,16 +93,20 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
         if not count:
             return
         most = max(most, count)
-        yield 1.0 - count / most
-        for group, frames in enumerate(_places_for_keys(body, off)):
+        done = 1.0 - count / most
+        blame = np.empty((len(body.groups), len(body.times)))
+        for group in range(len(body.groups)):
+            blame[group] = body.blame(group, off)
+            yield done
+        for group, frames in enumerate(_places_for_keys(body, blame)):
             if len(frames):
                 body.insert(group, frames, everywhere=number < ROUNDS_EVERYWHERE)
+                yield done
         body.show()
 
 
-def _places_for_keys(body: KeyedBody, off: NDArray[np.bool_]) -> list[Indices]:
+def _places_for_keys(body: KeyedBody, blame: Array) -> list[Indices]:
     """For each group the frames that should become keys, at most one between two keys."""
-    blame = np.stack([body.blame(group, off) for group in range(len(body.groups))])
     most = blame.max(axis=0)
     places = []
     for spline, own in zip(body.splines, blame, strict=True):

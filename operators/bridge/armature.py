@@ -41,6 +41,7 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
     _add_bones(scene, armature_object, body, models)
     armature.display_type = "OCTAHEDRAL"
     armature_object.show_in_front = True
+    armature_object.display_type = "WIRE"  # the footage is to be seen through it
     for side, (title, palette) in COLLECTIONS.items():
         collection = armature.collections.new(title)
         for model in models:

@@ -71,7 +71,8 @@ def read_values(
 ) -> Generator[float, None, list[Array]]:
     """What an Action's curves say at scene frames, bone by bone; the scene is not touched.
 
-    Channels without a curve have the value that the armature has now, as when Blender plays the Action.
+    Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
+    plays the Action.
 
     Args:
         armature_object: The actor.
@@ -90,7 +91,7 @@ def read_values(
     columns: list[list[Array]] = [[] for _ in rig.bones]
     for number, (bone, _, path, index) in enumerate(channels):
         fcurve = channelbag.fcurves.find(path, index=index) if channelbag is not None else None
-        if fcurve is None:
+        if fcurve is None or fcurve.mute:
             unkeyed = armature_object.path_resolve(path)[index]
             columns[bone].append(np.full(len(frames), float(unkeyed)))
         else:

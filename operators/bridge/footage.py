@@ -84,7 +84,9 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     """
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
-        raise InputError(f"{path}: the footage is not there; load it again from where it is now")
+        raise InputError(
+            f"{path}: the footage is not there; say where it is now with Find Clip in the Footage panel"
+        )
     return path
 
 

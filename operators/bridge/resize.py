@@ -5,12 +5,15 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from .actor_lengths import skeleton_bones
 from .bones import bone_models
 from .object_space import object_space
+
+Array = NDArray[np.float64]
 
 
 def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
@@ -32,7 +35,9 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
     _check_own(armature_object)
     segments = {segment.name: segment for segment in body.skeleton.segments}
     bones = armature_object.data.bones
-    heads, tails, frames = {}, {}, {}
+    heads: dict[str, Array] = {}
+    tails: dict[str, Array] = {}
+    frames: dict[str, Array] = {}
     for model in models:
         bone = bones[model.name]
         frames[model.name] = np.array(bone.matrix_local, dtype=np.float64)[:3, :3] @ model.axes.T

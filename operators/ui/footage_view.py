@@ -58,7 +58,7 @@ def footage_view(
     space = area.spaces.active
     if area.type == "VIEW_3D":
         return _camera_view(scene, take, space, region)
-    if area.type == "CLIP_EDITOR" and space.clip == take.clip:
+    if area.type == "CLIP_EDITOR" and space.clip == take.clip and space.view == "CLIP":
         return _clip_view(scene, take, space, region)
     return None
 

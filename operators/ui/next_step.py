@@ -8,25 +8,25 @@ FEWEST_KEYFRAMES = 2
 
 
 def next_step(take: bpy.types.PropertyGroup) -> str:
-    """One sentence, to be translated where it is drawn."""
+    """A few words that fit in a narrow sidebar, to be translated where they are drawn."""
     if take.clip is None:
         return "Next: load the footage"
     if take.clip_state.missing:
         return "Next: find the clip's file"
     if not len(take.markers):
-        return "Next: add the markers that the performer wears"
+        return "Next: add the markers"
     if any(not marker.is_picked for marker in take.markers):
-        return "Next: pick each marker's color in the footage"
-    if take.armature is None:
-        return "Next: enter the performer's height and build the actor"
+        return "Next: pick the markers' colors"
+    if take.armature is None or take.armature.name not in take.id_data.objects:
+        return "Next: build the actor"
     count = posed_count(take)
     if not count and not len(take.proposals):
         return "Next: propose keyframes"
     if count < FEWEST_KEYFRAMES:
-        return "Next: pose the actor over the footage and store keyframes"
+        return "Next: pose and store keyframes"
     if take.motion_action is None:
         return "Next: reconstruct the motion"
-    return "Next: review the motion, or finish it"
+    return "Next: review, or finish"
 
 
 def posed_count(take: bpy.types.PropertyGroup) -> int:

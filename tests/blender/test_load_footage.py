@@ -99,6 +99,15 @@ def test_choosing_a_camera_puts_the_clip_behind_it(loaded: bpy.types.PropertyGro
     assert other.data.background_images[0].clip == loaded.clip
 
 
+def test_a_camera_that_was_deleted_is_replaced(loaded: bpy.types.PropertyGroup) -> None:
+    """Blender keeps a deleted object as long as something points to it; nobody looks through it."""
+    deleted = loaded.camera
+    bpy.context.scene.collection.objects.unlink(deleted)
+    bpy.ops.keymark.use_clip(clip=loaded.clip.name)
+    assert loaded.camera != deleted
+    assert loaded.camera.name in bpy.context.scene.objects
+
+
 def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
     loaded: bpy.types.PropertyGroup, tmp_path: Path
 ) -> None:
@@ -118,7 +127,7 @@ def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
     )
     assert KEYMARK_OT_load_footage.invoke(dropped, context, None) == {"FINISHED"}
     takes = context.scene.keymark.takes
-    assert [take.name for take in takes] == ["clip", "dropped"]
+    assert [take.name for take in takes] == ["tiny", "dropped"]
     assert takes[0].clip == first
 
 

@@ -1,11 +1,18 @@
 """Drawing into a picture off the screen, where this Blender can do that without a window."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
 
 import gpu
 import numpy as np
 import pytest
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.mask_outlines import mask_outlines
+from keymark.operators.marker_previews import ColorMask, Preview
+from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import drawing
+from keymark.operators.ui.overlays import mask as mask_overlay
 from mathutils import Matrix
 
 WIDTH, HEIGHT = 96, 64
@@ -76,16 +83,14 @@ def test_polygons_are_filled_and_unfinished_ones_left_out(drawn: Drawn) -> None:
     assert one[40, 70, 3] == 0.0
 
 
-def test_a_picture_stands_upright(drawn: Drawn) -> None:
-    """Its top row, given first, is drawn at the top."""
-    pixels = np.zeros((2, 2, 4))
-    pixels[0, 0] = (1.0, 0.0, 0.0, 1.0)
-    pixels[1, 1] = (0.0, 0.0, 1.0, 1.0)
-    corners = [[0, 0], [WIDTH, 0], [WIDTH, HEIGHT], [0, HEIGHT]]
-    picture = drawn(lambda: drawing.image(drawing.texture(pixels), corners))
-    assert picture[-4, 4, 0] > 0.9
-    assert picture[4, -4, 2] > 0.9
-    assert picture[4, 4, 3] < 0.1
+def test_a_texture_begins_at_the_bottom(drawn: Drawn) -> None:
+    """The top row of the picture, given first, is the texture's last."""
+    pixels = np.zeros((3, 2, 4))
+    pixels[0, 1] = (1.0, 0.0, 0.5, 1.0)
+    rows: list[list[float]] = []
+    drawn(lambda: rows.extend(drawing.texture(pixels).read().to_list()))
+    assert np.ravel(rows)[-4:] == pytest.approx([255, 0, 127.5, 255], abs=1)
+    assert np.count_nonzero(rows) == 3
 
 
 def test_words_are_light_with_a_dark_outline(drawn: Drawn) -> None:
@@ -116,3 +121,44 @@ def test_fading_keeps_the_hue() -> None:
     """A marker's colour has no alpha of its own."""
     assert drawing.faded((0.2, 0.4, 0.6), 0.5) == (0.2, 0.4, 0.6, 0.5)
     assert drawing.faded((0.2, 0.4, 0.6, 0.5), 0.5) == (0.2, 0.4, 0.6, 0.25)
+
+
+@pytest.mark.parametrize("distortion", [None, (-0.2, 0.05, 0.0)])
+def test_masks_lie_where_the_view_shows_their_pixels(
+    drawn: Drawn, camera: Camera, distortion: tuple[float, float, float] | None
+) -> None:
+    """One corner of the footage is a marker's; the picture is bent as the view bends the footage."""
+    lens = None if distortion is None else replace(camera, matrix_world=np.eye(4), distortion=distortion)
+    view = FootageView(SimpleNamespace(), (160, 120), np.array([8.0, 60.0]), np.array([80.0, -56.0]), lens)
+    coverage = np.zeros((30, 40), dtype=np.float32)
+    coverage[4:12, 4:14] = 1.0
+    mask = ColorMask("trunk", (0.0, 1.0, 0.0), coverage, mask_outlines(coverage, 4.0))
+    preview = Preview(SimpleNamespace(), ("trunk",), (mask.color,), masks=(mask,))
+    picture = drawn(lambda: mask_overlay.draw_masks(preview, view))
+    inside = view.to_region([[36.0, 32.0], [22.0, 22.0], [48.0, 42.0]])
+    outside = view.to_region([[100.0, 100.0], [74.0, 32.0], [130.0, 20.0]])
+    for x, y in inside:
+        assert picture[int(y), int(x), 1] > 0.4
+    for x, y in outside:
+        assert picture[int(y), int(x), 1] < 0.05 and picture[int(y), int(x), 3] > 0.3
+    x, y = view.to_region(mask.outlines[0][0])
+    near = picture[int(y) - 2 : int(y) + 3, int(x) - 2 : int(x) + 3]
+    assert near[..., :3].min(axis=-1).max() > 0.8  # the outline is white
+
+
+def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
+    """And let go of when the extension is switched off."""
+    view = FootageView(SimpleNamespace(), (40, 30), np.array([8.0, 60.0]), np.array([80.0, -56.0]), None)
+    masks = [
+        (ColorMask("a", (1.0, 0.0, 0.0), np.full((30, 40), level, dtype=np.float32), []),)
+        for level in (0.0, 1.0)
+    ]
+    preview = Preview(SimpleNamespace(), ("a",), ((1.0, 0.0, 0.0),), masks=masks[0])
+    drawn(lambda: mask_overlay.draw_masks(preview, view))
+    first = mask_overlay._drawn[0][1]
+    drawn(lambda: mask_overlay.draw_masks(preview, view))
+    assert mask_overlay._drawn[0][1] is first
+    preview.masks = masks[1]
+    assert drawn(lambda: mask_overlay.draw_masks(preview, view))[32, 48, 0] > 0.5
+    mask_overlay.unregister()
+    assert not mask_overlay._drawn

@@ -10,7 +10,7 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.takes import VERSION, active_take, add_take
 from keymark.operators.upgrade import is_newer
 
-RIG = "tiny"
+RIG = "tiny Actor"
 
 
 def open_take(take: Take) -> bpy.types.PropertyGroup:

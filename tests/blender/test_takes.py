@@ -54,8 +54,9 @@ def test_a_take_opened_twice_has_everything_twice_but_the_clip(tiny_take: Take) 
     assert takes[0].clip == takes[1].clip
     for name in ("armature", "camera", "keyframe_action"):
         assert getattr(takes[0], name) != getattr(takes[1], name)
-    assert [take.armature.name for take in takes] == ["tiny", "tiny.001"]
-    assert [take.keyframe_action.name for take in takes] == ["tiny Keyframes", "tiny.001 Keyframes"]
+    assert [take.armature.name for take in takes] == ["tiny Actor", "tiny.001 Actor"]
+    names = [take.keyframe_action.name for take in takes]
+    assert names == ["tiny Actor Keyframes", "tiny.001 Actor Keyframes"]
 
 
 def test_switching_brings_clip_camera_rate_and_range(tiny_take: Take, tmp_path: Path) -> None:
@@ -99,7 +100,7 @@ def test_another_performer_shares_clip_and_camera_only(tiny_take: Take) -> None:
     bpy.ops.keymark.keep_lens()
     assert first.guessed_lens_mm == 0.0
     bpy.ops.keymark.add_performer()
-    assert [take.name for take in scene.keymark.takes] == ["clip", "clip Performer 2", "clip Performer 3"]
+    assert [take.name for take in scene.keymark.takes] == ["tiny", "tiny Performer 2", "tiny Performer 3"]
 
 
 def test_another_clip_for_one_performer_leaves_the_others_camera(tiny_take: Take, tmp_path: Path) -> None:
@@ -123,7 +124,8 @@ def test_two_performers_are_reconstructed_independently(tiny_take: Take) -> None
         assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
     first, second = scene.keymark.takes
     assert first.motion_action != second.motion_action
-    assert [take.motion_action.name for take in (first, second)] == ["tiny Motion", "tiny.001 Motion"]
+    names = [take.motion_action.name for take in (first, second)]
+    assert names == ["tiny Actor Motion", "tiny.001 Actor Motion"]
     before = first.armature.animation_data.action, len(first.keyframe_action.slots)
     scene.frame_set(4)
     second.armature.pose.bones["forearm.L"].rotation_euler.x = 1.0
@@ -182,6 +184,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
     assert [word in sentence for word, sentence in zip(words, said, strict=True)] == [True] * 7, said
     take.motion_action = take.keyframe_action
     assert "review" in next_step(take)
+    assert max(map(len, said)) < 36  # the width of a sidebar that nobody has widened
     take.clip_state.missing = True
     assert "find the clip" in next_step(take)
 
@@ -195,5 +198,5 @@ def test_opening_and_removing_in_turn_keeps_every_take_whole(tiny_take: Take) ->
     scene.keymark.active_take = 1
     bpy.ops.keymark.remove_take()
     assert [take.stature for take in takes] == pytest.approx([1.5, 1.7])
-    assert [take.armature.name for take in takes] == ["tiny", "tiny.002"]
+    assert [take.armature.name for take in takes] == ["tiny Actor", "tiny.002 Actor"]
     assert np.array([len(take.markers) for take in takes]).tolist() == [5, 5]

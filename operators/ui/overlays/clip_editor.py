@@ -30,7 +30,7 @@ class ClipView:
     """Its focal length [px of the footage]."""
 
     def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
-        """Places (I, 13, 2) of the points in the region."""
+        """Places (I, 13, 2) of the points in the region; a moving camera's, each as its own frame saw it."""
         return self.footage.to_region(review.image_points[indices])
 
     def pixels_per_metre(self, review: "Review", index: int) -> Array:

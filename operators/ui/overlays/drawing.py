@@ -1,4 +1,4 @@
-"""Drawing into a region: lines, filled shapes, pictures and words, on Blender 4.5 to 5.2.
+"""Drawing into a region: lines, filled shapes and words, and pictures to draw, on Blender 4.5 to 5.2.
 
 To be called from a draw function of `registry`, which has switched blending on. Colours are red, green, blue
 and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first call: without a window a
@@ -111,29 +111,13 @@ def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
     """A picture on the graphics card; keep it, making one takes time.
 
     Args:
-        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first.
+        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first; the texture's own
+            coordinates begin at the bottom.
     """
     rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
     height, width, _ = rows.shape
     data = gpu.types.Buffer("FLOAT", rows.size, rows.ravel())
     return gpu.types.GPUTexture((width, height), format="RGBA8", data=data)
-
-
-def image(picture: gpu.types.GPUTexture, corners: ArrayLike, opacity: float = 1.0) -> None:
-    """Draw a picture into a four-sided place.
-
-    Args:
-        picture: What `texture` made.
-        corners: (4, 2) region pixels: bottom left, bottom right, top right, top left.
-        opacity: Its alpha is multiplied by this.
-    """
-    shader = gpu.shader.from_builtin("IMAGE_COLOR")
-    places = np.asarray(corners, dtype=np.float64)[[0, 1, 2, 0, 2, 3]]
-    ends = np.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]], dtype=np.float32)
-    batch = batch_for_shader(shader, "TRIS", {"pos": _positions(places), "texCoord": ends})
-    shader.uniform_sampler("image", picture)
-    shader.uniform_float("color", (1.0, 1.0, 1.0, opacity))
-    batch.draw(shader)
 
 
 def text(

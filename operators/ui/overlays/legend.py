@@ -60,7 +60,7 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
         strokes += [item for item in drawn if isinstance(item, Stroke)]
         fills += [item for item in drawn if isinstance(item, Fill)]
         indent = (SAMPLE + GAP_AFTER) * style.scale if drawn else 0.0
-        labels.append(Label(words, x + indent, base, style.color(MIDDLE)))
+        labels.append(Label(words, x + indent, base))
     edge = 0.5 * MARGIN * style.scale
     right = max(label.x + text_size(label.words)[0] for label in labels) + edge
     left, bottom, top = x - edge, y - edge, labels[-1].y + LINE * style.scale

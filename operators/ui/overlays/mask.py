@@ -48,10 +48,15 @@ def draw(context: bpy.types.Context) -> None:
         return
     view = footage_view(context.scene, take, context.area, context.region)
     if view is not None:
-        _picture(_texture(preview), view)
-        for mask in preview.masks:
-            _outlines(mask, view)
-        _names(preview.masks, view)
+        draw_masks(preview, view)
+
+
+def draw_masks(preview: Preview, view: FootageView) -> None:
+    """Draw what has the markers' colours, in the region of a view."""
+    _picture(_texture(preview), view)
+    for mask in preview.masks:
+        _outlines(mask, view)
+    _names(preview.masks, view)
 
 
 def tinted(masks: Sequence[ColorMask]) -> NDArray[np.float32]:
@@ -128,7 +133,7 @@ def free_height(
 @persistent
 def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Make the masks of the frame that is shown now."""
-    if not bpy.context.window_manager.keymark_show_masks:
+    if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
     try:
         look_at_frame(scene)

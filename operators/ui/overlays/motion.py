@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import bpy
 import numpy as np
-from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
 from ...results import review_of
+from ...say import label
 from ...takes import find_take
 from ..footage_view import FootageView
 from . import drawing
@@ -115,18 +115,18 @@ def _rows(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> t
         if settings.show_observed:
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:
-                words = pgettext_iface("Hidden: {markers}").format(markers=", ".join(hidden))
+                words = label("Hidden: {markers}", markers=", ".join(hidden))
                 rows.append((Sample.NONE, words))
-            rows.append((Sample.SOLID, pgettext_iface("Marker as seen")))
+            rows.append((Sample.SOLID, label("Marker as seen")))
         if settings.show_predicted:
-            rows.append((Sample.DASHED, pgettext_iface("Marker as the motion predicts it")))
+            rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
     if settings.show_skeleton:
-        rows.append((Sample.LEFT, pgettext_iface("Performer's left")))
-        rows.append((Sample.RIGHT, pgettext_iface("Performer's right")))
+        rows.append((Sample.LEFT, label("Performer's left")))
+        rows.append((Sample.RIGHT, label("Performer's right")))
         if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
-            rows.append((Sample.RING, pgettext_iface("Uncertain point")))
+            rows.append((Sample.RING, label("Uncertain point")))
     if settings.show_paths:
-        rows.append((Sample.PAST, pgettext_iface("Path so far")))
-        rows.append((Sample.FUTURE, pgettext_iface("Path to come")))
-        rows.append((Sample.DIAMOND, pgettext_iface("Keyframe")))
+        rows.append((Sample.PAST, label("Path so far")))
+        rows.append((Sample.FUTURE, label("Path to come")))
+        rows.append((Sample.DIAMOND, label("Keyframe")))
     return tuple(rows)

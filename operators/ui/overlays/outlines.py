@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
+from ...say import label
 from .drawing import INK
 from .figures import dashes, segments
 from .picture import Item, Label, Stroke
@@ -66,6 +66,6 @@ def predicted_outlines(
         items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
         if marker in hidden:
             x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
-            words = pgettext_iface("{marker} hidden").format(marker=review.marker_names[marker])
+            words = label("{marker} hidden", marker=review.marker_names[marker])
             items.append(Label(words, float(x), float(y), style.color(INK)))
     return items

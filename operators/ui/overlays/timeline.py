@@ -8,8 +8,8 @@ import numpy as np
 from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
-from ...results import review_of
-from ...takes import find_take
+from ...results import Remembered, reading_of, review_of
+from ...takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
 from .figures import diamonds, segments
@@ -19,26 +19,42 @@ from .timeline_figures import graph, in_view, joined, pointers, strip
 Array = NDArray[np.float64]
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
-MOST_GRAPH = 70.0
-"""Height of the graph where there is room [px], like the sizes that follow."""
-LEAST_GRAPH = 14.0
-RULER = 24.0
-STRIP = 9.0
-FOOT = 3.0
-GAP = 4.0
-DIAMOND = 5.0
-POINTER = 7.0
-HEADROOM = 16.0
-"""Between graph and ruler, for a triangle."""
-SPEED: Color = (0.35, 0.68, 0.92, 1.0)
-PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
-WEAK: Color = (0.95, 0.45, 0.15, 1.0)
-GROUND: Color = (0.0, 0.0, 0.0, 0.28)
 SAME_FRAME = 0.5
 """A key nearer than this to a proposal [frames] fills its diamond."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Sizes:
+    """How large things are drawn on a plain screen [px]."""
+
+    graph: float
+    """Most height of the graph."""
+    ruler: float
+    """Kept free at the top."""
+    headroom: float
+    """Between graph and ruler, for triangles and words."""
+    strip: float
+    foot: float
+    """Below the strip; Blender's scroll bar is there."""
+    gap: float
+    """Between strip and graph."""
+    diamond: float
+    pointer: float
+
+
+ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
+SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
+"""For a Timeline that shows no more than its ruler, as Blender 5 opens it."""
+LEAST_ROOMY = 16.0
+"""Height of a graph [px] for which the ruler is kept free."""
+LEAST = 6.0
+SPEED: Color = (0.35, 0.68, 0.92, 1.0)
+PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
+WEAK: Color = (0.95, 0.45, 0.15, 1.0)
+GROUND: Color = (0.0, 0.0, 0.0, 0.28)
+
+
+@dataclass(frozen=True)
 class Timeline:
     """Where frames lie in a region, and how high things are drawn."""
 
@@ -47,17 +63,35 @@ class Timeline:
     scale: float
     """Pixels of a frame."""
     width: float
-    strip_floor: float
-    floor: float
-    """Of the graph."""
     height: float
     """Of the graph."""
     pixel: float
     """Pixels of the screen for one of a plain one."""
+    sizes: Sizes
+
+    @property
+    def strip_floor(self) -> float:
+        """Where the strip stands."""
+        return self.sizes.foot * self.pixel
+
+    @property
+    def floor(self) -> float:
+        """Where the graph stands."""
+        return (self.sizes.foot + self.sizes.strip + self.sizes.gap) * self.pixel
+
+    @property
+    def top(self) -> float:
+        """Where the graph ends."""
+        return self.floor + self.height
 
     def places(self, frames: Array) -> Array:
         """Where frames (F,) lie [px]."""
         return self.origin + self.scale * np.asarray(frames, dtype=np.float64)
+
+    def fitting(self, x: Array, size: float) -> float:
+        """A mark's size [px], smaller where marks at places (N,) would cover each other."""
+        apart = float(np.median(np.diff(np.sort(x)))) if len(x) > 2 else np.inf
+        return float(np.clip(0.6 * apart, 0.4 * size * self.pixel, size * self.pixel))
 
 
 def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
@@ -65,14 +99,13 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
     # Places come as whole pixels: a long way apart, the scale is exact nonetheless.
     far = 100_000.0
     start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
-    strip_floor = FOOT * pixel
-    floor = strip_floor + (STRIP + GAP) * pixel
-    height = min(MOST_GRAPH * pixel, region.height - floor - (RULER + HEADROOM) * pixel)
-    if end <= start or height < LEAST_GRAPH * pixel:
-        return None
-    return Timeline(
-        0.5 * (start + end), (end - start) / (2.0 * far), region.width, strip_floor, floor, height, pixel
-    )
+    for sizes, least in ((ROOMY, LEAST_ROOMY), (SLIM, LEAST)):
+        taken = sizes.foot + sizes.strip + sizes.gap + sizes.headroom + sizes.ruler
+        height = min(sizes.graph, region.height / pixel - taken)
+        if height >= least and end > start:
+            middle, scale = 0.5 * (start + end), (end - start) / (2.0 * far)
+            return Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
+    return None
 
 
 def draw(context: bpy.types.Context) -> None:
@@ -92,11 +125,15 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     items: list[Item] = []
     speed = _speed(scene, take)
     if settings.show_speed and speed is not None:
-        items += _remembered(("speed", *speed[2], timeline), lambda: speed_graph(*speed[:2], timeline))
+        items += _drawn(
+            f"speed {speed.key} {timeline}", lambda: speed_graph(speed.frames, speed.values, timeline)
+        )
     review = review_of(take)
     if settings.show_confidence and review is not None and np.isfinite(review.confidence).any():
-        key = ("confidence", take.review_key, timeline)
-        items += _remembered(key, lambda: confidence_strip(review.frames, review.confidence, timeline))
+        items += _drawn(
+            f"confidence {take.review_key} {timeline}",
+            lambda: confidence_strip(review.frames, review.confidence, timeline),
+        )
     if settings.show_weak_frames:
         todo = [weak.frame for weak in take.review.weak_frames if not weak.is_posed]
         items += weak_pointers(np.array(todo, dtype=np.float64), timeline)
@@ -104,7 +141,7 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
         proposed = np.array([proposal.frame for proposal in take.proposals], dtype=np.float64)
         level = np.zeros(len(proposed))
         if speed is not None and settings.show_speed:
-            level = np.interp(proposed, speed[0], relative(speed[1]))
+            level = np.interp(proposed, speed.frames, relative(speed.values))
         items += proposals(proposed, level, posed(take, proposed), timeline)
     return items
 
@@ -123,12 +160,11 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     if len(x) < 2:
         return []
     line, area = graph(x, values, timeline.floor, timeline.height)
-    words = Label(
-        pgettext_iface("Speed of markers"),
-        6.0 * timeline.pixel,
-        timeline.floor + timeline.height + 3.0 * timeline.pixel,
-    )
-    return [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2), words]
+    items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
+    if timeline.sizes == ROOMY:
+        words = pgettext_iface("Speed of markers")
+        items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
+    return items
 
 
 def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> list[Item]:
@@ -138,7 +174,7 @@ def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> li
     x, values = joined(x[shown], confidence[shown], lowest=True)
     if not len(x):
         return []
-    height = STRIP * timeline.pixel
+    height = timeline.sizes.strip * timeline.pixel
     ground, _ = strip(x[[0, -1]], np.ones(2), timeline.strip_floor, height)
     bars, colors = strip(x, values, timeline.strip_floor, height)
     return [Fill(ground, GROUND), Fill(bars, colors)]
@@ -149,8 +185,8 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     if not len(frames):
         return []
     x = timeline.places(frames)
-    tip = timeline.floor + timeline.height + 1.0 * timeline.pixel
-    marks = pointers(x, tip, POINTER * timeline.pixel)
+    tip = timeline.top + timeline.pixel
+    marks = pointers(x, tip, timeline.fitting(x, timeline.sizes.pointer))
     foot = np.stack([x, np.full_like(x, timeline.strip_floor)], axis=-1)
     lines = np.stack([foot, np.stack([x, np.full_like(x, tip)], axis=-1)], axis=1)
     return [
@@ -165,7 +201,8 @@ def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Ti
     if not len(frames):
         return []
     heights = timeline.floor + timeline.height * level
-    marks = diamonds(np.stack([timeline.places(frames), heights], axis=-1), DIAMOND * timeline.pixel)
+    x = timeline.places(frames)
+    marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
     return [
         Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
         Fill(marks[done], PROPOSED),
@@ -183,14 +220,41 @@ def posed(take: bpy.types.PropertyGroup, frames: Array) -> NDArray[np.bool_]:
     return np.asarray((np.abs(frames[:, None] - keyed) < SAME_FRAME).any(axis=1))
 
 
-_known: dict[object, object] = {}
-"""What was computed for the last few views: a redraw without a change of view only draws."""
-MOST_KNOWN = 16
+@dataclass(frozen=True, eq=False)
+class Speed:
+    """V_sum on the time line."""
+
+    key: str
+    """Tells it from others."""
+    frames: Array
+    """(F,) scene frames."""
+    values: Array
+    """(F,) [px per frame]."""
 
 
-def _remembered(key: object, make: Callable[[], list[Item]]) -> list[Item]: ...
+_speeds: Remembered[Speed] = Remembered()
+_views: Remembered[list[Item]] = Remembered(16)
+"""What was last drawn: a redraw without a change of view only draws."""
 
 
-def _speed(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup
-) -> tuple[Array, Array, tuple[object, ...]] | None: ...
+def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | None:
+    """The markers' speed as last read; where that was lost, as the motion's review holds it."""
+    # Not before there is something to draw: Keymark registers without the libraries these need.
+    from ....core.prior.speed import marker_speed
+    from ...bridge.frame_times import scene_frames
+
+    reading, review = reading_of(take), review_of(take)
+    if reading is not None and take.clip is not None:
+        footage = footage_of(scene, take)
+        key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
+
+        def read() -> Speed:
+            frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
+            return Speed(key, frames, marker_speed(reading.tracks))
+
+        return _speeds.get(key, read)
+    return None if review is None else Speed(take.review_key, review.frames, review.speed)
+
+
+def _drawn(key: str, make: Callable[[], list[Item]]) -> list[Item]:
+    return _views.get(key, make) or []

@@ -3,6 +3,7 @@
 import bpy
 
 from ...export_formats import FORMATS
+from ...say import label
 from ...takes import active_take
 from .base import TakePanel
 
@@ -47,15 +48,14 @@ def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
         row.operator("keymark.show_action", text=text, depress=depress).which = which
     lines = column.column(align=True)
     lines.scale_y = 0.85
-    translated = bpy.app.translations.pgettext_iface
-    kept = translated("{after} keys instead of {before}")
-    lines.label(text=kept.format(after=settings.keys_after, before=settings.keys_before), icon="KEYFRAME_HLT")
+    kept = label("{after} keys instead of {before}", after=settings.keys_after, before=settings.keys_before)
+    lines.label(text=kept, icon="KEYFRAME_HLT", translate=False)
     if settings.furthest_mm > 0.0:
-        off = translated("At most {off:.1f} mm off").format(off=settings.furthest_mm)
-        lines.label(text=off, icon="DRIVER_DISTANCE")
+        off = label("At most {distance:.1f} mm off", distance=settings.furthest_mm)
+        lines.label(text=off, icon="DRIVER_DISTANCE", translate=False)
     if settings.rests:
-        rests = translated("Feet rest {count} times, planted").format(count=settings.rests)
-        lines.label(text=rests, icon="PINNED")
+        rests = label("Feet planted: {count} rests", count=settings.rests)
+        lines.label(text=rests, icon="PINNED", translate=False)
 
 
 class FinishPart(TakePanel):

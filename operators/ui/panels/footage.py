@@ -56,6 +56,8 @@ def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.t
     camera = take.camera
     column.prop(camera.data, "lens")
     column.prop(camera.data, "sensor_width")
+    if camera.name not in scene.objects:
+        column.label(text="Camera is not in the scene", icon="ERROR")
     if lens_is_guess(take):
         row = column.row(align=True)
         text = label("Lens is a guess: {lens:.1f} mm", lens=take.guessed_lens_mm)

@@ -48,6 +48,7 @@ class KEYMARK_PT_overlays(TakePanel, bpy.types.Panel):
     """What is drawn over the viewport."""
 
     bl_label = "Overlays"
+    bl_parent_id = "KEYMARK_PT_review"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -12,6 +12,7 @@ class KEYMARK_PT_turntable(TakePanel, bpy.types.Panel):
     """Views of the actor from other sides."""
 
     bl_label = "Turntable"
+    bl_parent_id = "KEYMARK_PT_review"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

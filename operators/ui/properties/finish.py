@@ -36,7 +36,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         default=True,
     )
     stray_mm: bpy.props.FloatProperty(
-        name="Stray (mm)",
+        name="Foot Stray (mm)",
         description="How far a resting foot may wander and still be held; raise it to hold feet that sway",
         default=25.0,
         min=1.0,

@@ -101,6 +101,7 @@ def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     expect(view is not None, "the viewport does not show the footage")
     x, y = view.to_region(pixel)
     yield from person.hands.click(region.x + x, region.y + y)
+    yield from person.wait_for_job()
 
 
 def _cancel_eyedropper(person: Person) -> Steps[None]:

@@ -1,0 +1,144 @@
+"""From a reconstructed motion in its Action to the final one: feet planted, few keys."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.human import HUMAN
+from ...core.body.kinematics import Body
+from ...core.finish.contacts import Contact
+from ...core.finish.hermite import Spline
+from ...core.finish.key_reduction import reduce_keys
+from ...core.finish.planted_feet import plant_feet
+from ...core.finish.rig import Rig
+from ...core.progress import Job, Progress, within
+from .actor_lengths import read_body
+from .final_motion import (
+    furthest_from,
+    motion_frames,
+    posed_positions,
+    read_values,
+    shown_postures,
+    tolerances,
+    with_planted_legs,
+)
+from .rig import read_rig
+
+Array = NDArray[np.float64]
+Note = tuple[str, dict[str, Any]]
+"""A sentence's template, and what fills its braces."""
+
+READ, SEEN, PLANTED = 0.1, 0.3, 0.4
+"""Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
+HELD = 0.2
+"""Share of the tolerance that is left to an ankle that rests: few keys must not make it slide again."""
+NOTICEABLE_M = 0.005
+"""Distance [m] between a pose and its nearest posture that the animator is told of."""
+BEYOND = (
+    "The motion goes up to {distance:.0f} mm beyond what the skeleton's legs can do; planting the feet uses "
+    "the nearest posture"
+)
+NO_REST = "No foot rests long enough to be planted; raise Foot Stray to hold feet that sway"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the animator wants of the final motion."""
+
+    tolerance_m: float | None
+    """How far the body may be off [m]; None for a key on every frame."""
+    whole_pose: bool
+    """Whether all bones are keyed on the same frames."""
+    stray_m: float | None
+    """How far a resting foot may wander and still be held [m]; None to leave feet alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A finished motion that is not written yet."""
+
+    body: Body
+    rig: Rig
+    frames: Array
+    """(F,) scene frames."""
+    motion: Sequence[Array] | Sequence[Spline]
+    """For each bone of the rig its values on every frame, or few keys."""
+    furthest_m: float
+    """The largest distance that leaving out keys makes [m]."""
+    contacts: tuple[Contact, ...]
+    """Where which foot was planted."""
+    notes: tuple[Note, ...]
+
+    @property
+    def keys_before(self) -> int:
+        """Keys of a motion with all of them."""
+        channels = sum((held.values if isinstance(held, Spline) else held).shape[1] for held in self.motion)
+        return int(channels * len(self.frames))
+
+
+def finish_motion(
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    keyframe_action: bpy.types.Action | None,
+    wanted: Wanted,
+    frame_s: float,
+) -> Job[Finished]:
+    """Finish the motion that an Action holds, with what the animator has changed in it.
+
+    Args:
+        armature_object: The actor.
+        action: The motion.
+        keyframe_action: Where the animator posed; those frames stay keys.
+        wanted: What to make of it.
+        frame_s: Time from one scene frame to the next [s].
+
+    Yields:
+        Progress; nothing in Blender is changed.
+
+    Raises:
+        InputError: The Action has no motion of the actor, or the armature is not an actor's.
+    """
+    body = read_body(armature_object, HUMAN)
+    rig = read_rig(armature_object, body)
+    frames = motion_frames(armature_object, action, body)
+    exact = posed_positions(armature_object, keyframe_action, body.skeleton, frames)
+    reading = read_values(armature_object, action, rig, frames)
+    values = yield from within("Reading the motion", reading, 0.0, READ)
+    contacts: tuple[Contact, ...] = ()
+    notes: tuple[Note, ...] = ()
+    if wanted.stray_m is not None:
+        time_s = (frames - frames[0]) * frame_s
+        planting = _plant(armature_object, body, rig, values, time_s, wanted.stray_m)
+        values, contacts, notes = yield from planting
+    if wanted.tolerance_m is None:
+        return Finished(body, rig, frames, values, 0.0, contacts, notes)
+    allowed = tolerances(rig, len(frames), wanted.tolerance_m, contacts, HELD)
+    reducing = reduce_keys(rig, frames, values, allowed, exact, wanted.whole_pose)
+    reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
+    return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)
+
+
+def _plant(
+    armature_object: bpy.types.Object,
+    body: Body,
+    rig: Rig,
+    values: list[Array],
+    time_s: Array,
+    stray_m: float,
+) -> Job[tuple[list[Array], tuple[Contact, ...], tuple[Note, ...]]]:
+    stage = "Planting the feet"
+    yield Progress(stage, READ)
+    shown = rig.show(values)
+    posture = yield from within(stage, shown_postures(armature_object, rig, shown, body), READ, SEEN)
+    planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)
+    if not planted.contacts:
+        return values, (), ((NO_REST, {}),)
+    notes: tuple[Note, ...] = ()
+    beyond_m = furthest_from(rig, shown, body, posture)
+    if beyond_m > NOTICEABLE_M:
+        notes = ((BEYOND, {"distance": 1000.0 * beyond_m}),)
+    return with_planted_legs(armature_object, rig, values, planted.posture), planted.contacts, notes
