@@ -99,8 +99,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
-            take.notes.add().text = note
-            self.report({"WARNING"}, note)
+            sentence = note[:1].upper() + note[1:]
+            take.notes.add().text = sentence
+            self.report({"WARNING"}, sentence)
         say(
             self,
             "INFO",
