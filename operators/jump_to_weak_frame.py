@@ -16,6 +16,7 @@ class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
+        description="Which of the listed frames to go to",
         items=[
             ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
             ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),

@@ -18,6 +18,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
 
     where: bpy.props.EnumProperty(
         name="Where",
+        description="The frame whose pose is stored",
         items=[
             ("CURRENT", "Current Frame", "Store the pose of the scene's current frame"),
             ("WEAK", "Chosen Weak Frame", "Store the pose of the frame chosen in the list of weak frames"),

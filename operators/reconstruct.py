@@ -8,7 +8,7 @@ import bpy
 from .job_operator import JobOperator
 from .live_preview import LivePreview
 from .marker_styles import marker_styles
-from .requirements import actor, all_met, footage, idle, keyframes, markers
+from .requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
 from .results import keep_reading, keep_review, keep_solved, reading_of, solved_before
 from .reviewing import show_review
 from .say import say
@@ -47,7 +47,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, keyframes, idle)
+        return all_met(cls, context, footage, actor, markers, all_colors, keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
@@ -99,8 +99,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
-            take.notes.add().text = note
-            self.report({"WARNING"}, note)
+            sentence = note[:1].upper() + note[1:]
+            take.notes.add().text = sentence
+            self.report({"WARNING"}, sentence)
         say(
             self,
             "INFO",

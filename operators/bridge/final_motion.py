@@ -171,7 +171,7 @@ def posed_positions(
 
 
 def tolerances(
-    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held: float
+    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held_m: float
 ) -> Array:
     """(F, P) how far each of the rig's points may be off [m].
 
@@ -180,13 +180,13 @@ def tolerances(
         frame_count: F.
         tolerance_m: What is allowed in general [m].
         contacts: Rests of the ankles, left and right.
-        held: Share of it that is left to an ankle that rests.
+        held_m: What is allowed to an ankle that rests, where that is less [m].
     """
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
     for contact in contacts:
         ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
-        allowed[contact.first : contact.last + 1, ankle] = held * tolerance_m
+        allowed[contact.first : contact.last + 1, ankle] = min(held_m, tolerance_m)
     return allowed
 
 

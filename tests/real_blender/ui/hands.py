@@ -18,7 +18,8 @@ class Hands:
 
     def __init__(self) -> None:
         self.x = self.y = 0
-        self._places: dict[tuple[str, ...], tuple[int, int]] = {}
+        self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
+        """Where the mouse last saw what, by area, kind of text and text."""
 
     @property
     def window(self) -> bpy.types.Window:
@@ -119,6 +120,17 @@ class Hands:
         found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
         return found is not None
 
+    def invoke(self, command: str, kind: str = "VIEW_3D", **settings: object) -> Steps[None]:
+        """Call an operator as its button would, where that is in a folded panel.
+
+        Where a panel's header is no script can see.
+        """
+        group, _, name = command.partition(".")
+        area, region = self.area(kind), self.region(kind, "WINDOW")
+        with bpy.context.temp_override(window=self.window, area=area, region=region):
+            getattr(getattr(bpy.ops, group), name)("INVOKE_DEFAULT", True, **settings)
+        yield from turns(3)
+
     def fill(self, field: str, value: str, kind: str = "VIEW_3D") -> Steps[None]:
         """Double-click on a field that shows the property `field`, and write a value into it."""
         found = yield from self._look(kind, "ui.copy_data_path_button", (field,))
@@ -131,9 +143,10 @@ class Hands:
 
     def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
         """Where in the sidebar the button is whose copied text contains all that is wanted."""
-        remembered = self._places.get((kind, *wanted))
-        if remembered and (yield from self._is_at(remembered, kind, copy, wanted)):
-            return remembered
+        for text, place in list(self._remembered.items()):
+            if text[:2] == (kind, copy) and all(word in text[2] for word in wanted):
+                if (yield from self._is_at(place, kind, copy, wanted)):
+                    return place
         found = yield from self._search(kind, copy, wanted)
         if found is None:
             yield from self._scroll(kind, "WHEELUPMOUSE", 40)
@@ -146,8 +159,6 @@ class Hands:
                 yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
                 if self._showing(kind) == seen:
                     break
-        if found is not None:
-            self._places[(kind, *wanted)] = found
         return found
 
     def _search(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
@@ -163,7 +174,10 @@ class Hands:
 
     def _is_at(self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[bool]:
         yield from self.move(*place)
-        return all(word in self._copied(kind, copy) for word in wanted)
+        text = self._copied(kind, copy)
+        if text:
+            self._remembered[kind, copy, text] = place
+        return all(word in text for word in wanted)
 
     def _copied(self, kind: str, copy: str) -> str:
         manager = bpy.context.window_manager

@@ -37,7 +37,7 @@ def differences(before: State, after: State) -> str:
     """What differs between two states, one clause each; empty where nothing does."""
     names = sorted(before.keys() | after.keys())
     differing = [name for name in names if before.get(name) != after.get(name)]
-    return "; ".join(f"{name}: {before.get(name)} became {after.get(name)}" for name in differing)[:2000]
+    return "; ".join(f"{name}: {before.get(name)} became {after.get(name)}" for name in differing)[:1000]
 
 
 def _add_group(state: State, name: str, group: bpy.types.bpy_struct) -> None:
@@ -71,8 +71,9 @@ def _add_object(state: State, blender_object: bpy.types.Object) -> None:
     if blender_object.type == "ARMATURE":
         for bone in blender_object.data.bones:
             state[f"{name} bone {bone.name}"] = _rounded((*bone.head_local, *bone.tail_local))
-        for bone in blender_object.pose.bones:
-            state[f"{name} pose {bone.name}"] = _rounded(np.array(bone.matrix_basis).ravel())
+        if data is None or data.action is None:  # else Blender's own undo gives what the Action says
+            for bone in blender_object.pose.bones:
+                state[f"{name} pose {bone.name}"] = _rounded(np.array(bone.matrix_basis).ravel())
 
 
 def _add_action(state: State, action: bpy.types.Action) -> None:

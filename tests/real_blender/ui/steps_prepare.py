@@ -7,6 +7,8 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 from person import Person, keymark
 
+FARTHEST_COLOR = 40.0
+"""Between a pixel of a sleeve and the sleeve's colour over the whole clip, of 255."""
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its colour, as a share of the picture's width."""
 
@@ -18,6 +20,14 @@ def start_empty(person: Person) -> Steps[None]:
     yield from person.hands.open_sidebar("VIEW_3D", "Keymark")
     person.step_done("Empty scene")
     yield from person.look("empty")
+
+
+def opened(person: Person) -> Steps[None]:
+    """The take opened from its files, for a session that begins at a later step."""
+    bpy.ops.keymark.open_take(filepath=str(person.known.folder))
+    person.step_done("Open the take")
+    yield from turns(3)
+    yield from look_through_camera(person)
 
 
 def footage(person: Person) -> Steps[None]:
@@ -52,8 +62,9 @@ def look_through_camera(person: Person) -> Steps[None]:
 def markers(person: Person) -> Steps[None]:
     """Add the five markers, and pick each one's colour from the footage."""
     names = [style.segment for style in person.known.markers]
-    while len(person.take.markers) < len(names):
-        yield from person.undoable("adding a marker", lambda: person.hands.click_button("keymark.add_marker"))
+    yield from person.undoable(
+        "adding the markers", lambda: person.hands.click_button("keymark.add_usual_markers")
+    )
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
     yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
@@ -61,17 +72,34 @@ def markers(person: Person) -> Steps[None]:
         person.take.active_marker = number
         person.step_done(f"Choose {marker.name}")
         pixel = sleeve_pixel(person, number)
-        yield from person.undoable(f"picking {marker.name}", lambda pixel=pixel: _pick(person, pixel))
+        if number == 0:
+            yield from person.undoable("picking a color", lambda pixel=pixel: _pick(person, pixel))
+        else:
+            yield from _pick(person, pixel)
+    apart = [
+        np.abs(255.0 * np.array(marker.color) - style.color_srgb).max()
+        for marker, style in zip(person.take.markers, person.known.markers, strict=True)
+    ]
+    expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
+    yield from person.hands.click_button("keymark.show_masks")
     yield from person.look("markers")
+    yield from person.hands.click_button("keymark.show_masks")
 
 
 def actor(person: Person) -> Steps[None]:
     """Build the actor from the performer's height, and give it the performer's lengths."""
-    height = person.known.body.actor.stature_m
-    yield from person.hands.fill("stature", f"{height:.3f}")
-    expect(abs(person.take.stature - height) < 1e-3, f"the height is {person.take.stature}, not {height}")
+    actor = person.known.body.actor
+    yield from person.hands.fill("stature", f"{actor.stature_m:.3f}")
+    found = person.take.stature
+    expect(abs(found - actor.stature_m) < 1e-3, f"the height is {found}, not {actor.stature_m}")
     yield from person.undoable("building", lambda: person.hands.click_button("keymark.build_actor"))
     yield from person.look("actor")
+    lengths = person.take.lengths
+    lengths.symmetric = False
+    for name, value in actor.segments_m.items():
+        setattr(lengths, name.replace(".", "_"), value)
+    person.step_done("Write the lengths")
+    yield from person.undoable("applying lengths", lambda: person.hands.invoke("keymark.apply_lengths"))
 
 
 def _browse(person: Person, key: str) -> Steps[None]:
@@ -91,6 +119,8 @@ def _browse(person: Person, key: str) -> Steps[None]:
     yield from person.hands.press(key)
     yield from until(lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport")
     yield from turns(3)
+    if key == "RET":
+        yield from person.hands.press("ESC")  # a warning of what was loaded pops up, and takes every key
 
 
 def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
@@ -114,8 +144,8 @@ def _cancel_eyedropper(person: Person) -> Steps[None]:
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     """A pixel [px] of the current frame where a person would click for a marker.
 
-    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe has
-    the middle of the limb.
+    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe
+    has the middle of the limb.
     """
     known = person.known
     style, keyframe = known.markers[number], known.keyframes[0]

@@ -8,8 +8,8 @@ from person import Person, keymark
 def keyframes(person: Person) -> Steps[None]:
     """Propose frames, go to one of them, and pose and store the keyframes."""
     propose = "keymark.propose_keyframes"
-    yield from person.changes_nothing("cancelling the proposal", lambda: _cancelled(person, propose))
-    yield from person.undoable("proposing keyframes", lambda: _job(person, propose))
+    yield from person.changes_nothing("cancelling the proposal", lambda: cancelled(person, propose))
+    yield from person.undoable("proposing keyframes", lambda: job(person, propose))
     expect(len(person.take.proposals) >= 2, "no keyframes were proposed")
     for direction in ("NEXT", "PREVIOUS"):
         before = person.scene.frame_current
@@ -18,28 +18,32 @@ def keyframes(person: Person) -> Steps[None]:
     for number, keyframe in enumerate(person.known.keyframes):
         frame = keyframe.index + person.known.frame_start
         person.scene.frame_set(frame)
+        person.step_done(f"Go to frame {frame}")
+        if number == 0:
+            yield from person.undoable("fitting a pose", lambda: _fit(person))
+            yield from person.look("fitted_pose")
         keymark("operators.bridge.pose").write_posture(person.take.armature, keyframe.posture)
         person.step_done(f"Pose frame {frame}")
         if number < 2:
             yield from person.undoable("storing a keyframe", lambda: _store(person))
+            # Blender's undo and redo show what is keyed: the pose is there still.
         else:
             yield from _store(person)
+    keyed = keymark("operators.posed_frames").posed_frames(person.take)
+    expect(len(keyed) == len(person.known.keyframes), f"keyframes are stored at {keyed}")
     yield from person.look("keyframes")
 
 
 def reconstruct(person: Person) -> Steps[None]:
     """Reconstruct, cancelled by Esc once, then to the end."""
     name = "keymark.reconstruct"
-    yield from person.changes_nothing("cancelling the reconstruction", lambda: _cancelled(person, name))
-    yield from person.hands.click_button(name)
-    yield from _until_under_way(person)
-    yield from person.look("reconstructing")
-    yield from person.wait_for_job()
+    yield from person.changes_nothing("cancelling the reconstruction", lambda: cancelled(person, name))
+    yield from person.undoable("reconstructing", lambda: _watched(person, name))
     expect(person.take.motion_action is not None, "there is no motion")
     yield from person.look("reconstructed")
     first = person.take.motion_action.name
     count = len(bpy.data.actions)
-    yield from person.undoable("reconstructing again", lambda: _job(person, name))
+    yield from job(person, name)
     expect(person.take.motion_action.name == first, "running again made another Action")
     expect(len(bpy.data.actions) == count, "running again left another Action")
 
@@ -48,13 +52,22 @@ def _store(person: Person) -> Steps[None]:
     yield from person.hands.click_button("keymark.store_keyframe")
 
 
-def _until_under_way(person: Person) -> Steps[None]:
+def _fit(person: Person) -> Steps[None]:
+    yield from person.hands.click_button("keymark.fit_pose", "start='KEYFRAMES'")
+    yield from person.wait_for_job()
+
+
+def _watched(person: Person, command: str) -> Steps[None]:
+    """Start a job by its button, look at the screen while it runs, and wait for its end."""
+    yield from person.hands.click_button(command)
     progress = bpy.context.window_manager.keymark_progress
     yield from until(lambda: progress.fraction > 0.4 or not person.jobs(), "progress", JOB_PATIENCE_S)
     expect(person.jobs(), "the job ended before it was half done")
+    yield from person.look("reconstructing")
+    yield from person.wait_for_job()
 
 
-def _cancelled(person: Person, command: str) -> Steps[None]:
+def cancelled(person: Person, command: str) -> Steps[None]:
     """Start a job by its button and press Esc while it runs."""
     yield from person.hands.click_button(command)
     expect(person.jobs(), f"{command} does not run")
@@ -62,6 +75,7 @@ def _cancelled(person: Person, command: str) -> Steps[None]:
     yield from until(lambda: not person.jobs(), "the job to stop")
 
 
-def _job(person: Person, command: str) -> Steps[None]:
+def job(person: Person, command: str) -> Steps[None]:
+    """Start a job by its button and wait for its end."""
     yield from person.hands.click_button(command)
     yield from person.wait_for_job()

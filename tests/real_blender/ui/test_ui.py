@@ -1,7 +1,6 @@
 """A person's session in a Blender with a screen, and its motion held against the command line's."""
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np

@@ -1,0 +1,124 @@
+"""A whole session with Keymark as a script: from an empty scene to an asset and a file for other programs.
+
+Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER
+
+Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is that of
+the demonstration take; an animator's eye and hand are stood in for by the poses that come with that take.
+"""
+
+import sys
+from math import radians
+from pathlib import Path
+
+import bpy
+
+DEMO = Path(__file__).resolve().parent.parent / "presets" / "demo" / "aerobic"
+CAMERA_LOCATION = (0.75, -4.15, 1.32)
+CAMERA_ROTATION = (radians(86.08), 0.0, radians(6.92))
+LENS_MM, SENSOR_MM = 47.0, 36.0
+SLEEVES = {
+    "trunk": (134, 105),
+    "forearm.L": (158, 124),
+    "forearm.R": (109, 123),
+    "shin.L": (146, 191),
+    "shin.R": (125, 192),
+}
+"""A pixel of each sleeve in the clip's first frame, from the top left corner."""
+HEIGHT_M = 1.684
+LENGTHS_M = {
+    "upper_arm_L": 0.292,
+    "forearm_L": 0.249,
+    "hand_L": 0.176,
+    "thigh_L": 0.418,
+    "shin_L": 0.409,
+    "foot_L": 0.185,
+    "shoulder_width": 0.345,
+    "hip_width": 0.184,
+    "trunk": 0.482,
+    "neck_head": 0.238,
+}
+"""The right side's follow the left's."""
+
+
+def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+    """The take at work; to be asked for anew whenever takes were added or removed, as Blender moves them then."""
+    return scene.keymark.takes[scene.keymark.active_take]
+
+
+def load_footage(scene: bpy.types.Scene) -> None:
+    """Step 1, footage: the clip behind a camera that stands where the real one stood."""
+    bpy.ops.keymark.load_footage(filepath=str(DEMO / "clip.mp4"))
+    take = active_take(scene)
+    take.camera.location, take.camera.rotation_euler = CAMERA_LOCATION, CAMERA_ROTATION
+    take.camera.data.lens, take.camera.data.sensor_width = LENS_MM, SENSOR_MM
+
+
+def pick_markers(take: bpy.types.PropertyGroup) -> None:
+    """Step 2, markers: the usual five, each with its colour from one click on the footage."""
+    bpy.ops.keymark.add_usual_markers()
+    for number, marker in enumerate(take.markers):
+        take.active_marker = number
+        bpy.ops.keymark.pick_marker_color(pixel=SLEEVES[marker.segment])
+        print(f"{marker.name}: found in {marker.found} of {marker.sampled} frames")
+
+
+def build_actor(take: bpy.types.PropertyGroup) -> None:
+    """Step 3, actor: from the height, standing where the performer is; then each length as it was measured."""
+    bpy.ops.keymark.build_actor(stature=HEIGHT_M)
+    for name, length in LENGTHS_M.items():
+        setattr(take.lengths, name, length)
+    bpy.ops.keymark.apply_lengths()
+
+
+def animator(scene: bpy.types.Scene) -> tuple[bpy.types.Object, list[int]]:
+    """Who poses: an actor that is posed over the footage already, and the frames in which it is."""
+    mine = scene.keymark.active_take
+    bpy.ops.keymark.open_take(filepath=str(DEMO / "take.json"))
+    theirs = active_take(scene)
+    first_curve = theirs.keyframe_action.layers[0].strips[0].channelbags[0].fcurves[0]
+    frames = [round(key.co.x) for key in first_curve.keyframe_points]
+    armature = theirs.armature
+    bpy.ops.keymark.remove_take()  # the objects stay
+    scene.keymark.active_take = mine
+    return armature, frames
+
+
+def pose_keyframes(scene: bpy.types.Scene) -> None:
+    """Step 4, keyframes: have frames proposed; then pose, correct and store."""
+    bpy.ops.keymark.propose_keyframes()
+    print("Proposed:", sorted(proposal.frame for proposal in active_take(scene).proposals))
+    hand, frames = animator(scene)
+    take = active_take(scene)
+    for frame in frames:
+        scene.frame_set(frame)
+        bpy.ops.keymark.fit_pose(start="KEYFRAMES")  # near enough to begin with
+        for bone in take.armature.pose.bones:  # the animator corrects it, in depth too
+            bone.matrix_basis = hand.pose.bones[bone.name].matrix_basis
+        bpy.ops.keymark.store_keyframe()
+    bpy.data.objects.remove(hand)
+
+
+def session(scene: bpy.types.Scene, folder: Path) -> bpy.types.PropertyGroup:
+    """All seven steps; returns the take."""
+    load_footage(scene)
+    pick_markers(active_take(scene))
+    build_actor(active_take(scene))
+    pose_keyframes(scene)
+    bpy.ops.keymark.reconstruct()  # step 5: a new Action; the keyframes stay in theirs
+    take = active_take(scene)
+    for weak in take.review.weak_frames:  # step 6, review
+        print(f"Frame {weak.frame} is worth another keyframe")
+    take.finish.tolerance_mm = 5.0
+    bpy.ops.keymark.bake_motion()  # step 7, finish: few keys, resting feet stand still
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "session.blend"))  # a catalog lies beside the file
+    bpy.ops.keymark.mark_asset()
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.keymark.export_motion(format="BVH", filepath=str(folder / "motion.bvh"))
+    return take
+
+
+if __name__ == "__main__":
+    output = Path(sys.argv[sys.argv.index("--") + 1]).resolve()
+    output.mkdir(parents=True, exist_ok=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    session(bpy.context.scene, output)
