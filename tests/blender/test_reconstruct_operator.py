@@ -120,3 +120,25 @@ def test_time_left_is_said_once_it_can_be_told() -> None:
     assert time_left(17.0, 0.28) == "about 40 s left"
     assert time_left(60.0, 0.2) == "about 4 min left"
     assert time_left(100.0, 0.9999) == "about 1 s left"
+
+
+def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup) -> None:
+    """Reading the same keyframes from Blender once more is no change; moving one is."""
+    from types import SimpleNamespace
+
+    from keymark.operators.reconstruct import KEYMARK_OT_reconstruct
+
+    bpy.ops.keymark.reconstruct()
+
+    def previews() -> int:
+        running = KEYMARK_OT_reconstruct.start(SimpleNamespace(), bpy.context.scene)
+        return sum(progress.preview is not None for progress in running)
+
+    assert previews() == 0
+    bpy.context.scene.frame_set(5)
+    assert previews() == 0
+    channels = take.keyframe_action.layers[0].strips[0].channelbag(take.keyframe_action.slots[0])
+    curve = channels.fcurves.find('pose.bones["upper_arm.L"].rotation_quaternion', index=1)
+    curve.keyframe_points[1].co[1] += 0.05
+    curve.update()
+    assert previews() > 0

@@ -62,9 +62,7 @@ def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
     """Its gradient is that of its cost, and leaps cost little more the higher they are."""
     term = GroundTerm((11, 12), 0.12)
     assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
-    lifted = [
-        float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)
-    ]
+    lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
     assert lifted[0] < lifted[1] < lifted[2] < 1.4 * lifted[1]
 
 
