@@ -9,19 +9,24 @@ from numpy.typing import NDArray
 
 from .body.kinematics import Pose
 from .estimate.confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.terms.regions import RegionNoise, limb_widths
 from .estimate.weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
 from .footage.ellipse import ellipse_outline
 from .observation.regions import RegionModel
 from .observation.silhouette import CORNERS, silhouettes
-from .reconstruct import CHUNK_FRAMES, Reconstruction
+from .progress import Job, Part, within
+from .reconstruct import Reconstruction
 from .take import Take
 
 Array = NDArray[np.float64]
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
+STAGE = "Judging the motion"
+FRAMES_AT_ONCE = 100
+"""So few that whoever waits can stop within some hundredths of a second."""
+WRONG_SHARE = 0.1
+"""Of the performer's stature: a point expected further off is wrong, no matter how far."""
 COMPACT = ("observed", "predicted")
 """Large rows that are only looked at: kept as single precision."""
 
@@ -111,25 +116,32 @@ class Review:
         )
 
 
-def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Review:
+def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
     """Gather what there is to see of a reconstruction.
 
     Args:
         take: The take.
         reconstruction: What `reconstruct` made of it.
         scene_frames: (F,) scene frame of each frame of the clip.
+
+    Yields:
+        Progress.
+
+    Returns:
+        The review.
     """
     motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
     pose = take.body.pose(motion.posture)
-    predicted, offset = _predictions(model, pose, tracks.centroid)
+    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 1.0)
     noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
     variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
     misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
     moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
     expected = expected_covariance(motion.point_covariance, moved, misfit)
     believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
-    squared = np.trace(expected, axis1=-2, axis2=-1).mean(axis=1)
+    wrong = WRONG_SHARE * take.body.actor.stature_m
+    squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
     index = np.array(motion.keyframe_indices, dtype=np.intp)
     evidence = FrameEvidence(
         np.where(np.isfinite(squared), squared, 1.0),
@@ -149,7 +161,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> R
         image_points=model.camera.project(motion.points, frame[:, None])[0],
         sigma_m=motion.sigma_m,
         reprojection_px=offset,
-        nearness=Memberships().near(keyframe_distance(len(frame), index)),
+        nearness=motion.diagnostics["nearness"],
         speed=reconstruction.speed,
         confidence=believed,
         keyframe_indices=index,
@@ -157,14 +169,13 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> R
     )
 
 
-def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> tuple[Array, Array]:
+def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:
     """Outlines (F, M, K', 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
-    outlines, distance = (
-        np.full((*centroid.shape[:2], CORNERS, 2), np.nan),
-        np.full(centroid.shape[:2], np.nan),
-    )
-    for first in range(0, len(centroid), CHUNK_FRAMES):
-        chunk = slice(first, first + CHUNK_FRAMES)
+    outlines = np.full((*centroid.shape[:2], CORNERS, 2), np.nan)
+    distance = np.full(centroid.shape[:2], np.nan)
+    for first in range(0, len(centroid), FRAMES_AT_ONCE):
+        yield first / len(centroid)
+        chunk = slice(first, first + FRAMES_AT_ONCE)
         frame = np.arange(len(centroid))[chunk]
         predicted = model.evaluate(pose[chunk], frame)
         seen = predicted.visible > RegionNoise().least_visible

@@ -1,20 +1,31 @@
 """Check how well the markers can be found in the footage."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
 
 from .job_operator import JobOperator
-from .marker_readouts import look_at_markers, write_readouts
+from .marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .marker_styles import picked_styles
 from .requirements import a_color, all_met, footage, idle, markers
 from .say import say
-from .takes import active_take, footage_of
+from .takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
     from ..core.footage.marker_check import MarkerCheck
     from ..core.footage.marker_style import MarkerStyle
     from ..core.progress import Job
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """What was looked for, and what was found."""
+
+    take: str
+    """The take's identifier."""
+    styles: "tuple[MarkerStyle, ...]"
+    check: "MarkerCheck"
 
 
 class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
@@ -29,22 +40,22 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         """There must be footage, and a color to look for."""
         return all_met(cls, context, footage, markers, a_color, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[tuple[tuple[MarkerStyle, ...], MarkerCheck]]":
+    def start(self, scene: bpy.types.Scene) -> "Job[Checked]":
         """Look at the frames."""
         take = active_take(scene)
-        styles = picked_styles(take)
-        check = yield from look_at_markers(footage_of(scene, take), styles)
-        return styles, check
+        source, identifier, styles = footage_of(scene, take), take.identifier, picked_styles(take)
+        return Checked(identifier, styles, (yield from look_at_markers(source, styles)))
 
-    def finish(self, scene: bpy.types.Scene, result: "tuple[tuple[MarkerStyle, ...], MarkerCheck]") -> None:
+    def finish(self, scene: bpy.types.Scene, result: Checked) -> None:
         """Store the readouts."""
-        styles, check = result
-        warnings = write_readouts(active_take(scene), styles, check)
+        take = take_called(scene, result.take)
+        check_unchanged(picked_styles(take), result.styles)
+        warnings = write_readouts(take, result.styles, result.check)
         show_frame(scene)
         for sentence in warnings:
             self.report({"WARNING"}, sentence)
         if not warnings:
-            say(self, "INFO", "All {count} markers with a color are found well", count=len(styles))
+            say(self, "INFO", "All {count} markers with a color are found well", count=len(result.styles))
 
 
 def show_frame(scene: bpy.types.Scene) -> None:

@@ -40,6 +40,13 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
         """There must be an actor, and markers to be seen through a camera."""
         return all_met(cls, context, footage, camera, actor, markers, idle)
 
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Fit it, and let the animator turn bones at once."""
+        finished = self.execute(context)
+        if finished == {"FINISHED"}:
+            _to_pose_mode(context, active_take(context.scene).armature)
+        return finished
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Fit it, show it, and say how well it explains the markers."""
         with reported(self):
@@ -66,12 +73,23 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
                     self,
                     "INFO",
                     "Markers off by {before:.1f} pixels before, {after:.1f} now; "
-                    "correct the pose where you see it better, then store it",
+                    "look at it from the side too, where no marker tells the depth, then store it",
                     before=float(np.nanmean(fit.before_px)),
                     after=float(np.nanmean(fit.residual_px)),
                 )
             return {"FINISHED"}
         return {"CANCELLED"}
+
+
+def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
+    """Make the actor the active object, in Pose Mode, where it can be seen and nothing else is being done."""
+    layer = context.view_layer
+    active = layer.objects.active
+    if armature_object.mode == "POSE" or (active is not None and active.mode != "OBJECT"):
+        return
+    if armature_object.visible_get(view_layer=layer):
+        layer.objects.active = armature_object
+        bpy.ops.object.mode_set(mode="POSE")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_fit_pose,))

@@ -3,6 +3,7 @@
 import bpy
 
 from .requirements import all_met, weak_frames
+from .say import say
 from .takes import active_take
 
 
@@ -15,6 +16,7 @@ class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
+        description="Which of the listed frames to go to",
         items=[
             ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
             ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
@@ -45,8 +47,11 @@ class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
         if self.direction == "NEXT" and abs(chosen.frame - context.scene.frame_current_final) > 1e-3:
             step = 0
         wanted = review.active_weak_frame + step
-        if not 0 <= wanted < len(review.weak_frames):
-            self.report({"INFO"}, f"There is no {self.direction.lower()} weak frame")
+        if wanted < 0:
+            say(self, "INFO", "This is the weakest frame")
+            return {"CANCELLED"}
+        if wanted >= len(review.weak_frames):
+            say(self, "INFO", "This is the last frame of the list")
             return {"CANCELLED"}
         review.active_weak_frame = wanted  # which goes there
         return {"FINISHED"}

@@ -10,7 +10,7 @@ from bpy.app import handlers
 if TYPE_CHECKING:
     from ..core.progress import Preview
 
-SWEEPS = 24
+SWEEPS = 9
 """Pictures in which the actor goes through the frames of a preview."""
 
 

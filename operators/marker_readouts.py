@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..core.errors import InputError
 from .bridge.footage import Footage
 from .marker_previews import keep_preview
 
@@ -45,6 +46,16 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
         del _samples[next(iter(_samples))]
     check = check_markers(samples, styles)
     return (yield from within("Finding the markers", check, SAMPLING_SHARE, 1.0))
+
+
+def check_unchanged(now: "tuple[MarkerStyle, ...]", then: "tuple[MarkerStyle, ...]") -> None:
+    """Refuse a result about markers that are others by now.
+
+    Raises:
+        InputError: They are.
+    """
+    if now != then:
+        raise InputError("the markers were changed while they were looked for; nothing was stored, try again")
 
 
 def write_readouts(

@@ -4,8 +4,9 @@ import bpy
 
 from .failures import reported
 from .marker_styles import marker_styles
+from .pick_marker_color import NAVIGATION
 from .requirements import all_met, bones_editable, camera, footage, idle
-from .say import say
+from .say import label, say
 from .takes import active_take, footage_of
 
 NOT_STANDING = (
@@ -59,7 +60,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
 
         take = active_take(context.scene)
         self.stature = take.stature
-        self._clicks: list[tuple[float, float]] = []
         if not shows_footage(context, take):
             say(
                 self,
@@ -67,6 +67,10 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
                 "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
             )
             return {"CANCELLED"}
+        from .ui.overlays.measuring import Clicks, show
+
+        self._clicks = Clicks()
+        show(self._clicks)
         context.window.cursor_modal_set("CROSSHAIR")
         self._ask(context)
         context.window_manager.modal_handler_add(self)
@@ -77,32 +81,39 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.cancel(context)
             return {"CANCELLED"}
+        if event.type == "MOUSEMOVE":
+            self._clicks.mouse = event.mouse_x, event.mouse_y
+            _redraw(context)
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
-            moves_view = event.type in {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
-            return {"PASS_THROUGH"} if moves_view else {"RUNNING_MODAL"}
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         from .ui.footage_view import pixel_under
 
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
             say(self, "WARNING", "That is not on the footage; click in the picture")
             return {"RUNNING_MODAL"}
-        self._clicks.append(pixel)
-        if len(self._clicks) < 2:
+        if self._clicks.head is None:
+            self._clicks.head = pixel
             self._ask(context)
             return {"RUNNING_MODAL"}
-        self.head_pixel, self.floor_pixel = self._clicks
+        self.head_pixel, self.floor_pixel = self._clicks.head, pixel
         self.cancel(context)
         return self.execute(context)
 
     def _ask(self, context: bpy.types.Context) -> None:
-        wanted = (
-            "Click on the top of the head   |   Esc: Cancel",
-            "Now click on the floor between the feet   |   Esc: Cancel",
-        )[len(self._clicks)]
-        context.workspace.status_text_set(bpy.app.translations.pgettext_iface(wanted))
+        if self._clicks.head is None:
+            wanted = label("Click on the top of the head   |   Esc: Cancel")
+        else:
+            wanted = label("Now click on the floor between the feet   |   Esc: Cancel")
+        context.workspace.status_text_set(wanted)
+        _redraw(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the cursor back; Blender calls this as well."""
+        from .ui.overlays.measuring import show
+
+        show(None)
+        _redraw(context)
         context.window.cursor_modal_restore()
         context.workspace.status_text_set(None)
 
@@ -134,6 +145,12 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
                 )
             return {"FINISHED"}
         return {"CANCELLED"}
+
+
+def _redraw(context: bpy.types.Context) -> None:
+    for area in context.screen.areas:
+        if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
+            area.tag_redraw()
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

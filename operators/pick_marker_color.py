@@ -9,11 +9,11 @@ from .add_marker import append_marker, free_name, next_segment
 from .check_markers import show_frame
 from .failures import reported
 from .job_operator import JobOperator
-from .marker_readouts import look_at_markers, write_readouts
+from .marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .marker_styles import marker_styles, set_marker_color
 from .requirements import all_met, footage, idle
 from .say import label, say
-from .takes import active_take, footage_of
+from .takes import active_take, footage_of, take_called
 from .ui.properties.marker import segment_title
 
 if TYPE_CHECKING:
@@ -44,6 +44,10 @@ MIDDLE_REQUEST = "Click on the marker: {segment}"
 class Picked:
     """What a click found."""
 
+    take: str
+    """The take's identifier."""
+    index: int | None
+    """Which marker gets the color; None for a new one."""
     color: tuple[int, int, int]
     styles: "tuple[MarkerStyle, ...]"
     check: "MarkerCheck"
@@ -142,18 +146,20 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         from .bridge.footage_color import footage_color
 
         take = active_take(scene)
-        footage_shown = footage_of(scene, take)
-        color = footage_color(footage_shown, self.pixel)
-        styles = self._styles(take, color)
-        check = yield from look_at_markers(footage_shown, styles)
-        return Picked(color, styles, check)
+        source, identifier, index = footage_of(scene, take), take.identifier, self._index(take)
+        color = footage_color(source, self.pixel)
+        styles = _styles(take, index, color)
+        check = yield from look_at_markers(source, styles)
+        return Picked(identifier, index, color, styles, check)
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
         """Give the color to the marker, and store what was found of all of them."""
-        take = active_take(scene)
-        if self._adds(take):
-            append_marker(take, str(next_segment(take)))
-        marker = take.markers[min(take.active_marker, len(take.markers) - 1)]
+        take = take_called(scene, result.take)
+        check_unchanged(_styles(take, result.index, result.color), result.styles)
+        if result.index is None:
+            marker = append_marker(take, result.styles[-1].segment)
+        else:
+            marker = take.markers[result.index]
         set_marker_color(marker, result.color)
         write_readouts(take, result.styles, result.check)
         show_frame(scene)
@@ -169,38 +175,45 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             sampled=marker.sampled,
         )
 
-    def _adds(self, take: bpy.types.PropertyGroup) -> bool:
-        return bool(self.add or not len(take.markers))
+    def _index(self, take: bpy.types.PropertyGroup) -> int | None:
+        """The marker whose color is picked; None for a new one."""
+        if self.add or not len(take.markers):
+            return None
+        return min(int(take.active_marker), len(take.markers) - 1)
 
     def _segment(self, take: bpy.types.PropertyGroup) -> str | None:
         """The body part whose marker is picked; None where there is none left to add one on."""
-        if self._adds(take):
-            return next_segment(take)
-        return str(take.markers[min(take.active_marker, len(take.markers) - 1)].segment)
+        index = self._index(take)
+        return next_segment(take) if index is None else str(take.markers[index].segment)
 
-    def _styles(
-        self, take: bpy.types.PropertyGroup, color: tuple[int, int, int]
-    ) -> "tuple[MarkerStyle, ...]":
-        """The markers as they will be.
 
-        Raises:
-            InputError: Two markers have one name or one segment, or every body part has one.
-        """
-        from ..core.errors import InputError
-        from ..core.footage.marker_style import MarkerStyle
+def _styles(
+    take: bpy.types.PropertyGroup, picked: int | None, color: tuple[int, int, int]
+) -> "tuple[MarkerStyle, ...]":
+    """The markers as they will be.
 
-        picked = None if self._adds(take) else min(take.active_marker, len(take.markers) - 1)
-        styles = [
-            replace(style, color_srgb=color) if index == picked else style
-            for index, style in enumerate(marker_styles(take))
-            if index == picked or take.markers[index].is_picked
-        ]
-        if picked is None:
-            segment = next_segment(take)
-            if segment is None:
-                raise InputError("every body part has a marker already; choose the one to pick a color for")
-            styles.append(MarkerStyle(free_name(take, segment), segment, color))
-        return tuple(styles)
+    Args:
+        take: Whose markers.
+        picked: Which of them gets the color; None for a new one.
+        color: Red, green, blue in 0 to 255.
+
+    Raises:
+        InputError: Two markers have one name or one segment, or every body part has one.
+    """
+    from ..core.errors import InputError
+    from ..core.footage.marker_style import MarkerStyle
+
+    styles = [
+        replace(style, color_srgb=color) if index == picked else style
+        for index, style in enumerate(marker_styles(take))
+        if index == picked or take.markers[index].is_picked
+    ]
+    if picked is None:
+        segment = next_segment(take)
+        if segment is None:
+            raise InputError("every body part has a marker already; choose the one to pick a color for")
+        styles.append(MarkerStyle(free_name(take, segment), segment, color))
+    return tuple(styles)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

@@ -3,11 +3,10 @@
 import bpy
 
 from .failures import reported
+from .posed_frames import forget
 from .requirements import actor, all_met, idle, motion
+from .say import say
 from .takes import active_take
-
-SAME_FRAME = 0.5
-"""A weak frame nearer than this to the keyframe [frames] is posed by it."""
 
 
 class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
@@ -19,6 +18,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
 
     where: bpy.props.EnumProperty(
         name="Where",
+        description="The frame whose pose is stored",
         items=[
             ("CURRENT", "Current Frame", "Store the pose of the scene's current frame"),
             ("WEAK", "Chosen Weak Frame", "Store the pose of the frame chosen in the list of weak frames"),
@@ -44,7 +44,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             review, frame = take.review, float(scene.frame_current_final)
             if self.where == "WEAK":
                 if not 0 <= review.active_weak_frame < len(review.weak_frames):
-                    self.report({"ERROR"}, "No weak frame is chosen; reconstruct the motion first")
+                    say(self, "ERROR", "No weak frame is chosen; reconstruct the motion first")
                     return {"CANCELLED"}
                 frame = float(review.weak_frames[review.active_weak_frame].frame)
             action = take.keyframe_action or new_keyframe_action(take.armature)
@@ -55,10 +55,13 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             assign_action(take.armature, action)
             whole = int(frame // 1.0)
             scene.frame_set(whole, subframe=frame - whole)
-            for weak in review.weak_frames:
-                if abs(weak.frame - frame) < SAME_FRAME:
-                    weak.is_posed = True
-            self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
+            forget()
+            say(
+                self,
+                "INFO",
+                "Stored the reconstructed pose at frame {frame:g}; now correct it",
+                frame=frame,
+            )
             return {"FINISHED"}
         return {"CANCELLED"}
 

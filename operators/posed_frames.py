@@ -1,8 +1,12 @@
 """Which frames the animator has posed, known without looking at the keys at every redraw."""
 
+from bisect import bisect_left
+
 import bpy
 from bpy.app.handlers import persistent
 
+SAME_FRAME = 0.5
+"""A key nearer than this [frames] is the frame's own."""
 _posed: dict[tuple[str, str], tuple[float, ...]] = {}
 """By the names of an armature and an Action: the frames keyed there."""
 
@@ -22,6 +26,13 @@ def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
         except InputError:  # an armature of other bones
             _posed[names] = ()
     return _posed[names]
+
+
+def is_posed(take: bpy.types.PropertyGroup, frame: float) -> bool:
+    """Whether a frame of the clip, which may lie between whole ones, has a key."""
+    posed = posed_frames(take)
+    after = bisect_left(posed, frame)
+    return any(abs(near - frame) < SAME_FRAME for near in posed[max(0, after - 1) : after + 1])
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:

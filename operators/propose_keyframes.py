@@ -7,7 +7,7 @@ import bpy
 
 from .job_operator import JobOperator
 from .marker_styles import marker_styles
-from .requirements import all_met, footage, idle, markers
+from .requirements import all_colors, all_met, footage, idle, markers
 from .results import keep_reading, reading_of
 from .say import say
 from .takes import active_take, footage_of, take_called
@@ -38,7 +38,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """The markers are followed through the footage."""
-        return all_met(cls, context, footage, markers, idle)
+        return all_met(cls, context, footage, markers, all_colors, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Find the frames; a clip that was read before for these markers is not read again."""

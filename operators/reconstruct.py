@@ -8,7 +8,7 @@ import bpy
 from .job_operator import JobOperator
 from .live_preview import LivePreview
 from .marker_styles import marker_styles
-from .requirements import actor, all_met, footage, idle, keyframes, markers
+from .requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
 from .results import keep_reading, keep_review, keep_solved, reading_of, solved_before
 from .reviewing import show_review
 from .say import say
@@ -47,11 +47,11 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, keyframes, idle)
+        return all_met(cls, context, footage, actor, markers, all_colors, keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
-        from ..core.progress import Progress, stretch
+        from ..core.progress import stretch
         from ..core.reconstruct import check_reconstructible, read_footage, reconstruct
         from ..core.review import review
         from .bridge.frame_times import scene_frames
@@ -69,8 +69,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
         self.preview = LivePreview(scene, armature, frames) if watched else None
         result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
-        yield Progress("Judging the motion", SOLVED)
-        return Outcome(identifier, frames, result, review(take, result, frames), (*notes, *result.notes))
+        judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
+        return Outcome(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
         """Let the actor follow."""
@@ -99,8 +99,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
-            take.notes.add().text = note
-            self.report({"WARNING"}, note)
+            sentence = note[:1].upper() + note[1:]
+            take.notes.add().text = sentence
+            self.report({"WARNING"}, sentence)
         say(
             self,
             "INFO",

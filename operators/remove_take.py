@@ -1,12 +1,13 @@
 """Remove a take from the scene's list."""
 
+from collections.abc import Iterator
+
 import bpy
 
 from .requirements import all_met, idle
 from .takes import active_take, find_take
 
-OWNED = ("armature", "camera", "clip", "keyframe_action", "motion_action")
-"""What a take points to."""
+HELPERS = {"CAMERA", "EMPTY"}
 
 
 class KEYMARK_OT_remove_take(bpy.types.Operator):
@@ -36,21 +37,30 @@ class KEYMARK_OT_remove_take(bpy.types.Operator):
         settings = context.scene.keymark
         take = active_take(context.scene)
         index = next(i for i, each in enumerate(settings.takes) if each == take)
-        own = [getattr(take, name) for name in OWNED]
+        own = set(_data_of(take))
         settings.takes.remove(index)
         settings.active_take = max(0, index - 1)
         if self.delete_data:
-            used = {
-                getattr(other, name)
-                for scene in bpy.data.scenes
-                for other in scene.keymark.takes
-                for name in OWNED
-            }
-            gone = [block for block in own if block is not None and block not in used]
-            data = [block.data for block in gone if isinstance(block, bpy.types.Object)]
-            alone = [block for block in data if block is not None and block.users == 1]
+            others = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
+            gone = own.difference(*(_data_of(other) for other in others))
+            inner = [block.data for block in gone if isinstance(block, bpy.types.Object)]
+            alone = [block for block in inner if block is not None and block.users == 1]
             bpy.data.batch_remove([*gone, *alone])
         return {"FINISHED"}
+
+
+def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+    """What a group of properties points to, the groups in it included."""
+    for definition in group.bl_rna.properties:
+        if definition.type != "POINTER" or definition.identifier == "rna_type":
+            continue
+        value = getattr(group, definition.identifier)
+        if isinstance(value, bpy.types.PropertyGroup):
+            yield from _data_of(value)
+        elif isinstance(value, bpy.types.ID):
+            yield value
+            if isinstance(value, bpy.types.Collection):  # of the turntable's cameras and what they hang on
+                yield from (each for each in value.objects if each.type in HELPERS)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_take,))

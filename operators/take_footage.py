@@ -81,12 +81,14 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
         return
     look_through(space, take.id_data, camera)
-    # A button's own region is the sidebar.
+    render = take.id_data.render
+    if render.resolution_y <= render.resolution_x or bpy.app.background:
+        return
+    # Blender fits pictures by their width, which shows an upright one in part. A button's region is its own.
     region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
-    if region is not None and not bpy.app.background:
-        with context.temp_override(region=region):
-            if bpy.ops.view3d.view_center_camera.poll():
-                bpy.ops.view3d.view_center_camera()  # the whole of an upright picture, too
+    with context.temp_override(region=region):
+        if bpy.ops.view3d.view_center_camera.poll():
+            bpy.ops.view3d.view_center_camera()
 
 
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
@@ -102,19 +104,18 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
     """
     scene = take.id_data
     others = [other for other in scene.keymark.takes if other != take]
-    wanted_elsewhere = {other.camera for other in others if other.clip != clip}
-    own = take.camera
-    if own is not None and own not in wanted_elsewhere and own.name in scene.objects:
-        return own
-    solved = solved_camera(scene, clip)
-    if solved is not None:
-        return solved
-    for other in others:
-        if other.clip == clip and other.camera is not None and other.camera.name in scene.objects:
-            return other.camera
-    camera = scene.camera
-    free = camera is not None and camera.type == "CAMERA" and camera not in {o.camera for o in others}
-    return camera if free and not is_startup_camera(camera) else None
+    candidates = [
+        *([take.camera] if take.camera not in {each.camera for each in others if each.clip != clip} else []),
+        solved_camera(scene, clip),
+        *(other.camera for other in others if other.clip == clip),
+        *([scene.camera] if scene.camera not in {each.camera for each in others} else []),
+    ]
+    for camera in candidates:
+        if camera is None or camera.type != "CAMERA" or camera.name not in scene.objects:
+            continue
+        if camera == take.camera or not is_startup_camera(camera):
+            return camera
+    return None
 
 
 def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) -> float:

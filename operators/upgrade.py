@@ -1,5 +1,6 @@
 """Files of other versions of Keymark, and of other machines: looked at whenever a file is opened."""
 
+from collections.abc import Iterable
 from typing import Any
 from uuid import uuid4
 
@@ -26,8 +27,6 @@ def look_at(scene: bpy.types.Scene) -> None:
     if not len(settings.takes):
         _upgrade_flat(scene)
     for take in settings.takes:
-        if not take.identifier:
-            take.identifier = uuid4().hex
         take.clip_state.missing = is_missing(take.clip)
     if len(settings.takes):
         settings.version = VERSION
@@ -78,10 +77,23 @@ def _stored(scene: bpy.types.Scene) -> Any:
     return scene.get("keymark")
 
 
+def tell_apart(scenes: Iterable[bpy.types.Scene]) -> None:
+    """Give takes that cannot be told apart, as those of a copied scene, identifiers of their own."""
+    seen: set[str] = set()
+    for scene in scenes:
+        if scene.library is not None or is_newer(scene):
+            continue
+        for take in scene.keymark.takes:
+            if not take.identifier or take.identifier in seen:
+                take.identifier = uuid4().hex
+            seen.add(take.identifier)
+
+
 @persistent
 def _opened(*_given: Any) -> None:
     for scene in bpy.data.scenes:
         look_at(scene)
+    tell_apart(bpy.data.scenes)
 
 
 HANDLERS = ("load_post", "blend_import_post")

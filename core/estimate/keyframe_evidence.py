@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 LEAST_TRUSTED = 0.3
 """Regions hidden or doubted further than this do not judge a keyframe."""
 MOST_JUDGED = 60
-"""Of more keyframes, this many, evenly spread, are judged: enough for a few numbers."""
+"""Of more keyframes, this many, evenly spread in time, are judged: enough for a few numbers."""
 ITERATIONS = 4
 DEGREES = 4.0
 SCALES = np.geomspace(0.1, 2.5, 17)
@@ -117,7 +117,7 @@ def read_keyframes(
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
-    judged = np.unique(np.linspace(0, len(frame) - 1, min(len(frame), MOST_JUDGED)).round().astype(np.intp))
+    judged = _judged(frame)
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
     # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
@@ -137,6 +137,14 @@ def read_keyframes(
         weight = np.repeat(trust, FEATURES, axis=1)
     information = keyframe_information(posing, velocity, scale, timing)
     return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, information)
+
+
+def _judged(frame: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Which of the keyframes are judged: one more or less changes little of the choice."""
+    if len(frame) <= MOST_JUDGED:
+        return np.arange(len(frame))
+    wanted = np.linspace(frame[0], frame[-1], MOST_JUDGED)
+    return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))
 
 
 def keyframe_information(posing: Array, velocity: Array, scale: float, timing: float) -> Array:

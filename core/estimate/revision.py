@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from ..footage.camera import Camera
 from .calibration import PRIOR_STD, placement_values
@@ -131,3 +132,19 @@ def revised_windows(changed: Mask, length: int, margin: int) -> list[Window]:
         for start, stop in kept
         for part in windows(stop - start, length, 0)
     ]
+
+
+def revised_share(changed: Mask, margin: int) -> Array:
+    """(F,) how much of each frame is of the new estimate, in its windows, and not of the earlier one.
+
+    Both are right a while away from the change; from one to the other there must not be a jump.
+
+    Args:
+        changed: (F,) the changed frames.
+        margin: As for the windows.
+    """
+    if not changed.any():
+        return np.zeros(len(changed))
+    away = distance_transform_edt(~changed) / max(margin, 1)
+    left = np.clip(2.0 - 2.0 * away, 0.0, 1.0)  # all of it within half the margin, nothing at its end
+    return np.asarray(left**2 * (3.0 - 2.0 * left))

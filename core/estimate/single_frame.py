@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.tracks import ExpectedRegions
 from ..observation import depths
@@ -19,6 +20,7 @@ from ..prior.belief import Belief
 from ..progress import finished
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
+from .terms.ground import GroundTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
@@ -139,7 +141,10 @@ class _Descent:
         builder = QuadraticBuilder(count, skeleton.dof_count + self.bias_std.shape[1])
         builder.add(slice(0, skeleton.dof_count), (1.0,), 1.0)
         builder.add(slice(skeleton.dof_count, None), (1.0,), self.bias_std)
-        self.terms: tuple[Term, ...] = (builder.term(), self.regions, LimitTerm())
+        self.ground = _ground(body, belief)
+        self.terms: list[Term] = [builder.term(), self.regions, LimitTerm()]
+        if self.ground is not None:
+            self.terms.append(self.ground)
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
@@ -179,13 +184,23 @@ class _Descent:
         """(S,) negative logarithm of the probability of each start's state, up to a constant."""
         excess = LimitTerm().excess(state)
         squared = (state.variation**2).sum(-1) + ((state.bias / self.bias_std) ** 2).sum(-1)
-        return np.asarray(self.regions.misfit(state).sum(-1) + 0.5 * (squared + (excess**2).sum(-1)))
+        costs = self.regions.misfit(state).sum(-1) + 0.5 * (squared + (excess**2).sum(-1))
+        return np.asarray(costs if self.ground is None else costs + self.ground.cost(state))
 
     def _distances(self, posture: Posture) -> Array:
         """(M,) of the centroids [px]."""
         pose = self.model.body.pose(Posture.stack([posture]))
         predicted = self.model.evaluate(pose, self.state.frame[:1])
         return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
+
+
+def _ground(body: Body, belief: Belief) -> GroundTerm | None:
+    """Where the ankles are when a foot is on the ground."""
+    if belief.grounded is None:
+        return None
+    ankles = tuple(i for i, name in enumerate(body.skeleton.point_names) if name.startswith("ankle"))
+    points = body.points(body.pose(belief.grounded))
+    return GroundTerm(ankles, float(points[:, list(ankles), 2].min()))
 
 
 def _factor(model: RegionModel, belief: Belief, frame: int) -> Array:

@@ -8,7 +8,7 @@ annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -24,7 +24,7 @@ from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, Preview
 from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
-from .revision import changed_frames, held, revised_windows, same_setting
+from .revision import changed_frames, held, revised_share, revised_windows, same_setting
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .window_problem import ClipProblem
 from .windows import Window, windows
@@ -123,8 +123,12 @@ def _solve(
     if earlier is not None and same_setting(earlier.problem, problem):
         same = held(earlier.problem, problem)
         if same is not None:
-            spans = revised_windows(changed_frames(earlier.problem, same), length, margin // 2)
-            return (yield from _solve_windows(same, spans, album, earlier))
+            changed = changed_frames(earlier.problem, same)
+            spans = revised_windows(changed, length, margin // 2)
+            result = yield from _solve_windows(same, spans, album, earlier)
+            share = revised_share(changed, margin // 2)[:, None]
+            step = share * result.posture.minus(earlier.posture)
+            return replace(result, posture=earlier.posture.plus(step))
     return (yield from _solve_windows(problem, list(windows(problem.frames, length, margin)), album, None))
 
 

@@ -10,6 +10,7 @@ smoothed and not keyed.
 import heapq
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,13 +88,13 @@ def reduce_keys(
 def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     """Add keys where the body is off, until it nowhere is; yields the fraction done."""
     most = 0
-    for number in range(len(body.times)):
+    for number in count():
         off = body.strain() > GENEROUS
-        count = int(off.any(axis=1).sum())
-        if not count:
+        frames_off = int(off.any(axis=1).sum())
+        if not frames_off:
             return
-        most = max(most, count)
-        done = 1.0 - count / most
+        most = max(most, frames_off)
+        done = 1.0 - frames_off / most
         blame = np.empty((len(body.groups), len(body.times)))
         for group in range(len(body.groups)):
             blame[group] = body.blame(group, off)
@@ -106,14 +107,15 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
 
 
 def _places_for_keys(body: KeyedBody, blame: Array) -> list[Indices]:
-    """For each group the frames that should become keys, at most one between two keys."""
+    """For each group the frames that should become keys, or be pinned, at most one from key to key."""
     most = blame.max(axis=0)
     places = []
     for spline, own in zip(body.splines, blame, strict=True):
         wanted = np.where(own >= BLAME * most, own, 0.0)
+        starts, stops = spline.keys, np.append(spline.keys[1:], len(wanted))
         found = [
             int(start) + int(np.argmax(wanted[start:stop]))
-            for start, stop in zip(spline.keys[:-1], spline.keys[1:], strict=True)
+            for start, stop in zip(starts, stops, strict=True)
             if wanted[start:stop].max() > 0.0
         ]
         places.append(np.array(found, dtype=np.intp))
@@ -126,7 +128,7 @@ def _take_keys_away(body: KeyedBody) -> Generator[float, None, None]:
     candidates = [
         (group, int(frame))
         for group, spline in enumerate(body.splines)
-        for frame in np.setdiff1d(spline.keys[1:-1], body.exact)
+        for frame in np.setdiff1d(spline.keys[1:-1], body.posed)
     ]
     for number, (group, frame) in enumerate(candidates):
         worst = body.without(group, frame).worst
@@ -135,7 +137,7 @@ def _take_keys_away(body: KeyedBody) -> Generator[float, None, None]:
         if number % TRIALS == 0:
             yield 0.5 * number / len(candidates)
     heapq.heapify(waiting)
-    count, number = len(waiting), 0
+    judged, number = len(waiting), 0
     while waiting:
         _, group, frame = heapq.heappop(waiting)
         trial = body.without(group, frame)
@@ -146,4 +148,4 @@ def _take_keys_away(body: KeyedBody) -> Generator[float, None, None]:
             else:
                 body.accept(trial)
         if number % TRIALS == 0:
-            yield 0.5 + 0.5 * (1.0 - len(waiting) / count)
+            yield 0.5 + 0.5 * (1.0 - len(waiting) / judged)

@@ -52,7 +52,9 @@ class KeyedBody:
             exact: Positions of frames that stay keys, with their own values.
             groups: Positions of bones, each bone in one group.
         """
-        self.rig, self.times, self.exact, self.groups = rig, times, exact, groups
+        self.rig, self.times, self.posed, self.groups = rig, times, exact, groups
+        self.pinned = [exact for _ in groups]
+        """For each group the frames at which its keys have the goal's own values."""
         self.tolerance_m = tolerance_m
         self.data = [np.concatenate([values[bone] for bone in group], axis=1) for group in groups]
         self._ends = [np.cumsum([values[bone].shape[1] for bone in group]) for group in groups]
@@ -86,15 +88,20 @@ class KeyedBody:
         return tuple(found[bone] for bone in range(len(self.rig.bones)))
 
     def insert(self, group: int, frames: Indices, everywhere: bool) -> None:
-        """Add keys to a group and fit all its keys anew, or only those near the new ones."""
+        """Add keys to a group and fit all its keys anew, or only those near the new ones.
+
+        A frame that is a key already is pinned: from now on the key has the goal's own value.
+        """
+        again = np.intersect1d(frames, self.splines[group].keys)
+        self.pinned[group] = np.union1d(self.pinned[group], again).astype(np.intp)
         spline, data = self.splines[group].with_keys(self.times, frames), self.data[group]
         last = len(spline.keys) - 1
         if everywhere:
-            self.splines[group] = refit(self.times, data, spline, 0, last, self.exact)
+            self.splines[group] = refit(self.times, data, spline, 0, last, self.pinned[group])
             return
         for at in np.searchsorted(spline.keys, frames):
             low, high = max(int(at) - REACH, 0), min(int(at) + REACH, last)
-            spline = refit(self.times, data, spline, low, high, self.exact)
+            spline = refit(self.times, data, spline, low, high, self.pinned[group])
         self.splines[group] = spline
 
     def without(self, group: int, frame: int) -> Trial:
@@ -103,7 +110,7 @@ class KeyedBody:
         spline = self.splines[group].without_key(at)
         last = len(spline.keys) - 1
         low, high = max(at - REACH, 0), min(at + REACH - 1, last)
-        spline = refit(self.times, self.data[group], spline, low, high, self.exact)
+        spline = refit(self.times, self.data[group], spline, low, high, self.pinned[group])
         start, stop = int(spline.keys[max(low - 1, 0)]), int(spline.keys[min(high + 1, last)])
         frames = slice(start, stop + 1)
         changed = self._by_bone(group, spline.evaluate(self.times, start, stop))
@@ -125,12 +132,12 @@ class KeyedBody:
             off: (F, P) which points are off.
 
         Returns:
-            (F,) [m], to first order; 0 at the group's own keys, where a further key can do nothing.
+            (F,) [m], to first order; 0 where the group is pinned and nothing more can be done.
         """
         moved = np.zeros(len(self.times))
         for bone in self.groups[group]:
             moved = np.maximum(moved, np.where(off, self._moved_by(bone), 0.0).max(axis=1))
-        moved[self.splines[group].keys] = 0.0
+        moved[self.pinned[group]] = 0.0
         return moved
 
     def _moved_by(self, bone: int) -> Array:

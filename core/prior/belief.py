@@ -34,6 +34,8 @@ FORGETTING_S = 0.3
 """Time after which two thirds of that difference are there."""
 SPEED_M_PER_S = 0.7
 """A performer who walks goes on and on: the place differs by as much as this times the time, too."""
+GOING_ON = 0.5
+"""Of the way between the last two keyframes, so much goes on at the same pace."""
 TOUCHED_UP = 0.5
 """A pose that the animator has set lies within this share of the farthest differences."""
 UNKNOWN_HEADING_RAD = 1.2
@@ -54,6 +56,8 @@ class Belief:
     """A batch of postures to start looking from, the first of them `posture`."""
     depth_std_m: float = DEPTH_STD_M
     """How far each point's depth may lie off [m]."""
+    grounded: Posture | None = None
+    """Postures of which at least one stands on the ground; None where nothing says where that is."""
 
 
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
@@ -80,12 +84,26 @@ def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float)
     skeleton = near[0].posture.skeleton
     variances = [difference_std(skeleton, (keyframe.index - index) / fps) ** 2 for keyframe in near]
     postures = [keyframe.posture for keyframe in near]
+    everyone = Posture.stack([keyframe.posture for keyframe in others])
     if len(near) == 1:
-        return Belief(postures[0], np.sqrt(variances[0]), Posture.stack(postures))
+        postures = [_moved_on(others, index)]
+        return Belief(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
     between = interpolate(tuple(others), index + 1)[index]
     # Each neighbour says something of its own, the nearer one more.
     std = (1.0 / variances[0] + 1.0 / variances[1]) ** -0.5
-    return Belief(between, std, Posture.stack([between, *postures]))
+    return Belief(between, std, Posture.stack([between, *postures]), grounded=everyone)
+
+
+def _moved_on(keyframes: Sequence[Keyframe], index: int) -> Posture:
+    """The keyframe nearest to a frame before or after all of them, going on the way the last two went."""
+    early = index < keyframes[0].index
+    last, other = (keyframes[0], keyframes[1:2]) if early else (keyframes[-1], keyframes[-2:-1])
+    if not other:
+        return last.posture
+    step = np.zeros(last.posture.skeleton.dof_count)
+    time = (index - last.index) / (last.index - other[0].index)
+    step[:2] = GOING_ON * time * (last.posture.translation - other[0].posture.translation)[:2]
+    return last.posture.plus(step)
 
 
 def belief_from_pose(posture: Posture) -> Belief:
@@ -93,12 +111,18 @@ def belief_from_pose(posture: Posture) -> Belief:
     return Belief(posture, TOUCHED_UP * _farthest(posture.skeleton), Posture.stack([posture]))
 
 
-def belief_from_standing(posture: Posture) -> Belief:
-    """What a body says that merely stands about where the performer is: anything is possible."""
+def belief_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> Belief:
+    """What a body says that merely stands about where the performer is: anything is possible.
+
+    Args:
+        posture: How it stands.
+        depth_std_m: How far the points may lie off in depth [m]; less where the place was measured.
+    """
     std = _farthest(posture.skeleton)
     std[:3] = UNKNOWN_PLACE_M
     std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
-    return Belief(posture, std, turned(posture, HEADINGS_RAD), UNKNOWN_DEPTHS_M)
+    around = turned(posture, HEADINGS_RAD)
+    return Belief(posture, std, around, depth_std_m, grounded=around[:1])
 
 
 def _farthest(skeleton: Skeleton) -> Array:

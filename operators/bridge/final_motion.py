@@ -30,8 +30,6 @@ CHANGED_BY_FEET = ("pelvis", "thigh", "shin")
 SMALLEST_LENGTH = 1e-9
 ROUNDING = 1e-3
 """Keys this near to a whole frame [frames] lie on it."""
-SLICE = 20
-"""Frames read between two reports of progress."""
 
 
 def rig_channels(rig: Rig) -> tuple[Channel, ...]:
@@ -112,25 +110,13 @@ def _unit_quaternions(quaternions: Array) -> Array:
     return continuous_quaternions(unit)
 
 
-def shown_postures(
-    armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body
-) -> Generator[float, None, Posture]:
-    """The postures, (F,) of them, nearest to what a rig shows.
-
-    Yields:
-        The fraction done.
-    """
+def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body) -> Posture:
+    """The postures, (F,) of them, nearest to what a rig shows."""
     models = skeleton_bones(armature_object, body.skeleton)
-    row = {bone.name: index for index, bone in enumerate(rig.bones)}
-    row |= {model.name: row[str(model.parent)] for model in models if model.name not in row}
+    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
+    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
-    postures = []
-    for frame in range(len(hips)):
-        turns = {model.name: shown.rotation[row[model.name], frame] for model in models}
-        postures.append(posture_from_frames(body.skeleton, models, turns, hips[frame]))
-        if frame % SLICE == 0:
-            yield frame / len(hips)
-    return Posture.stack(postures)
+    return posture_from_frames(body.skeleton, models, turns, hips)
 
 
 def with_planted_legs(
@@ -171,7 +157,7 @@ def posed_positions(
 
 
 def tolerances(
-    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held: float
+    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held_m: float
 ) -> Array:
     """(F, P) how far each of the rig's points may be off [m].
 
@@ -180,13 +166,13 @@ def tolerances(
         frame_count: F.
         tolerance_m: What is allowed in general [m].
         contacts: Rests of the ankles, left and right.
-        held: Share of it that is left to an ankle that rests.
+        held_m: What is allowed to an ankle that rests, where that is less [m].
     """
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
     for contact in contacts:
         ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
-        allowed[contact.first : contact.last + 1, ankle] = held * tolerance_m
+        allowed[contact.first : contact.last + 1, ankle] = min(held_m, tolerance_m)
     return allowed
 
 

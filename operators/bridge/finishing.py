@@ -34,8 +34,8 @@ Note = tuple[str, dict[str, Any]]
 
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
-HELD = 0.2
-"""Share of the tolerance that is left to an ankle that rests: few keys must not make it slide again."""
+HELD_M = 0.001
+"""How far few keys may move an ankle that rests [m]: they must not make it slide again."""
 NOTICEABLE_M = 0.005
 """Distance [m] between a pose and its nearest posture that the animator is told of."""
 BEYOND = (
@@ -116,7 +116,7 @@ def finish_motion(
         values, contacts, notes = yield from planting
     if wanted.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, contacts, notes)
-    allowed = tolerances(rig, len(frames), wanted.tolerance_m, contacts, HELD)
+    allowed = tolerances(rig, len(frames), wanted.tolerance_m, contacts, HELD_M)
     reducing = reduce_keys(rig, frames, values, allowed, exact, wanted.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)
@@ -133,7 +133,8 @@ def _plant(
     stage = "Planting the feet"
     yield Progress(stage, READ)
     shown = rig.show(values)
-    posture = yield from within(stage, shown_postures(armature_object, rig, shown, body), READ, SEEN)
+    posture = shown_postures(armature_object, rig, shown, body)
+    yield Progress(stage, SEEN)
     planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)
     if not planted.contacts:
         return values, (), ((NO_REST, {}),)

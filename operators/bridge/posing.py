@@ -20,8 +20,9 @@ from ...core.footage.one_frame import regions_of_frame
 from ...core.footage.reading import Reading
 from ...core.footage.reading_key import of_same_footage, reading_key
 from ...core.footage.tracks import ExpectedRegions, RegionTracks
+from ...core.observation.depths import DEPTH_STD_M
 from ...core.observation.regions import MarkerPlacement, RegionModel
-from ...core.prior.belief import belief_from_keyframes, belief_from_pose, belief_from_standing
+from ...core.prior.belief import Belief, belief_from_keyframes, belief_from_pose, belief_from_standing
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .footage import Footage
@@ -31,6 +32,9 @@ from .pose import read_posture
 from .scene_camera import read_camera
 
 Array = NDArray[np.float64]
+
+STANDS_HERE = 1.5
+"""A body whose markers lie farther off than this many times those of one placed anew stands elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +132,7 @@ def fit_to_frame(
     elif start == "KEYFRAMES" and posed:
         belief = belief_from_keyframes(posed, frame.index, frame.footage.rate)
     else:
-        belief = belief_from_standing(posed_standing(frame, body, frame.regions()))
+        belief = _standing_belief(frame, model, read_posture(armature_object, body).posture)
     regions = frame.regions(expected_in_frame(model, belief, len(posed)))
     if not regions.visible.any():
         raise InputError(
@@ -141,6 +145,22 @@ def fit_to_frame(
             model, seen, Posture.stack([keyframe.posture for keyframe in posed]), np.arange(len(posed))
         )
     return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed))
+
+
+def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> Belief:
+    """About the shown posture if it stands at the performer already, as measured; else one placed there."""
+    regions = frame.regions()
+    placed = posed_standing(frame, model.body, regions)
+    both = Posture.stack([shown, placed])
+    last = model.camera.matrix_world.shape[0] - 1 if model.camera.is_moving else 0
+    predicted = model.evaluate(model.body.pose(both), np.array([last, last]))
+    apart = np.linalg.norm(predicted.centroid - regions.centroid, axis=-1)
+    if not np.isfinite(apart).any():
+        return belief_from_standing(placed)
+    of_shown, of_placed = np.nanmean(apart, axis=1)
+    if of_shown <= STANDS_HERE * of_placed:
+        return belief_from_standing(shown, DEPTH_STD_M)
+    return belief_from_standing(placed)
 
 
 def _keyframes(

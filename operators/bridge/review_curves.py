@@ -17,8 +17,8 @@ from .keys import add_generated_keys, remove_generated_keys
 Array = NDArray[np.float64]
 
 GROUP = "Keymark Confidence"
-PREFIX = "Keymark "
-"""What the names of all custom properties begin with."""
+SUFFIX = " (Keymark)"
+"""What the names of all custom properties end with, so that none is anybody else's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,12 +26,17 @@ class ReviewCurve:
     """One curve and the property it animates."""
 
     name: str
-    """Of the custom property."""
+    """What it shows, with the unit."""
     description: str
     values: Array
     """(F,) values; frames that are NaN get no key."""
     soft_max: float
     """Upper end of the property's slider; the lower is 0."""
+
+    @property
+    def property_name(self) -> str:
+        """Of the custom property."""
+        return self.name + SUFFIX
 
 
 def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
@@ -54,7 +59,7 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
             1.0,
         ),
         ReviewCurve(
-            "Reprojection",
+            "Reprojection px",
             "Mean distance between the markers seen and those predicted, in pixels of the footage",
             reprojection,
             10.0,
@@ -63,7 +68,7 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
     for point, name in enumerate(review.point_names):
         curves.append(
             ReviewCurve(
-                f"Sigma {name}",
+                f"Sigma {name} mm",
                 f"Standard deviation of the point {name}, in millimetres",
                 1e3 * review.sigma_m[:, point],
                 100.0,
@@ -74,7 +79,7 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
 
 def curve_path(name: str) -> str:
     """Data path of the custom property of a review curve, on the armature object."""
-    return f'["{bpy.utils.escape_identifier(PREFIX + name)}"]'
+    return f'["{bpy.utils.escape_identifier(name + SUFFIX)}"]'
 
 
 def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Action, review: Review) -> None:
@@ -95,7 +100,7 @@ def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Act
     for curve in curves:
         known = np.isfinite(curve.values)
         if not known.any():
-            armature_object.pop(PREFIX + curve.name, None)
+            armature_object.pop(curve.property_name, None)
             continue
         _ensure_property(armature_object, curve)
         add_generated_keys(
@@ -104,7 +109,7 @@ def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Act
 
 
 def _ensure_property(armature_object: bpy.types.Object, curve: ReviewCurve) -> None:
-    name = PREFIX + curve.name
+    name = curve.property_name
     if name not in armature_object:
         armature_object[name] = 0.0
     interface = armature_object.id_properties_ui(name)

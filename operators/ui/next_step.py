@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bridge.actions import existing_channelbag
+from ..posed_frames import posed_frames, unposed
 
 FEWEST_KEYFRAMES = 2
 
@@ -19,21 +19,14 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: pick the markers' colors"
     if take.armature is None or take.armature.name not in take.id_data.objects:
         return "Next: build the actor"
-    count = posed_count(take)
-    if not count and not len(take.proposals):
+    if not len(take.proposals) and not posed_frames(take):
         return "Next: propose keyframes"
-    if count < FEWEST_KEYFRAMES:
-        return "Next: pose and store keyframes"
     if take.motion_action is None:
+        if unposed(take):
+            return "Next: pose the proposed frames"
+        if len(posed_frames(take)) < FEWEST_KEYFRAMES:
+            return "Next: pose and store keyframes"
         return "Next: reconstruct the motion"
-    return "Next: review, or finish"
-
-
-def posed_count(take: bpy.types.PropertyGroup) -> int:
-    """How many keys the first curve of the take's keyframes has: storing a pose keys every curve."""
-    if take.keyframe_action is None or take.armature is None:
-        return 0
-    channelbag = existing_channelbag(take.keyframe_action, take.armature)
-    if channelbag is None or not len(channelbag.fcurves):
-        return 0
-    return len(channelbag.fcurves[0].keyframe_points)
+    if take.finish.action is None:
+        return "Next: review, then finish"
+    return "Next: mark as asset, or export"

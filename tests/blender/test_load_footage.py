@@ -186,6 +186,24 @@ def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path)
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
 
 
+def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Path) -> None:
+    """Baked, exported and reviewed on a machine that never had the clip."""
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
+    active_take(bpy.context.scene).method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    tiny_take.clip.rename(tmp_path / "elsewhere.mp4")
+    take = reopened(tmp_path / "scene.blend")
+    assert take.clip_state.missing
+    assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
+    assert bpy.ops.keymark.export_motion(format="BVH", filepath=str(tmp_path / "motion.bvh")) == {"FINISHED"}
+    assert (tmp_path / "motion.bvh").read_text().startswith("HIERARCHY")
+    assert bpy.ops.keymark.set_up_turntable() == {"FINISHED"}
+    before = len(bpy.data.actions), len(bpy.data.cameras)
+    assert bpy.ops.keymark.remove_take(delete_data=True) == {"FINISHED"}
+    assert len(bpy.data.objects) == 0 and min(before) > 1
+
+
 def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:  # noqa: ANN001
     """A file of another length or size is taken, with a word."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))

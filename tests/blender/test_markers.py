@@ -1,11 +1,16 @@
 """Markers: adding, picking, checking, and what is drawn of them."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
+from keymark.core.errors import InputError
+from keymark.core.progress import run
 from keymark.core.take import Take
+from keymark.operators.check_markers import KEYMARK_OT_check_markers
 from keymark.operators.marker_previews import forget_previews, look_at_frame, preview_of
-from keymark.operators.takes import active_take
+from keymark.operators.takes import active_take, add_take, take_called
 from keymark.operators.ui.overlays.mask import free_height, tinted
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -199,3 +204,29 @@ def test_names_move_up_past_those_that_are_there() -> None:
     assert free_height((10.0, 12.0, 40.0, 8.0), taken) == 26.0
     assert free_height((80.0, 12.0, 40.0, 8.0), taken) == 12.0
     assert free_height((10.0, 40.0, 40.0, 8.0), taken) == 40.0
+
+
+def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened: bpy.types.Scene) -> None:
+    """Another take may have come forward meanwhile; markers that were changed keep what they have."""
+    job = SimpleNamespace(pixel=(80.0, 60.0), report=lambda *_: None)
+    operator = KEYMARK_OT_check_markers
+    first = active_take(opened).identifier
+    found = run(operator.start(job, opened))
+    add_take(opened, "Other")
+    operator.finish(job, opened, found)
+    assert all(
+        marker.has_readout(take_called(opened, first)) for marker in take_called(opened, first).markers
+    )
+    assert not len(active_take(opened).markers)
+    take_called(opened, first).markers[2].color = (0.2, 0.2, 0.9)
+    with pytest.raises(InputError, match="changed while they were looked for"):
+        operator.finish(job, opened, found)
+    assert not take_called(opened, first).markers[0].has_readout(take_called(opened, first))
+
+
+def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
+    """The button says so, instead of a sentence about grey after the clip was read."""
+    bpy.ops.keymark.add_marker()
+    for operator in ("reconstruct", "propose_keyframes"):
+        with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):
+            getattr(bpy.ops.keymark, operator)()

@@ -232,3 +232,32 @@ def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
     bpy.ops.ed.undo()
     take = active_take(bpy.context.scene)
     assert 4.0 not in posed_frames(take)
+
+
+def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.types.Scene) -> None:
+    """Applying them to another one would otherwise make it the old one's size."""
+    from keymark.core.body.actor import Actor
+    from keymark.core.body.kinematics import Body
+    from keymark.operators.bridge.armature import build_armature
+
+    take = active_take(opened)
+    other = build_armature(opened, Body(Actor.from_stature(1.2)))
+    take.armature = other
+    assert take.lengths.trunk == pytest.approx(0.285 * 1.2, rel=1e-4)
+    bpy.ops.keymark.apply_lengths()
+    assert read_body(other, HUMAN).actor.stature_m == pytest.approx(1.2, rel=1e-4)
+
+
+def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
+    """Keys on the camera that leave it where the footage was taken from in this frame alone."""
+    take = active_take(opened)
+    camera = take.camera
+    for frame, aside in ((1, 0.6), (4, 0.0), (13, 0.9)):
+        camera.location.x = camera.location.x + aside
+        camera.keyframe_insert("location", frame=frame)
+        camera.location.x = camera.location.x - aside
+    opened.frame_set(4)
+    write_posture(take.armature, wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25)))
+    before = off_m(opened, wave_motion, 4)
+    bpy.ops.keymark.fit_pose(start="POSE")
+    assert off_m(opened, wave_motion, 4) < 0.8 * before

@@ -13,7 +13,9 @@ from keymark.core.take import Take
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
-from keymark.operators.bridge.review_curves import GROUP, PREFIX, curve_path, write_review_curves
+from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
+from keymark.operators.posed_frames import is_posed
+from keymark.operators.results import review_of
 from keymark.operators.reviewing import clear_review, show_review
 from keymark.operators.takes import active_take
 
@@ -28,6 +30,24 @@ def take(tiny_take: Take, wave_motion: Motion) -> bpy.types.PropertyGroup:
     take.motion_action = write_motion(take.armature, wave_motion)
     show_review(take, made_up_review())
     return take
+
+
+def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
+    """List, curves and what overlays draw from, all of the same motion; a second run replaces them."""
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
+    take = active_take(bpy.context.scene)
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    review = review_of(take)
+    assert take.review.frame_count == len(review.frames) == 13
+    assert take.review.confidence == pytest.approx(review.confidence.mean())
+    assert [weak.frame for weak in take.review.weak_frames] == [
+        review.frames[weak.index] for weak in review.weak_frames
+    ]
+    keys = curve(take, "Confidence").keyframe_points
+    assert [key.co[1] for key in keys] == pytest.approx(review.confidence, abs=1e-5)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    assert take.review.confidence < 0.0 and curve(take, "Confidence") is None
 
 
 def curve(take: bpy.types.PropertyGroup, name: str) -> bpy.types.FCurve | None:
@@ -51,8 +71,8 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
     unknown = np.full(13, np.nan)
     show_review(take, replace(made_up_review(), confidence=unknown, sigma_m=np.full((13, 13), np.nan)))
     assert take.review.confidence < 0.0
-    assert curve(take, "Confidence") is None and curve(take, "Sigma head") is None
-    assert PREFIX + "Confidence" not in take.armature
+    assert curve(take, "Confidence") is None and curve(take, "Sigma head mm") is None
+    assert "Confidence" + SUFFIX not in take.armature
     assert curve(take, "Nearness") is not None
 
 
@@ -62,10 +82,10 @@ def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
     expected = {
         "Confidence": review.confidence,
         "Nearness": review.nearness,
-        "Reprojection": np.array(
+        "Reprojection px": np.array(
             [np.nanmean(row) if not np.isnan(row).all() else np.nan for row in review.reprojection_px]
         ),
-        "Sigma wrist.L": 1e3 * review.sigma_m[:, HUMAN.point_names.index("wrist.L")],
+        "Sigma wrist.L mm": 1e3 * review.sigma_m[:, HUMAN.point_names.index("wrist.L")],
     }
     for name, values in expected.items():
         found = curve(take, name)
@@ -74,7 +94,7 @@ def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
         assert [key.co[0] for key in found.keyframe_points] == pytest.approx(review.frames[known])
         assert [key.co[1] for key in found.keyframe_points] == pytest.approx(values[known], rel=1e-5)
         assert {key.type for key in found.keyframe_points} == {"GENERATED"}
-    assert len(curve(take, "Reprojection").keyframe_points) == 12
+    assert len(curve(take, "Reprojection px").keyframe_points) == 12
 
 
 def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.PropertyGroup) -> None:
@@ -82,8 +102,8 @@ def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.Propert
     scene = bpy.context.scene
     scene.frame_set(7)
     shown = take.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    assert shown[PREFIX + "Confidence"] == pytest.approx(0.4, abs=1e-5)
-    interface = take.armature.id_properties_ui(PREFIX + "Confidence").as_dict()
+    assert shown["Confidence" + SUFFIX] == pytest.approx(0.4, abs=1e-5)
+    interface = take.armature.id_properties_ui("Confidence" + SUFFIX).as_dict()
     assert (interface["min"], interface["soft_max"]) == (0.0, 1.0)
     assert "height" in interface["description"]
 
@@ -142,7 +162,7 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
     assert take.armature.animation_data.action == take.keyframe_action
     assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == tuple(sorted({*before, 4.0}))
     assert shown_points(take.armature) == pytest.approx(wave_motion.points[3], abs=1e-4)
-    assert [weak.is_posed for weak in take.review.weak_frames] == [False, True]
+    assert [is_posed(take, weak.frame) for weak in take.review.weak_frames] == [True, True]
     assert len(curve(take, "Confidence").keyframe_points) == 13
 
 

@@ -9,10 +9,11 @@ from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.take import Take
+from keymark.operators.posed_frames import is_posed
 from keymark.operators.results import keep_reading, keep_review
 from keymark.operators.takes import active_take
 from keymark.operators.ui.overlays.picture import Fill, Label, Stroke
-from keymark.operators.ui.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, posed, relative
+from keymark.operators.ui.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
 from keymark.operators.ui.overlays.timeline_figures import believed_color, graph, in_view, joined, strip
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -56,7 +57,7 @@ def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
     (outline,), (filled,) = items_of(take, Stroke), items_of(take, Fill)
     assert len(outline.segments) == 3 * 4
     assert filled.corners.mean(axis=1)[:, 0] == pytest.approx([30.0, 90.0])
-    assert posed(take, np.array([1.0, 4.0, 7.4])).tolist() == [True, False, True]
+    assert [is_posed(take, frame) for frame in (1.0, 4.0, 7.4)] == [True, False, True]
     bpy.context.scene.keymark.timeline.show_proposals = False
     assert items_of(take, Fill) == []
 
@@ -84,7 +85,9 @@ def test_confidence_is_told_by_height_and_colour(take: bpy.types.PropertyGroup) 
     ground, bars = items_of(take, Fill)
     heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
     assert heights == pytest.approx(ROOMY.strip * made_up_review().confidence)
-    assert ground.corners[0, :, 0].min() <= bars.corners[..., 0].min() + 10.0
+    (across, up), reach = ground.corners[0].T, (VIEW.places([0.5]), VIEW.places([13.5]))
+    assert (across.min(), across.max()) == (pytest.approx(reach[0]), pytest.approx(reach[1]))
+    assert np.ptp(up) == pytest.approx(ROOMY.strip)
     assert bars.color[0, 2] > bars.color[6, 2] and bars.color[6, 0] > bars.color[0, 0]
     keep_review(take, replace(made_up_review(), confidence=np.full(13, np.nan)))
     assert items_of(take, Fill) == []
@@ -95,7 +98,7 @@ def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -
     for frame in (4.0, 9.0):
         take.review.weak_frames.add().frame = frame
     assert len(items_of(take, Fill)[0].corners) == 2
-    take.review.weak_frames[0].is_posed = True
+    take.review.weak_frames[0].frame = 7.0  # where a keyframe is
     (triangle,) = items_of(take, Fill)[0].corners
     assert triangle[0, 0] == pytest.approx(110.0) and triangle[0, 1] < triangle[1:, 1].min()
 

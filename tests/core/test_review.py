@@ -56,7 +56,7 @@ def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
 def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: str) -> None:
     """What was seen lies where it is predicted; only a method with uncertainty is believed in numbers."""
     result = run(reconstruct(take, method))
-    seen = review(take, result, np.arange(24) + 1.0)
+    seen = run(review(take, result, np.arange(24) + 1.0))
     assert seen.observed.shape[:2] == seen.predicted.shape[:2] == (24, 5)
     centres = [np.nanmean(outline, axis=2) for outline in (seen.observed, seen.predicted)]
     assert np.nanmedian(np.linalg.norm(centres[0] - centres[1], axis=-1)) < 3.0
@@ -72,7 +72,7 @@ def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: st
 def test_the_motion_that_was_found_is_the_one_that_is_shown(take: Take) -> None:
     """The distance to the centroids is the estimate's own, and points lie where the camera sees them."""
     result = run(reconstruct(take))
-    seen = review(take, result, np.arange(24) + 1.0)
+    seen = run(review(take, result, np.arange(24) + 1.0))
     assert seen.reprojection_px == pytest.approx(result.motion.diagnostics["residual_px"], nan_ok=True)
     pixels, _ = result.model.camera.project(seen.points)
     assert seen.image_points == pytest.approx(pixels)
@@ -82,5 +82,5 @@ def test_few_keyframes_are_told_with_the_frames_that_lack_one(take: Take) -> Non
     """Between two keyframes at the ends, a frame in the middle is named."""
     few = replace(take, keyframes=(take.keyframes[0], take.keyframes[-1]))
     result = run(reconstruct(few, "interpolation"))
-    worst = review(few, result, np.arange(24) + 1.0).weak_frames[0]
+    worst = run(review(few, result, np.arange(24) + 1.0)).weak_frames[0]
     assert 6 <= worst.index <= 17

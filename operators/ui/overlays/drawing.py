@@ -146,6 +146,7 @@ def text(
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)
     blf.disable(FONT, blf.SHADOW)
+    gpu.state.blend_set("ALPHA")  # which blf switches off: what is drawn next would be opaque
 
 
 def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:

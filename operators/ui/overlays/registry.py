@@ -33,6 +33,8 @@ OVERLAYS = (
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
+    Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),
+    Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
     Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
 """All of them; those of one place are drawn in this order."""

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from bpy.app.translations import pgettext_iface
 from numpy.typing import NDArray
 
+from ...posed_frames import is_posed
 from ...results import Remembered, reading_of, review_of
+from ...say import label
 from ...takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
@@ -19,8 +20,6 @@ from .timeline_figures import graph, in_view, joined, pointers, strip
 Array = NDArray[np.float64]
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
-SAME_FRAME = 0.5
-"""A key nearer than this to a proposal [frames] fills its diamond."""
 
 
 @dataclass(frozen=True)
@@ -134,15 +133,18 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
             f"confidence {take.review_key} {timeline}",
             lambda: confidence_strip(review.frames, review.confidence, timeline),
         )
-    if settings.show_weak_frames:
-        todo = [weak.frame for weak in take.review.weak_frames if not weak.is_posed]
-        items += weak_pointers(np.array(todo, dtype=np.float64), timeline)
-    if settings.show_proposals:
-        proposed = np.array([proposal.frame for proposal in take.proposals], dtype=np.float64)
-        level = np.zeros(len(proposed))
+    weak = [weak.frame for weak in take.review.weak_frames] if settings.show_weak_frames else []
+    proposed = [proposal.frame for proposal in take.proposals] if settings.show_proposals else []
+    if weak:
+        frames = np.array([frame for frame in weak if not is_posed(take, frame)], dtype=np.float64)
+        items += weak_pointers(frames, timeline)
+    if proposed:
+        frames = np.array(proposed, dtype=np.float64)
+        level = np.zeros(len(frames))
         if speed is not None and settings.show_speed:
-            level = np.interp(proposed, speed.frames, relative(speed.values))
-        items += proposals(proposed, level, posed(take, proposed), timeline)
+            level = np.interp(frames, speed.frames, relative(speed.values))
+        done = np.array([is_posed(take, frame) for frame in proposed])
+        items += proposals(frames, level, done, timeline)
     return items
 
 
@@ -162,7 +164,7 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     line, area = graph(x, values, timeline.floor, timeline.height)
     items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
     if timeline.sizes == ROOMY:
-        words = pgettext_iface("Speed of markers")
+        words = label("Speed of markers")
         items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
     return items
 
@@ -174,9 +176,10 @@ def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> li
     x, values = joined(x[shown], confidence[shown], lowest=True)
     if not len(x):
         return []
-    height = timeline.sizes.strip * timeline.pixel
-    ground, _ = strip(x[[0, -1]], np.ones(2), timeline.strip_floor, height)
-    bars, colors = strip(x, values, timeline.strip_floor, height)
+    floor, height = timeline.strip_floor, timeline.sizes.strip * timeline.pixel
+    bars, colors = strip(x, values, floor, height)
+    (left, right), top = bars[[0, -1], [0, 1], 0], floor + height
+    ground = np.array([[(left, floor), (right, floor), (right, top), (left, top)]])
     return [Fill(ground, GROUND), Fill(bars, colors)]
 
 
@@ -207,17 +210,6 @@ def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Ti
         Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
         Fill(marks[done], PROPOSED),
     ]
-
-
-def posed(take: bpy.types.PropertyGroup, frames: Array) -> NDArray[np.bool_]:
-    """Which of the frames (N,) are keyed in the take's keyframe Action."""
-    from ....core.body.human import HUMAN
-    from ...bridge.keyframes import keyed_frames
-
-    if take.armature is None or take.keyframe_action is None or not len(frames):
-        return np.zeros(len(frames), dtype=bool)
-    keyed = np.array(keyed_frames(take.armature, take.keyframe_action, HUMAN), dtype=np.float64)
-    return np.asarray((np.abs(frames[:, None] - keyed) < SAME_FRAME).any(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,6 +44,6 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> boo
     percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
     layout.progress(factor=progress.fraction, text=percent)
     row = layout.row()
-    row.label(text="Esc cancels", icon="EVENT_ESC")
+    row.label(text="Esc cancels", icon="CANCEL")
     row.label(text=progress.time_left, translate=False)
     return True

@@ -55,6 +55,19 @@ class KEYMARK_MT_add_take(bpy.types.Menu):
         layout.operator("keymark.open_take", icon="FILE_FOLDER")
 
 
+class KEYMARK_MT_take_specials(bpy.types.Menu):
+    """What is seldom done to a take."""
+
+    bl_label = "Take Specials"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Removing with everything, and the guide."""
+        layout = self.layout
+        entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
+        entry.delete_data = True
+        layout.popover("KEYMARK_PT_guide", icon="HELP")
+
+
 class KEYMARK_PT_guide(bpy.types.Panel):
     """The way from a video to an Action, in seven lines."""
 
@@ -106,12 +119,13 @@ def _draw_beginning(layout: bpy.types.UILayout) -> None:
 def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """The list of takes; a single one is a line."""
     row = layout.row()
-    row.template_list("KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=2, maxrows=4)
+    row.template_list("KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4)
     buttons = row.column(align=True)
     buttons.menu("KEYMARK_MT_add_take", text="", icon="ADD")
     buttons.operator("keymark.remove_take", text="", icon="REMOVE")
+    buttons.menu("KEYMARK_MT_take_specials", text="", icon="DOWNARROW_HLT")
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_takes, KEYMARK_MT_add_take, KEYMARK_PT_guide, KEYMARK_PT_main)
+    (KEYMARK_UL_takes, KEYMARK_MT_add_take, KEYMARK_MT_take_specials, KEYMARK_PT_guide, KEYMARK_PT_main)
 )

@@ -5,7 +5,7 @@ from textwrap import wrap
 import bpy
 
 from ...takes import active_take, find_take
-from .base import TakePanel
+from .base import TakePanel, draw_progress
 
 LETTER, MARGIN = 6.2, 80.0
 """Pixels that a letter of a label takes on a plain screen, and those beside the words."""
@@ -17,11 +17,12 @@ class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
     bl_label = "Reconstruct"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button, the method and the switch between keyframes and motion."""
+        """Draw the button or the running job, the method, and the switch between keyframes and motion."""
         take, column = active_take(context.scene), self.column()
-        row = column.row()
-        row.scale_y = 1.4
-        row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
+        if not draw_progress(column, context):
+            row = column.row()
+            row.scale_y = 1.4
+            row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         column.prop(take, "method")
         column.prop(take, "live_preview")
         _draw_show(column, take)

@@ -1,8 +1,9 @@
 """How good the motion is, and where another keyframe helps."""
 
 import bpy
-from bpy.app.translations import pgettext_iface
 
+from ...posed_frames import is_posed
+from ...say import label
 from ...takes import active_take
 from .base import TakePanel
 
@@ -23,14 +24,14 @@ class KEYMARK_UL_weak_frames(bpy.types.UIList):
         """Draw one frame."""
         row = layout.row(align=True)
         number = row.row()
-        number.ui_units_x = 2.6
+        number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
-        words = pgettext_iface(reason.name)
+        words = label(reason.name)
         row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
         worth = row.row()
-        worth.ui_units_x = 2.4
-        if item.is_posed:
+        worth.ui_units_x = 2.0
+        if is_posed(active_take(context.scene), item.frame):
             worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
         else:
             worth.progress(factor=item.strength, text="", type="BAR")
@@ -40,7 +41,6 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
     """Confidence, and the frames worth another keyframe."""
 
     bl_label = "Review"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw confidence and the list."""
@@ -49,7 +49,7 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
             column.label(text="Reconstruct the motion first", icon="INFO")
             return
         if review.confidence >= 0.0:
-            words = pgettext_iface("Confidence {percent:.0f} %").format(percent=100.0 * review.confidence)
+            words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
             column.progress(factor=review.confidence, text=words, type="BAR")
         if not len(review.weak_frames):
             column.label(text="No frame needs another keyframe", icon="CHECKMARK")

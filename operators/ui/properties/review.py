@@ -3,10 +3,10 @@
 import bpy
 
 REASONS = (
-    ("HIDDEN", "Hidden Marker", "A marker is hidden around this frame", "HIDE_ON", 0),
+    ("HIDDEN", "Hidden", "A marker is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
-    ("FAR", "Far From Keyframes", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    ("FOOTAGE", "Footage Disagrees", "A marker is not where the motion puts it", "TRACKER", 3),
+    ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
+    ("FOOTAGE", "Off Footage", "A marker is not where the motion puts it", "TRACKER", 3),
 )
 
 
@@ -28,9 +28,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
         subtype="FACTOR",
         min=0.0,
         max=1.0,
-    )
-    is_posed: bpy.props.BoolProperty(
-        name="Posed", description="A keyframe was added here since the reconstruction"
     )
 
     def go_to(self, scene: bpy.types.Scene) -> None:

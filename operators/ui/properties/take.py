@@ -1,5 +1,7 @@
 """One take: a performer in a clip, with all that the animator says and Keymark finds of it."""
 
+from contextlib import suppress
+
 import bpy
 
 from ...takes import unique_name
@@ -19,6 +21,18 @@ METHODS = (
 
 def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
     return bool(candidate.type == "ARMATURE")
+
+
+def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """The panel shows the lengths of the armature that is chosen, not of the one before."""
+    from ....core.errors import InputError
+
+    with suppress(InputError, ModuleNotFoundError):  # another skeleton, or Keymark without its libraries
+        from ....core.body.human import HUMAN
+        from ...bridge.actor_lengths import read_body
+        from ...new_actor import show_lengths
+
+        show_lengths(take, read_body(take.armature, HUMAN))
 
 
 def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
@@ -91,6 +105,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         description="The performer's armature",
         type=bpy.types.Object,
         poll=_is_armature,
+        update=_armature_chosen,
     )
     stature: bpy.props.FloatProperty(
         name="Height",

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.revision import revised_windows
+from keymark.core.estimate.revision import revised_share, revised_windows
 from keymark.core.estimate.whole_clip import WholeClipOptions, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.tracks import RegionTracks
@@ -15,7 +15,8 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import Preview
 
 FRAMES, EVERY, MOVED = 360, 6, 31
-TOLERANCE_MM = 2.0
+TOLERANCE_MM = 4.0
+"""At the one worst point; on average it is a twentieth."""
 TRUTH = exercise(FRAMES)
 TRACKS = film(TRUTH, 0.3)
 OPTIONS = WholeClipOptions(window_s=10.0)
@@ -80,19 +81,20 @@ def test_nothing_changed_costs_nothing_and_changes_nothing() -> None:
     """No frame is estimated again."""
     again, shown = estimate(posed(), first())
     assert estimated_frames(shown) == 0
-    assert np.array_equal(again.posture.rotations, first().posture.rotations)
+    assert largest_mm(again.posture, first().posture) < 1e-9
     assert np.array_equal(again.covariance, first().covariance)
 
 
 def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> None:
-    """Within two millimetres everywhere, uncertainty included; and back again."""
+    """To what nobody could see, uncertainty included; and back again."""
     fresh, all_shown = estimate(moved())
     again, shown = estimate(moved(), first())
     assert estimated_frames(all_shown) == FRAMES
     assert estimated_frames(shown) < 0.5 * FRAMES
     assert largest_mm(again.posture, fresh.posture) < TOLERANCE_MM
+    assert 1e3 * point_error_m(again.posture, fresh.posture).mean() < 0.4
     assert np.allclose(again.covariance, fresh.covariance, rtol=0.1, atol=1e-4)
-    assert largest_mm(first().posture, fresh.posture) > 3.0
+    assert largest_mm(first().posture, fresh.posture) > 2.0 * TOLERANCE_MM
     back, _ = estimate(posed(), again)
     assert largest_mm(back.posture, first().posture) < TOLERANCE_MM
 
@@ -135,4 +137,8 @@ def test_windows_around_changes_reach_beyond_them_and_never_keep_a_frame_twice()
     assert kept[2][0] == 580 and kept[-1][1] == 920 and len(kept) == 5
     assert all(a[1] <= b[0] for a, b in zip(kept, kept[1:], strict=False))
     assert all(w.first == max(w.keep_first - 20, 0) and w.last == min(w.keep_last + 20, 1000) for w in found)
-    assert revised_windows(np.zeros(10, dtype=bool), 100, 20) == []
+    share = revised_share(changed, 20)
+    assert (share[600:910] == 1.0).all() and share[580] == 0.0 and 0.0 < share[585] < share[588] < 1.0
+    assert np.abs(np.diff(share)).max() < 0.2
+    nothing = np.zeros(10, dtype=bool)
+    assert revised_windows(nothing, 100, 20) == [] and not revised_share(nothing, 20).any()

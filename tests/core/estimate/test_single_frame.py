@@ -98,6 +98,28 @@ def test_a_marker_that_no_posture_explains_is_named() -> None:
     assert np.nanmax(np.delete(found.residual_px, 3)) < 3.0
 
 
+def test_the_ground_tells_how_far_away_someone_stands() -> None:
+    """Of two like fits the one that knows where the feet are is nearer to the truth in depth."""
+    camera = replace(
+        CAMERA,
+        matrix_world=np.array([[1.0, 0, 0, 0], [0, 0.5, -0.866, -3.6], [0, 0.866, 0.5, 2.9], [0, 0, 0, 1]]),
+    )
+    model = replace(MODEL, camera=camera)
+    believed = standing_posture(BODY)
+    errors = []
+    for place in (-0.4, 0.3, 0.5):
+        true = Posture.stack([standing_posture(BODY, np.array([0.0, place, 0.0]))])
+        observed = ObservedRegions.from_tracks(film(true, noise_px=0.3, seed=6, model=model))
+        belief = belief_from_standing(believed)
+        fits = [
+            fit_frame(uncalibrated(model), observed, known, 0)
+            for known in (belief, replace(belief, grounded=None))
+        ]
+        errors.append([float(np.linalg.norm(f.posture.translation - true.translation[0])) for f in fits])
+    grounded, floating = np.mean(errors, axis=0)
+    assert grounded < 0.8 * floating
+
+
 def test_hinges_keep_their_range() -> None:
     """Knees and elbows may pass it by no more than a spring gives way."""
     tracks = film(TRUTH, noise_px=2.0, seed=5)

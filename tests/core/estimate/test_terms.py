@@ -8,6 +8,7 @@ from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.depths import DepthTerm
+from keymark.core.estimate.terms.ground import GroundTerm
 from keymark.core.estimate.terms.limits import LimitTerm
 from keymark.core.estimate.terms.quadratic import QuadraticBuilder
 from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
@@ -55,6 +56,14 @@ def assert_gradient(term: Term, cost, at: ClipState) -> None:  # noqa: ANN001
         step = 1e-6
         numeric = (cost(moved(at, step * direction)) - cost(moved(at, -step * direction))) / (2 * step)
         assert np.sum(ours * direction) == pytest.approx(numeric, rel=1e-4, abs=1e-6)
+
+
+def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
+    """Its gradient is that of its cost, and leaps cost little more the higher they are."""
+    term = GroundTerm((11, 12), 0.12)
+    assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
+    lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
+    assert lifted[0] < lifted[1] < lifted[2] < 1.4 * lifted[1]
 
 
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:

@@ -20,10 +20,19 @@ def test_postures_differ_more_the_longer_the_time_between() -> None:
 
 
 def test_the_nearest_keyframe_is_believed_beyond_the_ends() -> None:
-    """After the last one there is nothing to interpolate."""
-    belief = belief_from_keyframes(KEYFRAMES, 57, 30.0)
-    assert np.abs(belief.posture.minus(TRUTH[50])).max() < 1e-12
+    """After the last one only the way across the floor goes on, at half its pace."""
+    belief = belief_from_keyframes(KEYFRAMES, 65, 30.0)
+    step = belief.posture.minus(TRUTH[50])
+    assert np.abs(step[2:]).max() < 1e-12
+    way = TRUTH[50].translation - TRUTH[20].translation
+    np.testing.assert_allclose(step[:2], 0.5 * 0.5 * way[:2])
     assert belief.starts.batch == (1,)
+
+
+def test_a_single_keyframe_goes_nowhere() -> None:
+    """Nothing says which way."""
+    belief = belief_from_keyframes(KEYFRAMES[:1], 30, 30.0)
+    assert np.abs(belief.posture.minus(TRUTH[0])).max() < 1e-12
 
 
 def test_between_two_both_count_and_more_surely() -> None:

@@ -1,0 +1,49 @@
+"""A person stands on the ground most of the time: the lower ankle is about as high above it as ever.
+
+Where the camera looks at the feet from above, their height says how far away they are, which nothing else in
+a single picture says as well.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..clip_state import ClipState
+from .term import NormalEquations, student_weight
+
+Array = NDArray[np.float64]
+
+DEGREES = 3.0
+"""Of Student's t: leaps and stairs are forgiven."""
+
+
+@dataclass(frozen=True)
+class GroundTerm:
+    """The height of the lower of some points."""
+
+    points: tuple[int, ...]
+    """Which of the principal points: the ankles."""
+    height_m: float
+    """How high the lower one is while its foot is on the ground."""
+    std_m: float = 0.03
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add one row for each frame."""
+        residual, lower = self._residual(state)
+        jacobian = state.body.points_jacobian(state.pose)[np.arange(state.frames), lower, 2]  # (F, D)
+        weight = np.sqrt(student_weight(residual**2, DEGREES, 1))[:, None]
+        rows = (jacobian[:, None] @ state.chain) / self.std_m
+        equations.add_rows(residual[:, None] * weight, rows * weight[..., None])
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of Student's t, up to a constant."""
+        residual, _ = self._residual(state)
+        return np.asarray(0.5 * DEGREES * np.log1p(residual**2 / DEGREES))
+
+    def _residual(self, state: ClipState) -> tuple[Array, NDArray[np.intp]]:
+        """(F,) in standard deviations, and which point it is."""
+        heights = state.body.points(state.pose)[:, list(self.points), 2]
+        lower = heights.argmin(axis=1)
+        residual = (heights[np.arange(state.frames), lower] - self.height_m) / self.std_m
+        return residual, np.array(self.points)[lower]
