@@ -117,7 +117,9 @@ def benchmark() -> Generator[None, None, None]:
     print("\n| shown | processor time [ms] | of the main thread [ms] |\n|---|---|---|")
     for name, every, own in rows:
         print(f"| {name} | {every:.1f} | {own:.1f} |")
-    print(f"\nKeymark's part: {rows[0][1] - rows[2][1]:.1f} ms, {rows[0][2] - rows[2][2]:.1f} ms in its thread")
+    print(
+        f"\nKeymark's part: {rows[0][1] - rows[2][1]:.1f} ms, {rows[0][2] - rows[2][2]:.1f} ms in its thread"
+    )
 
 
 def run() -> None:

@@ -34,13 +34,11 @@ def review(person: Person) -> Steps[None]:
     person.step_done("Go to the middle")
     yield from person.look("review")
     if len(review.weak_frames):
-        yield from person.hands.click_button("keymark.jump_to_weak_frame", "direction='NEXT'")
+        yield from person.hands.invoke("keymark.jump_to_weak_frame", direction="NEXT")
         worst = round(person.take.review.weak_frames[0].frame)
         expect(person.scene.frame_current == worst, f"the weakest frame is {worst}")
         yield from person.look("weak_frame")
-        yield from person.undoable(
-            "adding a keyframe", lambda: person.hands.click_button("keymark.pose_from_motion")
-        )
+        yield from person.undoable("adding a keyframe", lambda: _pose_weak_frame(person))
         yield from person.hands.undo()
     yield from person.undoable("the turntable", lambda: person.hands.invoke("keymark.set_up_turntable"))
     yield from person.hands.invoke("keymark.show_view", view="SIDE")
@@ -54,6 +52,10 @@ def review(person: Person) -> Steps[None]:
     person.hands.area("GRAPH_EDITOR").ui_type = "TIMELINE"
     yield from turns(3)
     yield from in_the_clip_editor(person)
+
+
+def _pose_weak_frame(person: Person) -> Steps[None]:
+    yield from person.hands.invoke("keymark.pose_from_motion", where="WEAK")
 
 
 def in_the_clip_editor(person: Person) -> Steps[None]:

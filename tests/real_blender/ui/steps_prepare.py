@@ -23,7 +23,9 @@ def start_empty(person: Person) -> Steps[None]:
     edge = viewport.x + 0.6 * viewport.width, viewport.y - 1
     height = viewport.height
     yield from person.hands.drag(edge, (edge[0], edge[1] + HIGHER_PX))
-    expect(person.hands.area("VIEW_3D").height < height - 0.5 * HIGHER_PX, "the timeline cannot be made higher")
+    expect(
+        person.hands.area("VIEW_3D").height < height - 0.5 * HIGHER_PX, "the timeline cannot be made higher"
+    )
     yield from person.hands.open_sidebar("VIEW_3D", "Keymark")
     person.step_done("Empty scene")
     yield from person.look("empty")
