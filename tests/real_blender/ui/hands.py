@@ -1,7 +1,7 @@
 """A person's hands and eyes: mouse, keys, and finding buttons by what they do.
 
-Blender tells scripts nothing of where a panel's buttons are. A person finds them by looking; here the mouse goes
-down the region, and the button under it is asked for its Python command (Ctrl C over a button does the same).
+Blender tells scripts nothing of where a panel's buttons are. A person finds them by looking; here the mouse
+goes down the region, and the button under it is asked for its Python command, as Ctrl C over a button does.
 """
 
 import bpy
