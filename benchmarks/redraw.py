@@ -2,10 +2,10 @@
 
 Usage: blender --addons bl_ext.user_default.keymark --window-geometry 0 0 1600 1000 --python redraw.py
 
-Needs a Blender with the extension and a screen, a virtual one too. The demonstration take's motion is repeated
-to 3,000 frames. Each row is the processor's time of one redraw of the whole window while frames go by, and what
-of it is the main thread's: a virtual screen's pixels are computed by other threads, where others have a
-graphics card.
+Needs a Blender with the extension and a screen, a virtual one too. The demonstration take's motion is
+repeated to 3,000 frames. Each row is the processor's time of one redraw of the whole window while frames go
+by, and what of it is the main thread's: a virtual screen's pixels are computed by other threads, where
+others have a graphics card.
 """
 
 import os

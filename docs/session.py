@@ -2,8 +2,9 @@
 
 Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER
 
-Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is that
-of the demonstration take; an animator's eye and hand are stood in for by the poses that come with that take.
+Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
+that of the demonstration take; an animator's eye and hand are stood in for by the poses that come with that
+take.
 """
 
 import sys

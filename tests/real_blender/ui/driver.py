@@ -1,8 +1,8 @@
 """Runs a script of steps inside a Blender with a screen, and lets Blender go on between two of them.
 
 A script is a generator. Each bare `yield` is one turn of Blender's main loop: events are handled, jobs
-advance, the window is drawn. Nothing sleeps: `until` waits for what must become true. What a script expects and
-does not find ends Blender with exit status 1, after a picture of the screen and a sentence.
+advance, the window is drawn. Nothing sleeps: `until` waits for what must become true. What a script expects
+and does not find ends Blender with exit status 1, after a picture of the screen and a sentence.
 """
 
 import os

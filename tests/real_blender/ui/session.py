@@ -3,10 +3,10 @@
 Usage: blender-screen --factory-startup --addons MODULE --enable-event-simulate --python session.py
        -- TAKE FOLDER [STEP]
 
-TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's limbs
-are, where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets pictures of the
-screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1, begins there instead,
-with the take opened from its files.
+TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's
+limbs are, where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets
+pictures of the screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1,
+begins there instead, with the take opened from its files.
 """
 
 import sys
