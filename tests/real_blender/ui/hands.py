@@ -11,6 +11,8 @@ ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
 STEP_PX = 13
 """Buttons are about 20 px high."""
+PAGES = 10
+"""More than any sidebar is long."""
 
 
 class Hands:
@@ -157,25 +159,29 @@ class Hands:
             if text[:2] == (kind, copy) and all(word in text[2] for word in wanted):
                 if (yield from self._is_at(place, kind, copy, wanted)):
                     return place
-        found = yield from self._search(kind, copy, wanted)
-        if found is None:
-            yield from self._scroll(kind, "WHEELUPMOUSE", 40)
-        for _ in range(8):
-            if found is not None:
-                break
-            found = yield from self._search(kind, copy, wanted)
-            seen = self._showing(kind)
+        # Most buttons span the middle: the whole sidebar is gone through there first.
+        for shares in (ACROSS[:1], ACROSS[1:]):
+            found = yield from self._search(kind, copy, wanted, shares)
             if found is None:
-                yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
-                if self._showing(kind) == seen:
-                    break
-        return found
+                yield from self._scroll(kind, "WHEELUPMOUSE", 40)
+            for _ in range(PAGES):
+                if found is not None:
+                    return found
+                found = yield from self._search(kind, copy, wanted, shares)
+                seen = self._showing(kind)
+                if found is None:
+                    yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
+                    if self._showing(kind) == seen:
+                        break
+        return None
 
-    def _search(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+    def _search(
+        self, kind: str, copy: str, wanted: tuple[str, ...], shares: tuple[float, ...]
+    ) -> Steps[tuple[int, int] | None]:
         """The same among what the sidebar shows now."""
         region = self.region(kind, "UI")
         width = region.width - 25  # the tabs
-        for share in ACROSS:
+        for share in shares:
             for below in range(30, region.height - 4, STEP_PX):
                 place = round(region.x + share * width), region.y + region.height - below
                 if (yield from self._is_at(place, kind, copy, wanted)):
