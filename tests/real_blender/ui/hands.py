@@ -126,12 +126,6 @@ class Hands:
         place = yield from self.find_button(command, *words, kind=kind)
         yield from self.click(*place)
 
-    def has_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[bool]:
-        """Whether the sidebar shows such a button, ready to be clicked."""
-        wanted = (f"bpy.ops.{command}(", *words)
-        found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
-        return found is not None
-
     def invoke(self, command: str, kind: str = "VIEW_3D", **settings: object) -> Steps[None]:
         """Call an operator as its button would, where that is in a folded panel.
 
@@ -144,7 +138,7 @@ class Hands:
         yield from turns(3)
 
     def fill(self, field: str, value: str, kind: str = "VIEW_3D") -> Steps[None]:
-        """Double-click on a field that shows the property `field`, and write a value into it."""
+        """Write a value into the field that shows a property."""
         found = yield from self._look(kind, "ui.copy_data_path_button", (field,))
         expect(found is not None, f"no field {field} in the sidebar of the {kind}")
         yield from self.move(*found)
@@ -166,13 +160,15 @@ class Hands:
                 yield from self._scroll(kind, "WHEELUPMOUSE", 40)
             for _ in range(PAGES):
                 if found is not None:
-                    return found
+                    break
                 found = yield from self._search(kind, copy, wanted, shares)
                 seen = self._showing(kind)
                 if found is None:
                     yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
                     if self._showing(kind) == seen:
                         break
+            if found is not None:
+                return found
         return None
 
     def _search(
