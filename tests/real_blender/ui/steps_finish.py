@@ -129,7 +129,7 @@ def write_points(person: Person, file_name: str, places: np.ndarray) -> None:
     (person.folder / file_name).write_text(text, encoding="utf-8")
 
 
-def _points(armature_object: object, names: tuple[str, ...]) -> list[list[float]]:
+def _points(armature_object: bpy.types.Object, names: tuple[str, ...]) -> list[list[float]]:
     places = []
     for name in names:
         part, _, side = name.partition(".")
