@@ -25,6 +25,8 @@ __all__ = ["Reason", "Review", "WeakFrame", "review"]
 STAGE = "Judging the motion"
 FRAMES_AT_ONCE = 100
 """So few that whoever waits can stop within some hundredths of a second."""
+WRONG_SHARE = 0.1
+"""Of the performer's stature: a point expected further off is wrong, no matter how far."""
 COMPACT = ("observed", "predicted")
 """Large rows that are only looked at: kept as single precision."""
 
@@ -138,7 +140,8 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
     expected = expected_covariance(motion.point_covariance, moved, misfit)
     believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
-    squared = np.trace(expected, axis1=-2, axis2=-1).mean(axis=1)
+    wrong = WRONG_SHARE * take.body.actor.stature_m
+    squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
     index = np.array(motion.keyframe_indices, dtype=np.intp)
     evidence = FrameEvidence(
         np.where(np.isfinite(squared), squared, 1.0),

@@ -73,7 +73,7 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
                     self,
                     "INFO",
                     "Markers off by {before:.1f} pixels before, {after:.1f} now; "
-                    "correct the pose where you see it better, then store it",
+                    "look at it from the side too, where no marker tells the depth, then store it",
                     before=float(np.nanmean(fit.before_px)),
                     after=float(np.nanmean(fit.residual_px)),
                 )

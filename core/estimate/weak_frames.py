@@ -28,7 +28,7 @@ HIDDEN_QUALITY = 0.3
 NOTICEABLE_HIDDEN = 0.4
 """Share of the frames around a weak one in which a marker is hidden, ..."""
 NOTICEABLE_MISFIT = 2.0
-"""... misfit, as in `confidence`, ..."""
+"""... misfit, as in `confidence` (of which the root counts, as it is squared), ..."""
 NOTICEABLE_SPEED = 1.5
 """... speed in the clip's median speeds, ..."""
 NOTICEABLE_DISTANCE = 0.6
@@ -141,7 +141,7 @@ def _described(evidence: FrameEvidence, keyframes: list[int], index: int, streng
         (distance * len(keyframes) / count / NOTICEABLE_DISTANCE, Reason.FAR, None),
         (float(evidence.speed[around].mean()) / usual_speed / NOTICEABLE_SPEED, Reason.FAST, None),
         (float(hidden.max()) / NOTICEABLE_HIDDEN, Reason.HIDDEN, int(hidden.argmax())),
-        (float(misfit.max()) / NOTICEABLE_MISFIT, Reason.FOOTAGE, int(misfit.argmax())),
+        (float(misfit.max() / NOTICEABLE_MISFIT) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
     ]
     _, reason, marker = max(reasons, key=lambda entry: entry[0])
     return WeakFrame(index, reason, float(strength), marker)

@@ -138,7 +138,8 @@ def _likenesses(
         ]
         for marker in group:
             alike = [names[other] for other in group if other != marker]
-            likenesses[marker] = Likeness(alike, claimed, float(claims[colour, -1]), clutter)
+            rivals = 1.0 - float(areas[marker].sum()) / max(theirs, 1.0)
+            likenesses[marker] = Likeness(alike, claimed, float(claims[colour, -1]), clutter, rivals)
     return likenesses
 
 
@@ -163,6 +164,6 @@ def _readout(
         sampled=sampled,
         area_px=typical,
         area_share=typical / (size[0] * size[1]),
-        distinctness=max(own, 0.0) * (1.0 - likeness.clutter),
+        distinctness=max(own, 0.0) * (1.0 - likeness.clutter) * (1.0 - likeness.rivals),
         warnings=marker_warnings(name, found, sampled, typical / 4.0 ** halvings(size), likeness),
     )

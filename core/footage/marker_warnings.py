@@ -20,13 +20,15 @@ class Likeness(NamedTuple):
         alike: names of markers that no colour tells from it.
         claimed: names of the other colours' markers, each with the share of its pixels taken for them.
         background: share of its pixels taken for the background.
-        clutter: share of what has its colour that is not it, without the markers that are alike.
+        clutter: share of what has its colour that is no marker.
+        rivals: share of the markers of its colour that is not it.
     """
 
     alike: Sequence[str]
     claimed: Sequence[tuple[str, float]]
     background: float
     clutter: float
+    rivals: float
 
 
 def marker_warnings(

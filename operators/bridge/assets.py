@@ -1,8 +1,7 @@
 """Actions as assets: what an asset browser shows of them, and by which it finds them."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import bpy
 import cv2
@@ -16,8 +15,6 @@ from ...core.report.thumbnail import thumbnail
 from .actor_lengths import read_body
 from .final_motion import motion_frames, read_values, shown_postures
 from .rig import read_rig
-
-Result = TypeVar("Result")
 
 DRAWN_FRAMES = 25
 """Frames over the whole motion that the picture is made from."""
@@ -76,8 +73,8 @@ def action_picture(
     rig = read_rig(armature_object, body)
     every = motion_frames(armature_object, action, body)
     frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
-    values = _finished(read_values(armature_object, action, rig, frames))
-    posture = _finished(shown_postures(armature_object, rig, rig.show(values), body))
+    values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
+    posture = shown_postures(armature_object, rig, rig.show(values), body)
     points = body.points(body.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
     rate = scene.render.fps / scene.render.fps_base
@@ -85,7 +82,3 @@ def action_picture(
         body, rate, int(frames[0]), (frames - frames[0]) / rate, posture, points, unknown, (), "interpolation"
     )
     return thumbnail(motion)
-
-
-def _finished(part: Generator[float, None, Result]) -> Result:
-    return run(within("Drawing the picture", part, 0.0, 1.0))

@@ -30,8 +30,6 @@ CHANGED_BY_FEET = ("pelvis", "thigh", "shin")
 SMALLEST_LENGTH = 1e-9
 ROUNDING = 1e-3
 """Keys this near to a whole frame [frames] lie on it."""
-SLICE = 20
-"""Frames read between two reports of progress."""
 
 
 def rig_channels(rig: Rig) -> tuple[Channel, ...]:
@@ -112,25 +110,13 @@ def _unit_quaternions(quaternions: Array) -> Array:
     return continuous_quaternions(unit)
 
 
-def shown_postures(
-    armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body
-) -> Generator[float, None, Posture]:
-    """The postures, (F,) of them, nearest to what a rig shows.
-
-    Yields:
-        The fraction done.
-    """
+def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body) -> Posture:
+    """The postures, (F,) of them, nearest to what a rig shows."""
     models = skeleton_bones(armature_object, body.skeleton)
-    row = {bone.name: index for index, bone in enumerate(rig.bones)}
-    row |= {model.name: row[str(model.parent)] for model in models if model.name not in row}
+    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
+    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
-    postures = []
-    for frame in range(len(hips)):
-        turns = {model.name: shown.rotation[row[model.name], frame] for model in models}
-        postures.append(posture_from_frames(body.skeleton, models, turns, hips[frame]))
-        if frame % SLICE == 0:
-            yield frame / len(hips)
-    return Posture.stack(postures)
+    return posture_from_frames(body.skeleton, models, turns, hips)
 
 
 def with_planted_legs(

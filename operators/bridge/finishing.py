@@ -133,7 +133,8 @@ def _plant(
     stage = "Planting the feet"
     yield Progress(stage, READ)
     shown = rig.show(values)
-    posture = yield from within(stage, shown_postures(armature_object, rig, shown, body), READ, SEEN)
+    posture = shown_postures(armature_object, rig, shown, body)
+    yield Progress(stage, SEEN)
     planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)
     if not planted.contacts:
         return values, (), ((NO_REST, {}),)

@@ -18,7 +18,7 @@ class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
         column.prop(take, "stature")
         row = column.row(align=True)
         row.scale_y = 1.2
-        text = "Build Actor" if take.armature is None else "Apply Height"
+        text = "Build Actor" if take.armature is None else "Use Average Proportions"
         row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE")
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.separator()

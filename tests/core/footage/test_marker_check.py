@@ -129,6 +129,8 @@ def test_markers_of_one_colour_are_named_both_and_each_is_found() -> None:
     assert "red has almost the same colour as twin" in red.warnings[0]
     assert "twin has almost the same colour as red" in twin.warnings[0]
     assert red.found == twin.found == 24 and blue.warnings == ()
+    share = 16 * 6 / (16 * 6 + 9 * 14)
+    assert [red.distinctness, twin.distinctness] == pytest.approx([share, 1.0 - share], abs=0.05)
     assert twin.area_px == pytest.approx(np.pi * 9 * 14, rel=0.08)
 
 
@@ -147,7 +149,7 @@ def test_colours_that_light_may_make_equal_are_named() -> None:
 
 def test_sentences_say_with_what_a_colour_is_confused() -> None:
     """Each names the marker, and a marker that nothing is wrong with has none."""
-    clear = Likeness((), (("blue", 0.02),), 0.05, 0.01)
+    clear = Likeness((), (("blue", 0.02),), 0.05, 0.01, 0.0)
     assert marker_warnings("red", 24, 24, 300.0, clear) == ()
     (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
     assert other == "red and blue have colours too alike: 30 % of red would pass for blue"

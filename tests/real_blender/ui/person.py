@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 from driver import JOB_PATIENCE_S, Camera, Steps, expect, turns, until
 from hands import Hands
-from scene_state import differences, scene_state
+from _scene_state import differences, scene_state
 
 EXTENSION = "bl_ext.user_default.keymark"
 JOB = "KEYMARK_OT_"
@@ -43,6 +43,8 @@ class Person:
         """Let everything be drawn, and take a picture."""
         yield from turns(4)
         self.camera.shoot(name)
+        failed = keymark("operators.ui.overlays.registry").failures()
+        expect(not failed, f"overlays failed: {failed}")
 
     def step_done(self, message: str) -> None:
         """Mark what was done by other means than Keymark's operators as a step that undo comes back to."""

@@ -12,7 +12,8 @@ with the take opened from its files.
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import steps_finish  # noqa: E402
 import steps_prepare  # noqa: E402

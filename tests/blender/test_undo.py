@@ -1,0 +1,102 @@
+"""Every step of the work is taken back by one undo, brought again by one redo, and kept in the file."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from _scene_state import differences, scene_state
+from keymark.core.motion import Motion
+from keymark.core.take import Take
+from keymark.operators.bridge.pose import write_posture
+from keymark.operators.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+Step = tuple[str, Callable[[], object]]
+
+
+def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
+    """The work from an empty scene to an asset, one operator a step."""
+    ops = bpy.ops.keymark
+
+    def pick() -> None:
+        """Give every marker the colour that it was drawn in."""
+        for marker, style in zip(active_take(bpy.context.scene).markers, take.markers, strict=True):
+            marker.color = [value / 255.0 for value in style.color_srgb]
+
+    def align() -> None:
+        """Let the camera stand where the footage's stood."""
+        camera = bpy.context.scene.camera
+        camera.matrix_world = np.array(take.camera.matrix_world).T.tolist()
+        camera.data.lens, camera.data.sensor_width = take.camera.lens_mm, take.camera.sensor_width_mm
+
+    def store(index: int) -> Callable[[], None]:
+        def pose_and_store() -> None:
+            bpy.context.scene.frame_set(index + 1)
+            write_posture(active_take(bpy.context.scene).armature, motion.posture[index])
+            ops.store_keyframe()
+
+        return pose_and_store
+
+    return [
+        ("load_footage", lambda: ops.load_footage(filepath=str(take.clip))),
+        ("align", align),
+        ("add_usual_markers", ops.add_usual_markers),
+        ("pick", pick),
+        ("check_markers", ops.check_markers),
+        ("build_actor", lambda: ops.build_actor(stature=1.72)),
+        ("apply_lengths", lambda: (_lengthen(), ops.apply_lengths())),
+        ("propose_keyframes", ops.propose_keyframes),
+        ("jump_to_proposal", lambda: ops.jump_to_proposal(direction="NEXT")),
+        *((f"store_keyframe {index}", store(index)) for index in motion.keyframe_indices),
+        ("reconstruct", ops.reconstruct),
+        ("show_action", lambda: ops.show_action(which="KEYFRAMES")),
+        ("pose_from_motion", lambda: (bpy.context.scene.frame_set(4), ops.pose_from_motion(where="CURRENT"))),
+        ("reconstruct again", ops.reconstruct),
+        ("bake_motion", ops.bake_motion),
+        ("mark_asset", lambda: (_no_catalog(), ops.mark_asset())),
+        ("set_up_turntable", ops.set_up_turntable),
+        ("remove_turntable", ops.remove_turntable),
+        ("add_performer", ops.add_performer),
+        ("remove_take", ops.remove_take),
+    ]
+
+
+def _lengthen() -> None:
+    active_take(bpy.context.scene).lengths.forearm_L *= 1.05
+
+
+def _no_catalog() -> None:
+    active_take(bpy.context.scene).finish.catalog = ""
+
+
+def test_every_step_is_undone_and_redone(tiny_take: Take, wave_motion: Motion, tmp_path: Path) -> None:
+    """After each step, undo gives the state before it and redo the state after it, to the last key."""
+    bpy.ops.ed.undo_push(message="Empty")
+    for name, do in steps(tiny_take, wave_motion, tmp_path):
+        before = scene_state()
+        do()
+        bpy.context.view_layer.update()
+        bpy.ops.ed.undo_push(message=name)
+        after = scene_state()
+        assert after != before, f"{name} changed nothing"
+        bpy.ops.ed.undo()
+        assert not differences(before, scene_state()), f"undoing {name}"
+        bpy.ops.ed.redo()
+        assert not differences(after, scene_state()), f"redoing {name}"
+
+
+def test_the_whole_work_is_in_the_file(tiny_take: Take, wave_motion: Motion, tmp_path: Path) -> None:
+    """Saved and opened again, every property, key and bone is as it was."""
+    for _, do in steps(tiny_take, wave_motion, tmp_path):
+        do()
+    bpy.context.view_layer.update()
+    before = scene_state()
+    blend = tmp_path / "work.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend), relative_remap=False)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert not len(bpy.context.scene.keymark.takes)
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert not differences(before, scene_state())
