@@ -1,10 +1,11 @@
 """What Keymark adds to a redraw of Blender's window for a take of 3,000 frames.
 
-Usage: blender-screen --factory-startup --addons MODULE --window-geometry 0 0 1600 1000 --python benchmarks/redraw.py
+Usage: blender --addons bl_ext.user_default.keymark --window-geometry 0 0 1600 1000 --python redraw.py
 
-Needs a Blender with the extension and a screen, a virtual one too. The demonstration take's motion is repeated to
-3,000 frames. Each row is the processor's time of one redraw of the whole window while frames go by, and what of it
-is the main thread's: a virtual screen's pixels are computed by other threads, which a graphics card does elsewhere.
+Needs a Blender with the extension and a screen, a virtual one too. The demonstration take's motion is
+repeated to 3,000 frames. Each row is the processor's time of one redraw of the whole window while frames go
+by, and what of it is the main thread's: a virtual screen's pixels are computed by other threads, where
+others have a graphics card.
 """
 
 import os
@@ -117,7 +118,9 @@ def benchmark() -> Generator[None, None, None]:
     print("\n| shown | processor time [ms] | of the main thread [ms] |\n|---|---|---|")
     for name, every, own in rows:
         print(f"| {name} | {every:.1f} | {own:.1f} |")
-    print(f"\nKeymark's part: {rows[0][1] - rows[2][1]:.1f} ms, {rows[0][2] - rows[2][2]:.1f} ms in its thread")
+    print(
+        f"\nKeymark's part: {rows[0][1] - rows[2][1]:.1f} ms, {rows[0][2] - rows[2][2]:.1f} ms in its thread"
+    )
 
 
 def run() -> None:

@@ -2,8 +2,9 @@
 
 Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER
 
-Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is that of
-the demonstration take; an animator's eye and hand are stood in for by the poses that come with that take.
+Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
+that of the demonstration take; an animator's eye and hand are stood in for by the poses that come with that
+take.
 """
 
 import sys
@@ -41,7 +42,7 @@ LENGTHS_M = {
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """The take at work; to be asked for anew whenever takes were added or removed, as Blender moves them then."""
+    """The take at work, to be asked for anew when takes were added or removed: Blender moves them then."""
     return scene.keymark.takes[scene.keymark.active_take]
 
 
@@ -63,7 +64,7 @@ def pick_markers(take: bpy.types.PropertyGroup) -> None:
 
 
 def build_actor(take: bpy.types.PropertyGroup) -> None:
-    """Step 3, actor: from the height, standing where the performer is; then each length as it was measured."""
+    """Step 3, actor: of the height, standing where the performer is; then each length as it was measured."""
     bpy.ops.keymark.build_actor(stature=HEIGHT_M)
     for name, length in LENGTHS_M.items():
         setattr(take.lengths, name, length)

@@ -1,4 +1,4 @@
-"""What a .blend holds, as plain values by name: two states are equal where a person would see no difference."""
+"""What a .blend holds, as plain values by name: equal where a person would see no difference."""
 
 import hashlib
 from typing import Any

@@ -20,7 +20,9 @@ class Blender:
 
     def run(self, *arguments: str | Path, patience_s: float = 900.0) -> subprocess.CompletedProcess[str]:
         """Run it to its end with `arguments`, without a terminal; standard output and error are kept."""
-        environment = {**os.environ, "BLENDER_USER_RESOURCES": str(self.user)}
+        # The drawing library's cache is read by all who share it, and one can pull it away from another.
+        own = {"BLENDER_USER_RESOURCES": str(self.user), "XDG_CACHE_HOME": str(self.user / "cache")}
+        environment = {**os.environ, **own}
         words = [*self.command, *(str(argument) for argument in arguments)]
         return subprocess.run(
             words,

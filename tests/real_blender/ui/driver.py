@@ -1,8 +1,8 @@
 """Runs a script of steps inside a Blender with a screen, and lets Blender go on between two of them.
 
-A script is a generator. Each bare `yield` is one turn of Blender's main loop: events are handled, jobs advance,
-the window is drawn. Nothing sleeps: `until` waits for what must become true. What a script expects and does not
-find ends Blender with exit status 1, after a picture of the screen and a sentence.
+A script is a generator. Each bare `yield` is one turn of Blender's main loop: events are handled, jobs
+advance, the window is drawn. Nothing sleeps: `until` waits for what must become true. What a script expects
+and does not find ends Blender with exit status 1, after a picture of the screen and a sentence.
 """
 
 import os
@@ -25,7 +25,7 @@ PATIENCE_S = 120.0
 JOB_PATIENCE_S = 1500.0
 
 
-class Unexpected(Exception):
+class UnexpectedError(Exception):
     """What a script expected is not so."""
 
 
@@ -33,10 +33,10 @@ def expect(condition: object, sentence: str) -> None:
     """Go on only if `condition` holds.
 
     Raises:
-        Unexpected: It does not; the sentence says what should have been.
+        UnexpectedError: It does not; the sentence says what should have been.
     """
     if not condition:
-        raise Unexpected(sentence)
+        raise UnexpectedError(sentence)
 
 
 def turns(count: int) -> Steps[None]:
@@ -49,7 +49,7 @@ def until(condition: Callable[[], object], what: str, patience_s: float = PATIEN
     """Wait until `condition` holds.
 
     Raises:
-        Unexpected: It did not within `patience_s`.
+        UnexpectedError: It did not within `patience_s`.
     """
     started = monotonic()
     while not condition():
@@ -100,7 +100,7 @@ def drive(script: Steps[None], camera: Camera) -> None:
             return None
         except BaseException as error:
             camera.shoot_failure()
-            if isinstance(error, Unexpected):
+            if isinstance(error, UnexpectedError):
                 at = traceback.extract_tb(error.__traceback__)[-2]
                 print(f"UNEXPECTED at {Path(at.filename).name}:{at.lineno}: {error}", flush=True)
             else:

@@ -1,7 +1,7 @@
 """A person's hands and eyes: mouse, keys, and finding buttons by what they do.
 
-Blender tells scripts nothing of where a panel's buttons are. A person finds them by looking; here the mouse goes
-down the region, and the button under it is asked for its Python command (Ctrl C over a button does the same).
+Blender tells scripts nothing of where a panel's buttons are. A person finds them by looking; here the mouse
+goes down the region, and the button under it is asked for its Python command, as Ctrl C over a button does.
 """
 
 import bpy
@@ -60,6 +60,16 @@ class Hands:
         """Click at a place in the window."""
         yield from self.move(x, y)
         yield from self.press("LEFTMOUSE", **modifiers)
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> Steps[None]:
+        """Drag from one place in the window to another."""
+        yield from self.move(*start)
+        self.window.event_simulate(type="LEFTMOUSE", value="PRESS", x=self.x, y=self.y)
+        yield from turns(2)
+        for share in (0.3, 0.7, 1.0):
+            yield from self.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
+        self.window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=self.x, y=self.y)
+        yield from turns(3)
 
     def write(self, text: str) -> Steps[None]:
         """Write text, letter by letter."""

@@ -1,4 +1,4 @@
-"""The person of a session: hands, what they know of the take, and how they try whether a step can be undone."""
+"""The person of a session: hands, what they know of the take, and how they try to undo a step."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -7,9 +7,9 @@ from types import ModuleType
 from typing import Any
 
 import bpy
+from _scene_state import differences, scene_state
 from driver import JOB_PATIENCE_S, Camera, Steps, expect, turns, until
 from hands import Hands
-from _scene_state import differences, scene_state
 
 EXTENSION = "bl_ext.user_default.keymark"
 JOB = "KEYMARK_OT_"

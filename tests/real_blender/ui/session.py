@@ -3,10 +3,10 @@
 Usage: blender-screen --factory-startup --addons MODULE --enable-event-simulate --python session.py
        -- TAKE FOLDER [STEP]
 
-TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's limbs
-are, where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets the pictures of
-the screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1, begins there instead,
-with the take opened from its files.
+TAKE's files stand for what the animator knows and sees: how the camera stood, how long the performer's
+limbs are, where the sleeves are in the picture, how the performer stands at the keyframes. FOLDER gets
+pictures of the screen and `motion.json`, the 13 points that the finished armature shows. STEP, from 1,
+begins there instead, with the take opened from its files.
 """
 
 import sys
@@ -37,7 +37,7 @@ def session(take: Path, folder: Path, camera: Camera, first: int) -> Steps[None]
     person = Person(take, folder, camera)
     yield from steps_prepare.start_empty(person)
     if first > 0:
-        yield from steps_prepare.opened(person)
+        yield from steps_prepare.opened(person, first > STEPS.index(steps_reconstruct.reconstruct))
     for step in STEPS[first:]:
         yield from step(person)
 

@@ -34,24 +34,28 @@ def review(person: Person) -> Steps[None]:
     person.step_done("Go to the middle")
     yield from person.look("review")
     if len(review.weak_frames):
-        yield from person.hands.click_button("keymark.jump_to_weak_frame", "direction='NEXT'")
+        yield from person.hands.invoke("keymark.jump_to_weak_frame", direction="NEXT")
         worst = round(person.take.review.weak_frames[0].frame)
         expect(person.scene.frame_current == worst, f"the weakest frame is {worst}")
         yield from person.look("weak_frame")
-        yield from person.undoable(
-            "adding a keyframe", lambda: person.hands.click_button("keymark.pose_from_motion")
-        )
+        yield from person.undoable("adding a keyframe", lambda: _pose_weak_frame(person))
         yield from person.hands.undo()
     yield from person.undoable("the turntable", lambda: person.hands.invoke("keymark.set_up_turntable"))
     yield from person.hands.invoke("keymark.show_view", view="SIDE")
     yield from person.look("side")
     yield from person.hands.invoke("keymark.show_view", view="FOOTAGE")
-    area = person.hands.area("DOPESHEET_EDITOR")
-    area.ui_type = "FCURVES"
+    person.hands.area("DOPESHEET_EDITOR").ui_type = "FCURVES"
+    yield from turns(3)
+    yield from person.hands.move_over("GRAPH_EDITOR")
+    yield from person.hands.press("HOME")
     yield from person.look("confidence_curves")
     person.hands.area("GRAPH_EDITOR").ui_type = "TIMELINE"
     yield from turns(3)
     yield from in_the_clip_editor(person)
+
+
+def _pose_weak_frame(person: Person) -> Steps[None]:
+    yield from person.hands.invoke("keymark.pose_from_motion", where="WEAK")
 
 
 def in_the_clip_editor(person: Person) -> Steps[None]:
@@ -84,6 +88,7 @@ def finish(person: Person) -> Steps[None]:
     print(f"{settings.keys_after} of {settings.keys_before} keys, {apart:.1f} mm from the motion")
     expect(apart < LARGEST_CHANGE_MM, f"the final motion is {apart:.1f} mm from the reconstructed one")
     bpy.ops.wm.save_as_mainfile(filepath=str(person.folder / "session.blend"))
+    person.step_done("Save")
     yield from turns(3)
     yield from person.undoable("marking the asset", lambda: person.hands.invoke("keymark.mark_asset"))
     expect(settings_of(person).action.asset_data is not None, "the final Action is no asset")

@@ -9,22 +9,33 @@ from person import Person, keymark
 
 FARTHEST_COLOR = 40.0
 """Between a pixel of a sleeve and the sleeve's colour over the whole clip, of 255."""
+HIGHER_PX = 100
+"""What the timeline is made higher by."""
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its colour, as a share of the picture's width."""
 
 
 def start_empty(person: Person) -> Steps[None]:
-    """A scene without anything, and Keymark's tab in the sidebar."""
+    """A scene without anything, a timeline that is high enough to draw in, Keymark's tab in the sidebar."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     yield from turns(5)
+    viewport = person.hands.area("VIEW_3D")
+    edge = viewport.x + 0.6 * viewport.width, viewport.y - 1
+    height = viewport.height
+    yield from person.hands.drag(edge, (edge[0], edge[1] + HIGHER_PX))
+    expect(
+        person.hands.area("VIEW_3D").height < height - 0.5 * HIGHER_PX, "the timeline cannot be made higher"
+    )
     yield from person.hands.open_sidebar("VIEW_3D", "Keymark")
     person.step_done("Empty scene")
     yield from person.look("empty")
 
 
-def opened(person: Person) -> Steps[None]:
-    """The take opened from its files, for a session that begins at a later step."""
+def opened(person: Person, reconstructed: bool) -> Steps[None]:
+    """The take opened from its files, and reconstructed, for a session that begins at a later step."""
     bpy.ops.keymark.open_take(filepath=str(person.known.folder))
+    if reconstructed:
+        bpy.ops.keymark.reconstruct()
     person.step_done("Open the take")
     yield from turns(3)
     yield from look_through_camera(person)

@@ -61,9 +61,9 @@ def _watched(person: Person, command: str) -> Steps[None]:
     """Start a job by its button, look at the screen while it runs, and wait for its end."""
     yield from person.hands.click_button(command)
     progress = bpy.context.window_manager.keymark_progress
-    yield from until(lambda: progress.fraction > 0.4 or not person.jobs(), "progress", JOB_PATIENCE_S)
-    expect(person.jobs(), "the job ended before it was half done")
-    yield from person.look("reconstructing")
+    yield from until(lambda: progress.fraction > 0.25 or not person.jobs(), "progress", JOB_PATIENCE_S)
+    expect(person.jobs(), "the job ended before it could be seen")
+    person.camera.shoot("reconstructing")
     yield from person.wait_for_job()
 
 
