@@ -145,6 +145,8 @@ def test_an_exported_motion_moves_alike_when_read_back(
     """The hand's way through the motion is that of the actor; the scene is as before."""
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
+    if kind == "GLTF" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
+        pytest.skip("Blender 4.5 as a Python module may wait for ever at its exit after a glTF export")
     scene = bpy.context.scene
     scene.render.fps = 25
     bpy.ops.keymark.bake_motion()
