@@ -11,6 +11,8 @@ ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
 STEP_PX = 13
 """Buttons are about 20 px high."""
+PAGES = 10
+"""More than any sidebar is long."""
 
 
 class Hands:
@@ -124,12 +126,6 @@ class Hands:
         place = yield from self.find_button(command, *words, kind=kind)
         yield from self.click(*place)
 
-    def has_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[bool]:
-        """Whether the sidebar shows such a button, ready to be clicked."""
-        wanted = (f"bpy.ops.{command}(", *words)
-        found = yield from self._look(kind, "ui.copy_python_command_button", wanted)
-        return found is not None
-
     def invoke(self, command: str, kind: str = "VIEW_3D", **settings: object) -> Steps[None]:
         """Call an operator as its button would, where that is in a folded panel.
 
@@ -142,7 +138,7 @@ class Hands:
         yield from turns(3)
 
     def fill(self, field: str, value: str, kind: str = "VIEW_3D") -> Steps[None]:
-        """Double-click on a field that shows the property `field`, and write a value into it."""
+        """Write a value into the field that shows a property."""
         found = yield from self._look(kind, "ui.copy_data_path_button", (field,))
         expect(found is not None, f"no field {field} in the sidebar of the {kind}")
         yield from self.move(*found)
@@ -157,25 +153,31 @@ class Hands:
             if text[:2] == (kind, copy) and all(word in text[2] for word in wanted):
                 if (yield from self._is_at(place, kind, copy, wanted)):
                     return place
-        found = yield from self._search(kind, copy, wanted)
-        if found is None:
-            yield from self._scroll(kind, "WHEELUPMOUSE", 40)
-        for _ in range(8):
-            if found is not None:
-                break
-            found = yield from self._search(kind, copy, wanted)
-            seen = self._showing(kind)
+        # Most buttons span the middle: the whole sidebar is gone through there first.
+        for shares in (ACROSS[:1], ACROSS[1:]):
+            found = yield from self._search(kind, copy, wanted, shares)
             if found is None:
-                yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
-                if self._showing(kind) == seen:
+                yield from self._scroll(kind, "WHEELUPMOUSE", 40)
+            for _ in range(PAGES):
+                if found is not None:
                     break
-        return found
+                found = yield from self._search(kind, copy, wanted, shares)
+                seen = self._showing(kind)
+                if found is None:
+                    yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
+                    if self._showing(kind) == seen:
+                        break
+            if found is not None:
+                return found
+        return None
 
-    def _search(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+    def _search(
+        self, kind: str, copy: str, wanted: tuple[str, ...], shares: tuple[float, ...]
+    ) -> Steps[tuple[int, int] | None]:
         """The same among what the sidebar shows now."""
         region = self.region(kind, "UI")
         width = region.width - 25  # the tabs
-        for share in ACROSS:
+        for share in shares:
             for below in range(30, region.height - 4, STEP_PX):
                 place = round(region.x + share * width), region.y + region.height - below
                 if (yield from self._is_at(place, kind, copy, wanted)):

@@ -91,17 +91,12 @@ def finish(person: Person) -> Steps[None]:
     person.step_done("Save")
     yield from turns(3)
     yield from person.undoable("marking the asset", lambda: person.hands.invoke("keymark.mark_asset"))
-    expect(settings_of(person).action.asset_data is not None, "the final Action is no asset")
+    expect(person.take.finish.action.asset_data is not None, "the final Action is no asset")
     file = person.folder / "motion.bvh"
     file.unlink(missing_ok=True)
     yield from person.changes_nothing("exporting", lambda: _export(person, str(file)))
     expect(file.is_file() and file.read_text().startswith("HIERARCHY"), f"{file} is no BVH file")
     yield from person.look("finished")
-
-
-def settings_of(person: Person) -> bpy.types.PropertyGroup:
-    """How the take is finished, found anew: undo replaces it."""
-    return person.take.finish
 
 
 def _export(person: Person, file: str) -> Steps[None]:
@@ -134,7 +129,7 @@ def write_points(person: Person, file_name: str, places: np.ndarray) -> None:
     (person.folder / file_name).write_text(text, encoding="utf-8")
 
 
-def _points(armature_object: object, names: tuple[str, ...]) -> list[list[float]]:
+def _points(armature_object: bpy.types.Object, names: tuple[str, ...]) -> list[list[float]]:
     places = []
     for name in names:
         part, _, side = name.partition(".")
