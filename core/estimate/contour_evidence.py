@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.album import Album
 from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
+from ..footage.clips.album import Album
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
 from ..observation.part_map import part_map
 from .contour_search import Edges, find_edges

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.album import Album
 from ..footage.camera import Camera
+from ..footage.clips.album import Album
 from ..footage.tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor

@@ -13,8 +13,8 @@ from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.export_formats import FORMATS, Format
-from keymark.operators.takes import add_take
+from keymark.operators.scene.export_formats import FORMATS, Format
+from keymark.operators.scene.takes import add_take
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
