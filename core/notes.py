@@ -1,7 +1,7 @@
 """What a person should know of a take and its result, one sentence each."""
 
 from .estimate.keyframe_evidence import KeyframeEvidence
-from .footage.clip import Clip
+from .footage.clips.clip import Clip
 from .footage.tracks import RegionTracks
 from .take import Take, rate_note
 

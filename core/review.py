@@ -11,7 +11,7 @@ from .body.kinematics import Pose
 from .estimate.confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .estimate.terms.regions import RegionNoise, limb_widths
 from .estimate.weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
-from .footage.ellipse import ellipse_outline
+from .footage.segmentation.ellipse import ellipse_outline
 from .observation.regions import RegionModel
 from .observation.silhouette import CORNERS, silhouettes
 from .progress import Job, Part, within

@@ -13,7 +13,7 @@ from .errors import InputError
 from .files.fields import Fields, listed
 from .files.json_file import read_json, shown, write_json, write_whole
 from .footage.camera import Camera
-from .footage.clip import Clip
+from .footage.clips.clip import Clip
 from .footage.marker_style import MarkerStyle
 from .keyframe_file import read_keyframes, write_keyframes
 from .prior.keyframes import Keyframe

@@ -18,8 +18,8 @@ MODULES = (
     "ui.properties.progress",
     "ui.properties.overlays",
     "ui.properties.scene",
-    "results",
-    "posed_frames",
+    "scene.results",
+    "scene.posed_frames",
     "open_take",
     "save_take",
     "load_footage",
@@ -64,7 +64,7 @@ MODULES = (
     "ui.overlays.mask",
     "ui.overlays.registry",
     "command",
-    "upgrade",
+    "scene.upgrade",
 )
 """What is registered, in this order: properties before the operators and panels that use them."""
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .takes import ensure_take
+from .scene.takes import ensure_take
 from .ui.properties.marker import SEGMENTS
 
 USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .requirements import all_met, footage, idle
-from .takes import active_take, add_take
+from .running.requirements import all_met, footage, idle
+from .scene.takes import active_take, add_take
 
 
 class KEYMARK_OT_add_performer(bpy.types.Operator):

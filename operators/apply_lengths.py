@@ -2,10 +2,10 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import actor, all_met, bones_editable, idle
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, bones_editable, idle
+from .running.say import say
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_apply_lengths(bpy.types.Operator):

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .job_operator import JobOperator
-from .requirements import actor, all_met, idle, motion
-from .say import say
-from .takes import active_take, take_called
+from .running.job_operator import JobOperator
+from .running.requirements import actor, all_met, idle, motion
+from .running.say import say
+from .scene.takes import active_take, take_called
 
 if TYPE_CHECKING:
     from ..core.progress import Job

@@ -2,10 +2,10 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import all_met, bones_editable, idle
-from .say import say
-from .takes import ensure_take, find_take
+from .running.failures import reported
+from .running.requirements import all_met, bones_editable, idle
+from .running.say import say
+from .scene.takes import ensure_take, find_take
 
 
 class KEYMARK_OT_build_actor(bpy.types.Operator):
@@ -48,8 +48,8 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         with reported(self):
             from ..core.body.actor import Actor
             from ..core.body.kinematics import Body
-            from .actor_scene import is_posed, performers_place, size_actor
             from .bridge.pose import write_posture
+            from .scene.actor_scene import is_posed, performers_place, size_actor
 
             body = Body(Actor.from_stature(self.stature))
             take = ensure_take(context.scene)

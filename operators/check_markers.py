@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .job_operator import JobOperator
-from .marker_readouts import check_unchanged, look_at_markers, write_readouts
-from .marker_styles import picked_styles
-from .requirements import a_color, all_met, footage, idle, markers
-from .say import say
-from .takes import active_take, footage_of, take_called
+from .running.job_operator import JobOperator
+from .running.requirements import a_color, all_met, footage, idle, markers
+from .running.say import say
+from .scene.marker_readouts import check_unchanged, look_at_markers, write_readouts
+from .scene.marker_styles import picked_styles
+from .scene.takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
     from ..core.footage.marker_check import MarkerCheck
@@ -60,7 +60,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
 
 def show_frame(scene: bpy.types.Scene) -> None:
     """Make the masks of the current frame where they are shown."""
-    from .marker_previews import look_at_frame
+    from .scene.marker_previews import look_at_frame
 
     if bpy.context.window_manager.keymark_show_masks:
         look_at_frame(scene)

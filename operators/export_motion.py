@@ -4,11 +4,11 @@ from pathlib import Path
 
 import bpy
 
-from .export_formats import FORMATS
-from .failures import reported
-from .requirements import actor, all_met, idle, motion
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, idle, motion
+from .running.say import say
+from .scene.export_formats import FORMATS
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_export_motion(bpy.types.Operator):

@@ -3,11 +3,11 @@
 import bpy
 import numpy as np
 
-from .failures import reported
-from .marker_styles import marker_styles
-from .requirements import actor, all_met, camera, footage, idle, markers
-from .say import say
-from .takes import active_take, footage_of
+from .running.failures import reported
+from .running.requirements import actor, all_met, camera, footage, idle, markers
+from .running.say import say
+from .scene.marker_styles import marker_styles
+from .scene.takes import active_take, footage_of
 
 
 class KEYMARK_OT_fit_pose(bpy.types.Operator):
@@ -52,8 +52,8 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
         with reported(self):
             from .bridge.pose import write_posture
             from .bridge.posing import fit_to_frame, frame_in_footage
-            from .keyframe_editing import show_keyframes
-            from .results import reading_of
+            from .scene.keyframe_editing import show_keyframes
+            from .scene.results import reading_of
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))

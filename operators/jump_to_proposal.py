@@ -2,9 +2,9 @@
 
 import bpy
 
-from .posed_frames import forget, proposed_frames, unposed
-from .say import say
-from .takes import find_take
+from .running.say import say
+from .scene.posed_frames import forget, proposed_frames, unposed
+from .scene.takes import find_take
 
 
 class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):

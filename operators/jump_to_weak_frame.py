@@ -2,9 +2,9 @@
 
 import bpy
 
-from .requirements import all_met, weak_frames
-from .say import say
-from .takes import active_take
+from .running.requirements import all_met, weak_frames
+from .running.say import say
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .takes import active_take, find_take
+from .scene.takes import active_take, find_take
 
 
 class KEYMARK_OT_keep_lens(bpy.types.Operator):

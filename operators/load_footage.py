@@ -4,10 +4,10 @@ from pathlib import Path
 
 import bpy
 
-from .failures import reported
-from .requirements import all_met, idle
-from .say import say
-from .takes import add_take, find_take
+from .running.failures import reported
+from .running.requirements import all_met, idle
+from .running.say import say
+from .scene.takes import add_take, find_take
 
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -54,7 +54,7 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         """Load it."""
         with reported(self):
             from .bridge.scene_footage import load_footage
-            from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for
+            from .scene.take_footage import give_footage, lens_is_guess, look_through_camera, name_for
 
             scene = context.scene
             path = Path(bpy.path.abspath(self.filepath))

@@ -2,10 +2,10 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import actor, all_met, idle, motion
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, idle, motion
+from .running.say import say
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_mark_asset(bpy.types.Operator):

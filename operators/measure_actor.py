@@ -2,12 +2,12 @@
 
 import bpy
 
-from .failures import reported
-from .marker_styles import marker_styles
 from .pick_marker_color import NAVIGATION
-from .requirements import all_met, bones_editable, camera, footage, idle
-from .say import label, say
-from .takes import active_take, footage_of
+from .running.failures import reported
+from .running.requirements import all_met, bones_editable, camera, footage, idle
+from .running.say import label, say
+from .scene.marker_styles import marker_styles
+from .scene.takes import active_take, footage_of
 
 NOT_STANDING = (
     "The markers are not where those of someone who stands upright would be; the lengths are little better "
@@ -120,10 +120,10 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Measure, give the actor what was measured, and stand it there unless it has keyframes."""
         with reported(self):
-            from .actor_scene import is_posed, size_actor
             from .bridge.pose import write_posture
             from .bridge.posing import frame_in_footage, measured_in_frame
-            from .results import reading_of
+            from .scene.actor_scene import is_posed, size_actor
+            from .scene.results import reading_of
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import bpy
 
-from .failures import reported
-from .requirements import all_met, idle, object_mode_possible
-from .say import say
+from .running.failures import reported
+from .running.requirements import all_met, idle, object_mode_possible
+from .running.say import say
 
 
 class KEYMARK_OT_open_take(bpy.types.Operator):
@@ -45,9 +45,9 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
-            from .take_footage import look_through_camera
-            from .take_scene import read_for_scene, show_take
-            from .takes import active_take
+            from .scene.take_footage import look_through_camera
+            from .scene.take_scene import read_for_scene, show_take
+            from .scene.takes import active_take
 
             folder = _take_folder(self.filepath)
             opened = read_for_scene(folder, self.keyframes)

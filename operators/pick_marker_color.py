@@ -7,13 +7,13 @@ import bpy
 
 from .add_marker import append_marker, free_name, next_segment
 from .check_markers import show_frame
-from .failures import reported
-from .job_operator import JobOperator
-from .marker_readouts import check_unchanged, look_at_markers, write_readouts
-from .marker_styles import marker_styles, set_marker_color
-from .requirements import all_met, footage, idle
-from .say import label, say
-from .takes import active_take, footage_of, take_called
+from .running.failures import reported
+from .running.job_operator import JobOperator
+from .running.requirements import all_met, footage, idle
+from .running.say import label, say
+from .scene.marker_readouts import check_unchanged, look_at_markers, write_readouts
+from .scene.marker_styles import marker_styles, set_marker_color
+from .scene.takes import active_take, footage_of, take_called
 from .ui.properties.marker import segment_title
 
 if TYPE_CHECKING:

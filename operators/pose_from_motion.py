@@ -2,11 +2,11 @@
 
 import bpy
 
-from .failures import reported
-from .posed_frames import forget
-from .requirements import actor, all_met, idle, motion
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, idle, motion
+from .running.say import say
+from .scene.posed_frames import forget
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
@@ -37,7 +37,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             from .bridge.actions import assign_action
             from .bridge.keyframes import store_pose
             from .bridge.scene_frames import at_scene_frame, showing_action
-            from .new_actor import new_keyframe_action
+            from .scene.new_actor import new_keyframe_action
 
             scene = context.scene
             take = active_take(scene)

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .job_operator import JobOperator
-from .marker_styles import marker_styles
-from .requirements import all_colors, all_met, footage, idle, markers
-from .results import keep_reading, reading_of
-from .say import say
-from .takes import active_take, footage_of, take_called
+from .running.job_operator import JobOperator
+from .running.requirements import all_colors, all_met, footage, idle, markers
+from .running.say import say
+from .scene.marker_styles import marker_styles
+from .scene.results import keep_reading, reading_of
+from .scene.takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
     from ..core.footage.reading import Reading

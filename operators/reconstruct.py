@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .job_operator import JobOperator
-from .live_preview import LivePreview
-from .marker_styles import marker_styles
-from .requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
-from .results import keep_reading, keep_review, keep_solved, reading_of, solved_before
-from .reviewing import show_review
-from .say import say
-from .takes import active_take, footage_of, take_called
+from .running.job_operator import JobOperator
+from .running.live_preview import LivePreview
+from .running.requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
+from .running.say import say
+from .scene.marker_styles import marker_styles
+from .scene.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
+from .scene.reviewing import show_review
+from .scene.takes import active_take, footage_of, take_called
 
 if TYPE_CHECKING:
     from ..core.progress import Job, Progress

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import bpy
 
-from .failures import reported
 from .load_footage import PATTERNS
-from .requirements import all_met, footage, idle
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import all_met, footage, idle
+from .running.say import say
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_relocate_clip(bpy.types.Operator):
@@ -42,9 +42,9 @@ class KEYMARK_OT_relocate_clip(bpy.types.Operator):
         """Check the file, and only then point the clip there."""
         with reported(self):
             from ..core.errors import InputError
-            from ..core.footage.clip import Clip
+            from ..core.footage.clips.clip import Clip
             from .bridge.scene_footage import clip_file, stored_path
-            from .take_footage import note_clip
+            from .scene.take_footage import note_clip
 
             take = active_take(context.scene)
             clip, path = take.clip, Path(bpy.path.abspath(self.filepath))

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .requirements import all_met, markers
-from .takes import active_take
+from .running.requirements import all_met, markers
+from .scene.takes import active_take
 from .ui.properties.marker import clear_readouts
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import bpy
 
-from .requirements import all_met, idle
-from .takes import active_take, find_take
+from .running.requirements import all_met, idle
+from .scene.takes import active_take, find_take
 
 HELPERS = {"CAMERA", "EMPTY"}
 

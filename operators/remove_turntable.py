@@ -2,9 +2,9 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import all_met, idle, turntable
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import all_met, idle, turntable
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_remove_turntable(bpy.types.Operator):

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import bpy
 
-from .failures import reported
-from .marker_styles import marker_styles
-from .requirements import actor, all_met, footage, idle, markers
-from .say import say
-from .takes import active_take, footage_of
+from .running.failures import reported
+from .running.requirements import actor, all_met, footage, idle, markers
+from .running.say import say
+from .scene.marker_styles import marker_styles
+from .scene.takes import active_take, footage_of
 
 
 class KEYMARK_OT_save_take(bpy.types.Operator):

@@ -2,9 +2,9 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import actor, all_met, idle
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, idle
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_set_up_turntable(bpy.types.Operator):

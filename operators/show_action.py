@@ -2,9 +2,9 @@
 
 import bpy
 
-from .failures import reported
-from .requirements import actor, all_met
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_show_action(bpy.types.Operator):

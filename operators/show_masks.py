@@ -2,10 +2,10 @@
 
 import bpy
 
-from .failures import reported
-from .marker_previews import look_at_frame, preview_of
-from .requirements import a_color, all_met, footage, idle, markers
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import a_color, all_met, footage, idle, markers
+from .scene.marker_previews import look_at_frame, preview_of
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_show_masks(bpy.types.Operator):

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import bpy
 
-from .failures import reported
-from .requirements import all_met, footage
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import all_met, footage
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_show_view(bpy.types.Operator):

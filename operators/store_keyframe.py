@@ -2,11 +2,11 @@
 
 import bpy
 
-from .failures import reported
-from .posed_frames import forget
-from .requirements import actor, all_met, idle
-from .say import say
-from .takes import active_take
+from .running.failures import reported
+from .running.requirements import actor, all_met, idle
+from .running.say import say
+from .scene.posed_frames import forget
+from .scene.takes import active_take
 
 
 class KEYMARK_OT_store_keyframe(bpy.types.Operator):
@@ -29,8 +29,8 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             from .bridge.actor_lengths import read_body
             from .bridge.keyframes import NOTICEABLE_M, store_pose
             from .bridge.pose import read_posture
-            from .keyframe_editing import shows_keyframes
-            from .new_actor import new_keyframe_action
+            from .scene.keyframe_editing import shows_keyframes
+            from .scene.new_actor import new_keyframe_action
 
             scene = context.scene
             take = active_take(scene)

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import bpy
 
-from .requirements import all_met, idle
-from .say import say
-from .takes import add_take, find_take
+from .running.requirements import all_met, idle
+from .running.say import say
+from .scene.takes import add_take, find_take
 
 
 class KEYMARK_OT_use_clip(bpy.types.Operator):
@@ -38,7 +38,7 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it behind the take's camera."""
-        from .take_footage import give_footage, look_through_camera, name_for
+        from .scene.take_footage import give_footage, look_through_camera, name_for
 
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]

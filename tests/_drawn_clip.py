@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from keymark.core.footage.clip import Clip
+from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.tracks import RegionTracks
 

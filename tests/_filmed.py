@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from _scene import BODY, CAMERA
 from keymark.core.body.posture import Posture
-from keymark.core.footage.album import Album
+from keymark.core.footage.clips.album import Album
 from keymark.core.observation.contours import ContourModel
 from keymark.core.observation.part_map import part_map
 

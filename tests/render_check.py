@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from keymark.core.footage.clip import Clip
+from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.progress import run, within

@@ -11,7 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.clip import Clip
+from keymark.core.footage.clips.clip import Clip
 from keymark.core.motion import Motion
 from keymark.core.progress import run
 from keymark.core.reconstruct import METHODS, reconstruct

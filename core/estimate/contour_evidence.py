@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.album import Album
 from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
+from ..footage.clips.album import Album
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
 from ..observation.part_map import part_map
 from .contour_search import Edges, find_edges
+from .keyframe_evidence import evenly_chosen
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
 from .terms.term import student_weight
 
@@ -26,7 +27,7 @@ Array = NDArray[np.float64]
 LEARNED_FRAMES = 32
 CHUNK_FRAMES = 50
 MOST_KEYFRAMES = 60
-"""Of more keyframes, this many, evenly spread, show the shapes."""
+"""Of more keyframes, this many, evenly spread in time, show the shapes."""
 ROUNDS = 3
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """How far a performer's parts are from average ones: thickness at both ends, and place."""
@@ -94,7 +95,7 @@ def learn_contours(
     appearance = yield from _learn(model, album, posture, frame)
     if not appearance.steady:
         return None
-    known = keyframes[np.linspace(0, len(keyframes) - 1, min(len(keyframes), MOST_KEYFRAMES)).astype(np.intp)]
+    known = keyframes[evenly_chosen(keyframes, MOST_KEYFRAMES)]
     fitted = yield from _fitted(model, album, appearance, posture[known], known)
     return ContourEvidence(album, appearance, fitted)
 

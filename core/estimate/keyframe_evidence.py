@@ -117,7 +117,7 @@ def read_keyframes(
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
-    judged = _judged(frame)
+    judged = evenly_chosen(frame, MOST_JUDGED)
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
     # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
@@ -139,11 +139,11 @@ def read_keyframes(
     return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, information)
 
 
-def _judged(frame: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Which of the keyframes are judged: one more or less changes little of the choice."""
-    if len(frame) <= MOST_JUDGED:
+def evenly_chosen(frame: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+    """Which of the keyframes at increasing frames speak for all: one more or less changes little of it."""
+    if len(frame) <= most:
         return np.arange(len(frame))
-    wanted = np.linspace(frame[0], frame[-1], MOST_JUDGED)
+    wanted = np.linspace(frame[0], frame[-1], most)
     return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))
 
 

@@ -1,9 +1,12 @@
 """What a change of the take leaves of an earlier estimate: where to begin anew, and from where.
 
 A keyframe that is moved, added or removed changes the prior between its neighbours and, a little, what all
-keyframes together tell. Where the latter stays within what nobody could see, only the frames around the
-change are estimated again, else the whole clip is; either from the prior, as if for the first time. To begin
-with the earlier postures would save a twentieth, and hold on to earlier mistakes (measured: up to 60 mm).
+keyframes together tell. Where the latter stays within small tolerances, only the frames around the change are
+estimated again, else the whole clip is; either from the prior, as if for the first time. To begin with the
+earlier postures would save a twentieth, and hold on to earlier mistakes (measured: up to 60 mm).
+
+Of 100 s with a keyframe moved or added, measured against estimating all anew: 0.1 to 0.2 mm apart on average,
+99 of 100 points within 1.2 mm, a few in frames that hardly anything determines by up to 14 mm.
 """
 
 from dataclasses import fields, replace

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.album import Album
 from ..footage.camera import Camera
+from ..footage.clips.album import Album
 from ..footage.tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
@@ -90,8 +90,8 @@ def estimate_whole_clip(
         keyframe_indices: Frames whose prior was posed, at least one.
         options: Noise, smoothness and windows.
         album: Pictures of all frames, for contours to be looked for; None does without.
-        earlier: An estimate of the same pictures. What has not changed since is taken from it, as far as
-            nobody could tell the difference (see `revision`).
+        earlier: An estimate of the same pictures. What has not changed since is taken from it, within the
+            tolerances of `revision`.
 
     Yields:
         The fraction done, from 0 to 1, and what is known of a window's frames after every step.

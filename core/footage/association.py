@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .moments import MOMENT_POWERS
-from .regions import Regions
+from .segmentation.moments import MOMENT_POWERS
+from .segmentation.regions import Regions
 from .tracks import ExpectedRegions
 
 FloatArray = NDArray[np.float64]

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .association import Candidates, candidates
-from .clip_colours import ClipColours
-from .clip_samples import ClipSamples
-from .colour_model import ColourModel
-from .colour_overlap import colour_claims
+from .clips.clip_samples import ClipSamples
+from .colours.clip_colours import ClipColours
+from .colours.colour_model import ColourModel
+from .colours.colour_overlap import colour_claims
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
 from .own_regions import DEAREST_PIECE, own_regions
-from .regions import find_regions
+from .segmentation.regions import find_regions
+from .segmentation.working_image import halvings
 from .tracks import ExpectedRegions
-from .working_image import halvings
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

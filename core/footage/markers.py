@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .association import candidates, main_path
-from .clip import Clip
-from .clip_colours import ClipColours
+from .clips.clip import Clip
+from .colours.clip_colours import ClipColours
 from .marker_style import MarkerStyle, colour_groups
-from .moments import centroid_and_second_moment
 from .own_regions import own_regions
 from .pieces import region_quality
-from .regions import NO_REGIONS, Regions, find_regions
+from .segmentation.moments import centroid_and_second_moment
+from .segmentation.regions import NO_REGIONS, Regions, find_regions
+from .segmentation.working_image import halvings, measuring_image
 from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import halvings, measuring_image
 
 FloatArray = NDArray[np.float64]
 

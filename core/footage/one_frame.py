@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import InputError
-from .clip import Clip
-from .clip_colours import ClipColours
-from .frame_reader import FrameReader
+from .clips.clip import Clip
+from .clips.frame_reader import FrameReader
+from .colours.clip_colours import ClipColours
 from .marker_style import MarkerStyle
 from .markers import tell_markers
-from .regions import find_regions
+from .segmentation.regions import find_regions
+from .segmentation.working_image import halvings, measuring_image
 from .sightings import Sightings
 from .tracks import ExpectedRegions, RegionTracks
-from .working_image import halvings, measuring_image
 
 _SAMPLED_FRAMES = 12
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
-from .moments import centroid_and_second_moment
 from .pieces import OwnRegion, join_pieces
+from .segmentation.moments import centroid_and_second_moment
 from .tracks import ExpectedRegions
 
 FloatArray = NDArray[np.float64]

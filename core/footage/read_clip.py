@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 
-from .album import Album, watched
-from .clip import Clip
+from .clips.album import Album, watched
+from .clips.clip import Clip
 from .marker_style import MarkerStyle
 from .markers import sight_markers, still_hold, tell_markers
 from .reading import Reading

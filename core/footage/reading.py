@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .album import Album
+from .clips.album import Album
 from .sightings import Sightings
 from .tracks import RegionTracks
 

@@ -9,9 +9,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .album import Album
+from .clips.album import Album
 from .reading import Reading
-from .regions import Regions
+from .segmentation.regions import Regions
 from .sightings import Lesson, Sightings
 from .tracks import RegionTracks
 

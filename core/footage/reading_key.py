@@ -8,7 +8,7 @@ from typing import Final
 
 from ..errors import InputError
 from ..files.digest import digest, file_digest
-from .image_sequence import find_images
+from .clips.image_sequence import find_images
 from .marker_style import MarkerStyle
 from .tracks import ExpectedRegions
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .regions import Regions
+from .segmentation.regions import Regions
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .clip_timing import is_variable_frame_rate
+from .clips.clip_timing import is_variable_frame_rate
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

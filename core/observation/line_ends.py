@@ -17,7 +17,7 @@ from ..body.rotations import cross_matrix
 from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
 from ..errors import InputError
 from ..footage.camera import Camera
-from ..footage.moments import axis_angle_difference, characteristics
+from ..footage.segmentation.moments import axis_angle_difference, characteristics
 from ..footage.tracks import RegionTracks
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..footage.ellipse import ellipse_outline
+from ..footage.segmentation.ellipse import ellipse_outline
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take

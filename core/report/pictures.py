@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..footage.clip import Clip
+from ..footage.clips.clip import Clip
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take

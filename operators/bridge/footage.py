@@ -9,7 +9,7 @@ import bpy
 from ...core.errors import InputError
 
 if TYPE_CHECKING:
-    from ...core.footage.clip import Clip
+    from ...core.footage.clips.clip import Clip
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Footage:
             InputError: There is no clip, its file is gone or cannot be decoded.
         """
         # Takes are looked at while the extension registers, when OpenCV may be missing.
-        from ...core.footage.clip import Clip
+        from ...core.footage.clips.clip import Clip
 
         return Clip.open(self.path, fps=self.rate)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.footage.clip_timing import is_variable_frame_rate
+from ...core.footage.clips.clip_timing import is_variable_frame_rate
 
 Array = NDArray[np.float64]
 

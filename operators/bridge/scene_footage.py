@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.errors import InputError
 from ...core.footage.camera import Camera
-from ...core.footage.image_sequence import find_images
+from ...core.footage.clips.image_sequence import find_images
 from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
 from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose

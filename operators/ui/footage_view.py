@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.footage.camera import Camera
 from ..bridge.scene_camera import read_lens
-from ..takes import footage_of
+from ..scene.takes import footage_of
 
 Array = NDArray[np.float64]
 

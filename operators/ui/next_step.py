@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..posed_frames import posed_frames, unposed
+from ..scene.posed_frames import posed_frames, unposed
 
 FEWEST_KEYFRAMES = 2
 

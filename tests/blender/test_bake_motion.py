@@ -17,7 +17,7 @@ from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.final_motion import motion_frames, read_values
 from keymark.operators.bridge.keyframes import store_pose
 from keymark.operators.bridge.rig import read_rig
-from keymark.operators.takes import add_take
+from keymark.operators.scene.takes import add_take
 
 FRAMES = 50
 POSED = (1, 20, 35, 50)

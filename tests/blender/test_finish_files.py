@@ -13,8 +13,8 @@ from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.export_formats import FORMATS, Format
-from keymark.operators.takes import add_take
+from keymark.operators.scene.export_formats import FORMATS, Format
+from keymark.operators.scene.takes import add_take
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
@@ -145,6 +145,8 @@ def test_an_exported_motion_moves_alike_when_read_back(
     """The hand's way through the motion is that of the actor; the scene is as before."""
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
+    if kind == "GLTF" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
+        pytest.skip("Blender 4.5 as a Python module may wait for ever at its exit after a glTF export")
     scene = bpy.context.scene
     scene.render.fps = 25
     bpy.ops.keymark.bake_motion()

@@ -7,8 +7,8 @@ import bpy
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import Progress
-from keymark.operators.job_operator import JobOperator
-from keymark.operators.takes import active_take
+from keymark.operators.running.job_operator import JobOperator
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -59,7 +59,7 @@ def context(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         modal_handler_add=lambda operator: True,
     )
     monkeypatch.setattr(
-        "keymark.operators.job_operator.bpy.app", SimpleNamespace(background=False), raising=False
+        "keymark.operators.running.job_operator.bpy.app", SimpleNamespace(background=False), raising=False
     )
     return SimpleNamespace(
         scene=bpy.context.scene,
@@ -105,7 +105,7 @@ def test_escape_leaves_everything_as_it_was(
     context: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The job is closed in the middle, its result never written."""
-    monkeypatch.setattr("keymark.operators.job_operator.LONGEST_SLICE_S", 0.0)  # one step an event
+    monkeypatch.setattr("keymark.operators.running.job_operator.LONGEST_SLICE_S", 0.0)  # one step an event
     job = Job()
     job.invoke(context, event("LEFTMOUSE"))
     assert job.modal(context, event("TIMER")) == {"RUNNING_MODAL"}

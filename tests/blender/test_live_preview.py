@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from keymark.core.progress import Preview, Progress
 from keymark.core.take import Take
-from keymark.operators.live_preview import LivePreview
 from keymark.operators.reconstruct import KEYMARK_OT_reconstruct
-from keymark.operators.takes import active_take
+from keymark.operators.running.live_preview import LivePreview
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 FRAMES = np.arange(1.0, 14.0)

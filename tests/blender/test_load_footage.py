@@ -12,8 +12,8 @@ from keymark.core.take import Take
 from keymark.operators.drop_files import KEYMARK_FH_footage, KEYMARK_FH_take
 from keymark.operators.load_footage import KEYMARK_OT_load_footage
 from keymark.operators.open_take import KEYMARK_OT_open_take
-from keymark.operators.take_footage import lens_is_guess
-from keymark.operators.takes import active_take
+from keymark.operators.scene.take_footage import lens_is_guess
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -141,7 +141,7 @@ def test_a_dropped_take_is_opened() -> None:
 
 def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
     """An even clip passes; one with a gap in its times does not."""
-    from keymark.core.footage.video_file import VideoFile
+    from keymark.core.footage.clips.video_file import VideoFile
 
     assert loaded.clip_state.rate == pytest.approx(25.0)
     assert not loaded.clip_state.variable_rate

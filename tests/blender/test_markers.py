@@ -9,8 +9,8 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take import Take
 from keymark.operators.check_markers import KEYMARK_OT_check_markers
-from keymark.operators.marker_previews import forget_previews, look_at_frame, preview_of
-from keymark.operators.takes import active_take, add_take, take_called
+from keymark.operators.scene.marker_previews import forget_previews, look_at_frame, preview_of
+from keymark.operators.scene.takes import active_take, add_take, take_called
 from keymark.operators.ui.overlays.mask import free_height, tinted
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -13,7 +13,7 @@ from keymark.core.motion import Motion
 from keymark.core.take import Take, read_take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.takes import active_take
+from keymark.operators.scene.takes import active_take
 from keymark.operators.ui.properties.marker import SEGMENTS
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -8,8 +8,8 @@ import gpu
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.mask_outlines import mask_outlines
-from keymark.operators.marker_previews import ColorMask, Preview
+from keymark.core.footage.segmentation.mask_outlines import mask_outlines
+from keymark.operators.scene.marker_previews import ColorMask, Preview
 from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import drawing
 from keymark.operators.ui.overlays import mask as mask_overlay

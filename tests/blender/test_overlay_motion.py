@@ -8,7 +8,7 @@ import pytest
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review import Review
-from keymark.operators import results, takes
+from keymark.operators.scene import results, takes
 from keymark.operators.ui.footage_view import FootageView
 from keymark.operators.ui.overlays import motion
 from keymark.operators.ui.overlays.clip_editor import ClipView

@@ -10,8 +10,8 @@ from keymark.core.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.pose import read_posture, write_posture
-from keymark.operators.posed_frames import posed_frames, unposed
-from keymark.operators.takes import active_take
+from keymark.operators.scene.posed_frames import posed_frames, unposed
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

@@ -4,9 +4,9 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.take import Take
-from keymark.operators import results
-from keymark.operators.job_operator import time_left
-from keymark.operators.takes import active_take
+from keymark.operators.running.job_operator import time_left
+from keymark.operators.scene import results
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -99,7 +99,7 @@ def test_two_takes_keep_their_own_results(take: bpy.types.PropertyGroup) -> None
 
     from keymark.core.progress import run
     from keymark.operators.reconstruct import KEYMARK_OT_reconstruct
-    from keymark.operators.takes import add_take
+    from keymark.operators.scene.takes import add_take
 
     scene, identifier = bpy.context.scene, take.identifier
     said: list[str] = []

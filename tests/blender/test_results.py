@@ -10,8 +10,8 @@ from keymark.core.footage.reading import Reading
 from keymark.core.progress import run
 from keymark.core.reconstruct import read_footage
 from keymark.core.take import Take
-from keymark.operators import results
-from keymark.operators.takes import add_take
+from keymark.operators.scene import results
+from keymark.operators.scene.takes import add_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

@@ -14,10 +14,10 @@ from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
-from keymark.operators.posed_frames import is_posed
-from keymark.operators.results import review_of
-from keymark.operators.reviewing import clear_review, show_review
-from keymark.operators.takes import active_take
+from keymark.operators.scene.posed_frames import is_posed
+from keymark.operators.scene.results import review_of
+from keymark.operators.scene.reviewing import clear_review, show_review
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

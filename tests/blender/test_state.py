@@ -7,8 +7,8 @@ import keymark
 import pytest
 from keymark.core.take import Take
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.takes import VERSION, active_take, add_take
-from keymark.operators.upgrade import is_newer, tell_apart
+from keymark.operators.scene.takes import VERSION, active_take, add_take
+from keymark.operators.scene.upgrade import is_newer, tell_apart
 
 RIG = "tiny Actor"
 

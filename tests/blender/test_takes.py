@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.take import Take, write_take
-from keymark.operators.takes import active_take, unique_name
+from keymark.operators.scene.takes import active_take, unique_name
 from keymark.operators.ui.next_step import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")

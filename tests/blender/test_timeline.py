@@ -9,9 +9,9 @@ from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.take import Take
-from keymark.operators.posed_frames import is_posed
-from keymark.operators.results import keep_reading, keep_review
-from keymark.operators.takes import active_take
+from keymark.operators.scene.posed_frames import is_posed
+from keymark.operators.scene.results import keep_reading, keep_review
+from keymark.operators.scene.takes import active_take
 from keymark.operators.ui.overlays.picture import Fill, Label, Stroke
 from keymark.operators.ui.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
 from keymark.operators.ui.overlays.timeline_figures import believed_color, graph, in_view, joined, strip

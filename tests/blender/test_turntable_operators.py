@@ -5,8 +5,8 @@ from pathlib import Path
 import bpy
 import pytest
 from keymark.core.take import Take
+from keymark.operators.scene.takes import active_take, add_take
 from keymark.operators.show_view import viewports
-from keymark.operators.takes import active_take, add_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

@@ -13,7 +13,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.shapes import body_pieces, marker_parts
 from keymark.core.footage.camera import Camera
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.takes import active_take
+from keymark.operators.scene.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...bridge.scene_camera import read_lens
-from ...takes import footage_of
+from ...scene.takes import footage_of
 from ..footage_view import FootageView, footage_view
 from .motion import picture, shown
 from .picture import paint

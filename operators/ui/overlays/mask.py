@@ -15,8 +15,8 @@ from gpu_extras.batch import batch_for_shader
 from numpy.typing import NDArray
 
 from ....core.errors import KeymarkError
-from ...marker_previews import ColorMask, Preview, forget_previews, look_at_frame, preview_of
-from ...takes import find_take
+from ...scene.marker_previews import ColorMask, Preview, forget_previews, look_at_frame, preview_of
+from ...scene.takes import find_take
 from ..footage_view import FootageView, footage_view
 from . import drawing
 from .figures import segments

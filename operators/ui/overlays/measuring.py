@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ...say import label
-from ...takes import find_take
+from ...running.say import label
+from ...scene.takes import find_take
 from ..footage_view import footage_view
 from . import drawing
 

@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...results import review_of
-from ...say import label
-from ...takes import find_take
+from ...running.say import label
+from ...scene.results import review_of
+from ...scene.takes import find_take
 from ..footage_view import FootageView
 from . import drawing
 from .legend import Row, Sample, corner, legend

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...say import label
+from ...running.say import label
 from .drawing import INK
 from .figures import dashes, segments
 from .picture import Item, Label, Stroke

@@ -7,10 +7,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...posed_frames import is_posed
-from ...results import Remembered, reading_of, review_of
-from ...say import label
-from ...takes import find_take, footage_of
+from ...running.say import label
+from ...scene.posed_frames import is_posed
+from ...scene.results import Remembered, reading_of, review_of
+from ...scene.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
 from .figures import diamonds, segments

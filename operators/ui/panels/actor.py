@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...takes import active_take
+from ...scene.takes import active_take
 from ..properties.actor import MIDDLE, SIDED, length_property
 from .base import TakePanel
 

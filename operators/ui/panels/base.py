@@ -2,8 +2,8 @@
 
 import bpy
 
-from ...job_operator import job_is_running
-from ...takes import find_take
+from ...running.job_operator import job_is_running
+from ...scene.takes import find_take
 
 
 class SidebarPanel:

@@ -2,9 +2,9 @@
 
 import bpy
 
-from ...export_formats import FORMATS
-from ...say import label
-from ...takes import active_take
+from ...running.say import label
+from ...scene.export_formats import FORMATS
+from ...scene.takes import active_take
 from .base import TakePanel
 
 

@@ -3,9 +3,9 @@
 import bpy
 
 from ...bridge.footage_camera import may_move, solver_constraint
-from ...say import label
-from ...take_footage import lens_is_guess
-from ...takes import active_take
+from ...running.say import label
+from ...scene.take_footage import lens_is_guess
+from ...scene.takes import active_take
 from .base import TakePanel
 
 

@@ -2,9 +2,9 @@
 
 import bpy
 
-from ...posed_frames import posed_frames, proposed_frames, unposed
-from ...say import label
-from ...takes import active_take
+from ...running.say import label
+from ...scene.posed_frames import posed_frames, proposed_frames, unposed
+from ...scene.takes import active_take
 from .base import TakePanel
 
 

@@ -2,8 +2,8 @@
 
 import bpy
 
-from ...takes import find_take
-from ...upgrade import is_newer
+from ...scene.takes import find_take
+from ...scene.upgrade import is_newer
 from ..next_step import next_step
 from .base import SidebarPanel, draw_progress
 

@@ -4,8 +4,8 @@ from textwrap import wrap
 
 import bpy
 
-from ...say import label
-from ...takes import active_take, find_take
+from ...running.say import label
+from ...scene.takes import active_take, find_take
 from .base import TakePanel, draw_progress
 
 CHARACTER_WIDTH = 6.2

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...takes import find_take
+from ...scene.takes import find_take
 from ..overlays import registry
 from .base import TakePanel
 

@@ -4,7 +4,7 @@ from textwrap import wrap
 
 import bpy
 
-from ...takes import active_take, find_take
+from ...scene.takes import active_take, find_take
 from .base import TakePanel, draw_progress
 
 LETTER, MARGIN = 6.2, 80.0

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...takes import active_take
+from ...scene.takes import active_take
 from .base import TakePanel
 
 VIEWS = (("FOOTAGE", "Footage"), ("FRONT", "Front"), ("SIDE", "Side"), ("TURNING", "Turntable"))

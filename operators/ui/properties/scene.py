@@ -2,14 +2,14 @@
 
 import bpy
 
-from ...takes import bring_forward, find_take
+from ...scene.takes import bring_forward, find_take
 from .overlays import KEYMARK_PG_overlays
 from .take import KEYMARK_PG_take
 from .timeline import KEYMARK_PG_timeline
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ...take_footage import is_missing
+    from ...scene.take_footage import is_missing
 
     bring_forward(settings.id_data)
     take = find_take(settings.id_data)

@@ -4,7 +4,7 @@ from contextlib import suppress
 
 import bpy
 
-from ...takes import unique_name
+from ...scene.takes import unique_name
 from .actor import KEYMARK_PG_lengths
 from .clip_state import KEYMARK_PG_clip_state
 from .finish import KEYMARK_PG_finish
@@ -30,7 +30,7 @@ def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) 
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or Keymark without its libraries
         from ....core.body.human import HUMAN
         from ...bridge.actor_lengths import read_body
-        from ...new_actor import show_lengths
+        from ...scene.new_actor import show_lengths
 
         show_lengths(take, read_body(take.armature, HUMAN))
 
@@ -47,13 +47,13 @@ def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
 
 
 def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ...take_footage import clip_chosen
+    from ...scene.take_footage import clip_chosen
 
     clip_chosen(take)
 
 
 def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ...take_footage import camera_chosen
+    from ...scene.take_footage import camera_chosen
 
     camera_chosen(take)
 

@@ -12,7 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.contour_evidence import learn_contours
 from keymark.core.estimate.terms.contours import ContourTerm
 from keymark.core.estimate.whole_clip import estimate_whole_clip
-from keymark.core.footage.album import Album
+from keymark.core.footage.clips.album import Album
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import Preview, run

@@ -6,8 +6,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from keymark.core.footage.album import Album, watched
-from keymark.core.footage.clip import Clip
+from keymark.core.footage.clips.album import Album, watched
+from keymark.core.footage.clips.clip import Clip
 
 FRAMES = 4
 

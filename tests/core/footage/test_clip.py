@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.footage.clip import Clip
-from keymark.core.footage.clip_timing import is_variable_frame_rate
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:

@@ -6,14 +6,14 @@ import pytest
 from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, moving, path
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
-from keymark.core.footage.clip import Clip
+from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.matting import coverage
-from keymark.core.footage.search import boxes_to_measure
-from keymark.core.footage.sheet import NO_COLOUR, Window, lay_out
+from keymark.core.footage.segmentation.matting import coverage
+from keymark.core.footage.segmentation.search import boxes_to_measure
+from keymark.core.footage.segmentation.sheet import NO_COLOUR, Window, lay_out
+from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 from keymark.core.footage.tracks import ExpectedRegions
-from keymark.core.footage.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9
 

@@ -8,14 +8,14 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving
-from keymark.core.footage.clip import Clip
-from keymark.core.footage.clip_samples import sample_clip
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips.clip_samples import sample_clip
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.mask_outlines import mask_outlines
-from keymark.core.footage.regions import colour_masks
+from keymark.core.footage.segmentation.mask_outlines import mask_outlines
+from keymark.core.footage.segmentation.regions import colour_masks
 from keymark.core.footage.tracks import ExpectedRegions
 
 Result = TypeVar("Result")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving, path
 from keymark.core.errors import InputError
-from keymark.core.footage.clip import Clip
-from keymark.core.footage.colour_learning import learn_colours
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.colours.colour_learning import learn_colours
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.tracks import ExpectedRegions, RegionTracks

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from keymark.core.footage.moments import (
+from keymark.core.footage.segmentation.moments import (
     axis_angle_difference,
     centroid_and_second_moment,
     characteristics,

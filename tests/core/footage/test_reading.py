@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_digest
-from keymark.core.footage import clip as clip_module
+from keymark.core.footage.clips import clip as clip_module
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arrays
 from keymark.core.footage.tracks import RegionTracks

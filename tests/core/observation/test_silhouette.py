@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise
-from keymark.core.footage.ellipse import ellipse_outline
+from keymark.core.footage.segmentation.ellipse import ellipse_outline
 from keymark.core.observation.outline import outline, view_pieces
 from keymark.core.observation.silhouette import silhouettes
 

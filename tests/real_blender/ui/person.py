@@ -37,7 +37,7 @@ class Person:
     @property
     def take(self) -> bpy.types.PropertyGroup:
         """The active take."""
-        return keymark("operators.takes").active_take(self.scene)
+        return keymark("operators.scene.takes").active_take(self.scene)
 
     def look(self, name: str) -> Steps[None]:
         """Let everything be drawn, and take a picture."""

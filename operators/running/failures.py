@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import bpy
 
-from ..core.errors import KeymarkError
+from ...core.errors import KeymarkError
 
 
 @contextmanager

@@ -4,15 +4,15 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..core.errors import InputError
-from .bridge.footage import Footage
+from ...core.errors import InputError
+from ..bridge.footage import Footage
 from .marker_previews import keep_preview
 
 if TYPE_CHECKING:
-    from ..core.footage.clip_samples import ClipSamples
-    from ..core.footage.marker_check import MarkerCheck
-    from ..core.footage.marker_style import MarkerStyle
-    from ..core.progress import Job
+    from ...core.footage.clips.clip_samples import ClipSamples
+    from ...core.footage.marker_check import MarkerCheck
+    from ...core.footage.marker_style import MarkerStyle
+    from ...core.progress import Job
 
 MOST_CLIPS = 2
 """Clips whose samples are kept, some megabytes each, so that another color is judged at once."""
@@ -30,9 +30,9 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
     Raises:
         InputError: There is no clip, or it cannot be read.
     """
-    from ..core.footage.clip_samples import sample_clip
-    from ..core.footage.marker_check import check_markers
-    from ..core.progress import within
+    from ...core.footage.clips.clip_samples import sample_clip
+    from ...core.footage.marker_check import check_markers
+    from ...core.progress import within
 
     path = footage.path
     about = path.stat()

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from .colour_model import ColourModel
+from ..colours.colour_model import ColourModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search import MARGIN, Box, boxes_to_measure, coloured_boxes

@@ -10,15 +10,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..files.digest import digest
+from ...errors import InputError
+from ...files.digest import digest
+from ..marker_style import MarkerStyle, colour_groups
+from ..segmentation.working_image import halvings, learning_image, measuring_image
+from ..sightings import Lesson, Sightings
+from ..tracks import ExpectedRegions
 from .colour_learning import LearnedColours, learn_colours
 from .colour_model import ColourModel
 from .colour_names import nearest_colours, share_of_colour
-from .marker_style import MarkerStyle, colour_groups
-from .sightings import Lesson, Sightings
-from .tracks import ExpectedRegions
-from .working_image import halvings, learning_image, measuring_image
 
 Image = NDArray[np.uint8]
 

@@ -17,9 +17,9 @@ def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
         return ()
     names = take.armature.name_full, take.keyframe_action.name_full
     if names not in _posed:
-        from ..core.body.human import HUMAN
-        from ..core.errors import InputError
-        from .bridge.keyframes import keyed_frames
+        from ...core.body.human import HUMAN
+        from ...core.errors import InputError
+        from ..bridge.keyframes import keyed_frames
 
         try:
             _posed[names] = keyed_frames(take.armature, take.keyframe_action, HUMAN)

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import bpy
 
-from ..core.errors import ConversionError
+from ...core.errors import ConversionError
 
 if TYPE_CHECKING:
-    from ..core.files.store import Arrays, Store
-    from ..core.footage.reading import Reading
-    from ..core.reconstruct import Reconstruction
-    from ..core.review import Review
+    from ...core.files.store import Arrays, Store
+    from ...core.footage.reading import Reading
+    from ...core.reconstruct import Reconstruction
+    from ...core.review import Review
 
 Result = TypeVar("Result")
 
@@ -66,14 +66,14 @@ def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
 
     It is for showing: whether it still holds is `read_footage` to say.
     """
-    from ..core.footage.reading_arrays import reading_from_arrays
+    from ...core.footage.reading_arrays import reading_from_arrays
 
     return _kept(_readings, take.reading_key, reading_from_arrays)
 
 
 def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
     """Keep what was read of a take's clip."""
-    from ..core.footage.reading_arrays import reading_arrays
+    from ...core.footage.reading_arrays import reading_arrays
 
     known = take.reading_key == reading.key and reading_of(take) is not None
     _readings.put(reading.key, reading)
@@ -86,14 +86,14 @@ def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
     """What is known of a take's motion; None where there is none, or it was lost."""
     if not take.review_key:
         return None
-    from ..core.review import Review
+    from ...core.review import Review
 
     return _kept(_reviews, take.review_key, Review.from_arrays)
 
 
 def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
     """Keep what is known of a take's motion."""
-    from ..core.files.digest import digest
+    from ...core.files.digest import digest
 
     arrays = review.to_arrays()
     key = f"review-{digest(*(part for name in sorted(arrays) for part in (name, arrays[name])))}"
@@ -140,7 +140,7 @@ def _save(key: str, arrays: "Arrays") -> None:
 
 
 def _store() -> "Store":
-    from ..core.files.store import Store
+    from ...core.files.store import Store
 
     package = (__package__ or "").rpartition(".")[0]
     try:

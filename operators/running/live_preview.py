@@ -8,7 +8,7 @@ import bpy
 from bpy.app import handlers
 
 if TYPE_CHECKING:
-    from ..core.progress import Preview
+    from ...core.progress import Preview
 
 SWEEPS = 9
 """Pictures in which the actor goes through the frames of a preview."""
@@ -31,7 +31,7 @@ class LivePreview:
 
     def show(self, preview: "Preview") -> None:
         """Show the next of a preview's frames: from one preview to the next the actor moves on."""
-        from .bridge.pose import write_posture
+        from ..bridge.pose import write_posture
 
         count = preview.posture.batch[0]
         step = max(1, count // SWEEPS)
@@ -54,7 +54,7 @@ class LivePreview:
                 changes.close()
 
     def _begin(self) -> None:
-        from .bridge.scene_frames import at_scene_frame, showing_action
+        from ..bridge.scene_frames import at_scene_frame, showing_action
 
         if self._changes is None:
             self._changes = ExitStack()

@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
 from .clip import Clip, FrameSource
-from .working_image import halvings, learning_image, measuring_image, smooth
 
 Image = NDArray[np.uint8]
 

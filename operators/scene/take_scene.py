@@ -7,12 +7,12 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.take import Take, check_frame_count, open_clip, rate_note, read_take
-from .bridge.actions import assign_action
-from .bridge.footage import clip_rate
-from .bridge.frame_times import scene_frames
-from .bridge.keyframes import write_keyframes
-from .bridge.scene_footage import load_footage, show_footage
+from ...core.take import Take, check_frame_count, open_clip, rate_note, read_take
+from ..bridge.actions import assign_action
+from ..bridge.footage import clip_rate
+from ..bridge.frame_times import scene_frames
+from ..bridge.keyframes import write_keyframes
+from ..bridge.scene_footage import load_footage, show_footage
 from .marker_styles import set_marker_color
 from .new_actor import add_actor, new_keyframe_action
 from .takes import add_take

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ...errors import InputError
 from .clip_timing import is_variable_frame_rate
 from .image_sequence import ImageSequence, find_images
 from .video_file import VideoFile

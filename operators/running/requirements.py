@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import bpy
 
+from ..scene.takes import find_take
 from .job_operator import job_is_running
-from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context], str | None]
 

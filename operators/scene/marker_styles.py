@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 if TYPE_CHECKING:
-    from ..core.footage.marker_style import MarkerStyle
+    from ...core.footage.marker_style import MarkerStyle
 
 FULL_SCALE = 255
 
@@ -16,8 +16,8 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     Raises:
         InputError: Two markers have one name or one segment.
     """
-    from ..core.errors import InputError
-    from ..core.footage.marker_style import MarkerStyle
+    from ...core.errors import InputError
+    from ...core.footage.marker_style import MarkerStyle
 
     styles = tuple(
         MarkerStyle(marker.name, marker.segment, _to_bytes(marker.color)) for marker in take.markers

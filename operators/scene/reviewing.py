@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 if TYPE_CHECKING:
-    from ..core.review import Review
+    from ...core.review import Review
 
 
 def show_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
@@ -15,7 +15,7 @@ def show_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
         take: A take whose motion was written.
         review: What is known of that motion.
     """
-    from .bridge.review_curves import write_review_curves
+    from ..bridge.review_curves import write_review_curves
 
     shown = take.review
     clear_review(take)

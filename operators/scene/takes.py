@@ -5,8 +5,8 @@ from uuid import uuid4
 
 import bpy
 
-from ..core.errors import InputError
-from .bridge.footage import Footage, set_scene_range
+from ...core.errors import InputError
+from ..bridge.footage import Footage, set_scene_range
 
 VERSION = 1
 """Version of Keymark's properties; a scene says by which it was written."""

@@ -9,8 +9,8 @@ from .new_actor import add_actor, show_lengths
 from .takes import footage_of
 
 if TYPE_CHECKING:
-    from ..core.body.kinematics import Body
-    from ..core.body.posture import Posture
+    from ...core.body.kinematics import Body
+    from ...core.body.posture import Posture
 
 
 def has_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> bool:
@@ -26,7 +26,7 @@ def size_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: 
     Raises:
         InputError: The armature the take has cannot be changed.
     """
-    from .bridge.resize import set_lengths
+    from ..bridge.resize import set_lengths
 
     if not has_actor(context, take):
         add_actor(context, take, body)
@@ -43,9 +43,9 @@ def performers_place(
 
     None without footage and camera, or where the current frame is none of the footage's.
     """
-    from ..core.errors import InputError
-    from ..core.footage.tracks import RegionTracks
-    from .bridge.posing import frame_in_footage, posed_standing
+    from ...core.errors import InputError
+    from ...core.footage.tracks import RegionTracks
+    from ..bridge.posing import frame_in_footage, posed_standing
     from .results import reading_of
 
     if take.clip is None or take.camera is None:

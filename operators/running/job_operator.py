@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import bpy
 from bpy.app import timers
 
-from ..core.errors import InputError
+from ...core.errors import InputError
 from .failures import reported
 from .say import label
 
 if TYPE_CHECKING:
-    from ..core.progress import Progress
+    from ...core.progress import Progress
 
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 """How long a job runs before the user interface is drawn again: as long as drawing took, between these."""
@@ -57,7 +57,7 @@ class JobOperator:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""
         with reported(self):
-            from ..core.progress import run
+            from ...core.progress import run
 
             self.finish(context.scene, run(self.start(context.scene)))
             return {"FINISHED"}

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..segmentation.working_image import smooth
 from .colour_model import ColourDistribution, weigh
 from .colour_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
-from .working_image import smooth
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]

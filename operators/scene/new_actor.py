@@ -2,9 +2,9 @@
 
 import bpy
 
-from ..core.body.kinematics import Body
-from .bridge.armature import build_armature
-from .ui.properties.actor import length_names, length_property
+from ...core.body.kinematics import Body
+from ..bridge.armature import build_armature
+from ..ui.properties.actor import length_names, length_property
 
 EVEN_M = 5e-4
 """Left and right count as equally long within this."""

@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ...errors import InputError
+from ..segmentation.working_image import halvings, measuring_image
 from .clip import Clip
-from .working_image import halvings, measuring_image
 
 Image = NDArray[np.uint8]
 

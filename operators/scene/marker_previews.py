@@ -11,13 +11,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .bridge.footage import Footage
+from ..bridge.footage import Footage
 from .takes import find_take, footage_of
 
 if TYPE_CHECKING:
-    from ..core.footage.frame_reader import FrameReader
-    from ..core.footage.marker_check import MarkerCheck
-    from ..core.footage.marker_style import MarkerStyle
+    from ...core.footage.clips.frame_reader import FrameReader
+    from ...core.footage.marker_check import MarkerCheck
+    from ...core.footage.marker_style import MarkerStyle
 
 Array = NDArray[np.float64]
 Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...]]
@@ -93,10 +93,10 @@ def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
 
 
 def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
-    from ..core.footage.frame_reader import FrameReader
-    from ..core.footage.mask_outlines import mask_outlines
-    from ..core.footage.regions import colour_masks
-    from .bridge.footage_color import shown_time
+    from ...core.footage.clips.frame_reader import FrameReader
+    from ...core.footage.segmentation.mask_outlines import mask_outlines
+    from ...core.footage.segmentation.regions import colour_masks
+    from ..bridge.footage_color import shown_time
 
     if preview.reader is None:
         preview.reader = FrameReader(footage.open())

@@ -1,0 +1,1 @@
+"""How operators run: as jobs with progress, with what they need, saying what went wrong."""

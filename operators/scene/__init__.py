@@ -1,0 +1,1 @@
+"""What a scene holds of its takes: finding, filling and keeping them."""
