@@ -8,10 +8,12 @@ from keymark.core.body.standing import hip_height_m, standing_height_m
 from keymark.core.motion import Motion
 from keymark.core.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
+from keymark.operators.scene.marker_styles import marker_styles
 from keymark.operators.scene.posed_frames import posed_frames, unposed
-from keymark.operators.scene.takes import active_take
+from keymark.operators.scene.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -261,3 +263,41 @@ def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene,
     before = off_m(opened, wave_motion, 4)
     bpy.ops.keymark.fit_pose(start="POSE")
     assert off_m(opened, wave_motion, 4) < 0.8 * before
+
+
+def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.Scene) -> None:
+    """Blender forgets unkeyed poses when it goes to another frame; no performer's is lost."""
+    take = active_take(opened)
+    opened.frame_set(5)
+    camera = take.camera
+    camera.keyframe_insert("location", frame=1)
+    camera.location.x += 0.01
+    camera.keyframe_insert("location", frame=13)
+    take.armature.pose.bones["head"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    before = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    frame = frame_in_footage(footage_of(opened, take), marker_styles(take))
+    fit_to_frame(frame, take.armature, take.keyframe_action, "POSE")
+    bpy.context.view_layer.update()
+    after = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    np.testing.assert_allclose(after, before, atol=1e-6)
+
+
+def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.Scene) -> None:
+    """A linked copy of the scene shows the same actor at a frame of its own."""
+    opened.frame_set(1)
+    first = posture_of(opened)
+    bpy.ops.scene.new(type="LINK_COPY")
+    copy = bpy.context.scene
+    assert copy != opened and opened in active_take(copy).armature.users_scene
+    copy.frame_set(7)
+    apart = np.abs(posture_of(copy).minus(first)).max()
+    opened_again = read_keyframes(
+        copy,
+        active_take(copy).armature,
+        active_take(copy).keyframe_action,
+        read_body(active_take(copy).armature, HUMAN),
+        np.arange(1.0, 14.0),
+    ).keyframes
+    assert apart > 0.01
+    assert np.abs(opened_again[0].posture.minus(opened_again[1].posture)).max() > 0.01
