@@ -95,7 +95,7 @@ def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
 
 
 def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
-    """Whether a preview of the active take's markers shows the frame that the scene shows, wherever that lies.
+    """Whether a preview of the active take's markers is of the frame that the scene shows.
 
     Another scene may show the same clip at other times, and a clip may be moved in time.
     """

@@ -284,3 +284,13 @@ def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, 
     assert not take.reading_key and not take.review_key
     assert not len(take.proposals) and take.review.frame_count == 0 and not len(take.review.weak_frames)
     assert take.motion_action is not None and take.keyframe_action is not None
+
+
+def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """One sentence, and the switch stays as it was."""
+    forget_previews()
+    active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
+    with pytest.raises(RuntimeError, match="the footage is not there") as caught:
+        bpy.ops.keymark.show_masks()
+    assert "Traceback" not in str(caught.value)
+    assert not bpy.context.window_manager.keymark_show_masks
