@@ -11,7 +11,7 @@ from bpy.app import timers
 
 from ...core.errors import InputError
 from .failures import reported
-from .say import label
+from .say import label, say
 
 if TYPE_CHECKING:
     from ...core.progress import Progress
@@ -85,7 +85,7 @@ class JobOperator:
         """Go on with the job, or stop it."""
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
-            self.report({"INFO"}, "Cancelled")
+            say(self, "INFO", "Cancelled")
             return {"CANCELLED"}
         if event.type != "TIMER" or self._job is None:
             return {"PASS_THROUGH"}
