@@ -142,7 +142,7 @@ def _save(key: str, arrays: "Arrays") -> None:
 def _store() -> "Store":
     from ...core.files.store import Store
 
-    package = (__package__ or "").partition(".operators")[0]  # the whole extension's, wherever this file lies
+    package = (__package__ or "").rpartition(".")[0]
     try:
         folder = Path(bpy.utils.extension_path_user(package, path=FOLDER))
     except ValueError:  # not installed as an extension

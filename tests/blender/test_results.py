@@ -82,19 +82,3 @@ def test_a_file_of_something_else_counts_as_absent(loads: list[str], reading: Re
     folder.write_text("in the way")
     results.keep_reading(take, replace(reading, key="reading-3-4"))
     assert results.reading_of(take) is not None
-
-
-def test_results_go_to_the_extensions_own_folder(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, reading: Reading
-) -> None:
-    """Which Blender knows by the extension's name alone; what lies in a session's folder is gone with it."""
-
-    def own_folder(package: str, *, path: str = "", create: bool = False) -> str:
-        if package != "keymark":
-            raise ValueError(package)
-        return str(tmp_path / path)
-
-    monkeypatch.setattr(bpy.utils, "extension_path_user", own_folder)
-    results.keep_reading(add_take(bpy.context.scene, "Walk"), reading)
-    assert list(tmp_path.rglob("*")) != []
-    results.forget()
