@@ -16,6 +16,8 @@ class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw how far the posing is, and what poses and stores."""
         take, column = active_take(context.scene), self.column()
+        if not len(take.proposals):
+            column.operator("keymark.propose_keyframes", icon="MARKER_HLT")
         _draw_progress(column, take)
         row = column.row(align=True)
         row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
@@ -40,7 +42,9 @@ def _draw_progress(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) ->
     done = proposed - left
     text = label("{done} of {count} posed", done=done, count=proposed)
     if posed > done:
-        text = label("{done} of {count} posed, {more} more", done=done, count=proposed, more=posed - done)
+        text = label(
+            "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
+        )
     layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
 
 
@@ -50,7 +54,7 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
     data = take.armature.animation_data if take.armature is not None else None
     if data is not None and data.action is not None and data.action == take.motion_action:
         row = layout.row()
-        row.label(text="The motion is shown", icon="ERROR")
+        row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
@@ -66,6 +70,7 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
 
     bl_label = "Proposals"
     bl_parent_id = "KEYMARK_PT_keyframes"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what proposes frames, and the Action with the keyframes."""

@@ -72,8 +72,7 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the markers."""
         take = active_take(context.scene)
-        if draw_progress(self.layout, context):
-            return
+        draw_progress(self.layout, context)
         if context.space_data.clip != take.clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
         draw_markers(self.layout, context)
