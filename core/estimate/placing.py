@@ -156,7 +156,7 @@ def _relative_size(
         apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
         area = np.append(area, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
         errors = np.append(errors, LEGS_STD)
-    return float(np.exp(_weighted_quantile(area, errors**-2, MIDDLE)))
+    return float(np.exp(_weighted_quantile(area, 1.0 / errors**2, MIDDLE)))
 
 
 def _weighted_quantile(values: Array, weights: Array, share: float) -> float:
