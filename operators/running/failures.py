@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import bpy
 
 from ...core.errors import KeymarkError
+from .redraw import redraw_sidebars_soon
 from .say import say
 
 
@@ -17,6 +18,7 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
     """
     try:
         yield
+        redraw_sidebars_soon()
     except ModuleNotFoundError as error:
         missing = (error.name or "").partition(".")[0]
         say(

@@ -10,6 +10,7 @@ from ..bridge.attach_footage import attach_footage, is_guess
 from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..show_view import look_through
+from .camera_view import fit_beside_sidebar
 from .reviewing import clear_review
 from .takes import find_take, footage_of
 
@@ -98,14 +99,19 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
         return
     look_through(space, take.id_data, camera)
-    render = take.id_data.render
-    if render.resolution_y <= render.resolution_x or bpy.app.background:
+    fit_beside_sidebar(context.area, take.id_data.render, camera.data)
+
+
+def show_range(context: bpy.types.Context) -> None:
+    """Let the timelines span the scene's range, which the footage has just given it."""
+    if bpy.app.background:  # nobody sees one, and Blender may have none
         return
-    # Blender fits pictures by their width, which shows an upright one in part. A button's region is its own.
-    region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
-    with context.temp_override(region=region):
-        if bpy.ops.view3d.view_center_camera.poll():
-            bpy.ops.view3d.view_center_camera()
+    for area in context.screen.areas:
+        region = next((each for each in area.regions if each.type == "WINDOW"), None)
+        if area.ui_type == "TIMELINE" and region is not None:
+            with context.temp_override(area=area, region=region):
+                if bpy.ops.action.view_all.poll():
+                    bpy.ops.action.view_all()
 
 
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
