@@ -24,6 +24,8 @@ SIZE_STD = 0.08
 """The distance read off sizes in the picture errs by this share."""
 AREA_STD, LEGS_STD = 0.12, 0.08
 """By a region's area (sleeves differ, bodies turn), by how high the trunk is over the shins (knees bend)."""
+AGREEING = 1.5
+"""Sizes that differ by more than so many standard deviations are not of the same distance."""
 TRUNK = ("trunk", "chest", "pelvis")
 FLOOR_STD_M = 0.05
 """Height of the soles above a floor that is stood upon [m]."""
@@ -142,17 +144,21 @@ def _relative_size(
     """How much larger the body is shown than it is seen.
 
     A region's area tells, and better, where they are seen, how far the shins are below the trunk: sleeves
-    and clothes do not change that.
+    and clothes do not change that. Whatever hides, bends or turns a limb away makes all of these smaller and
+    never larger than in one who stands. So what falls short of the largest by more than both err is left out.
     """
-    area = 0.5 * np.log(shown_area[known] / seen_area[known])
-    logarithms, weights = [float(np.median(area))], [AREA_STD**-2]
+    shins = np.isfinite(seen_area) & _bound(segments, "shin")
+    told = known | shins
+    logarithms = 0.5 * np.log(shown_area[told] / seen_area[told])
+    errors = np.full(len(logarithms), AREA_STD)
     trunk = known & _bound(segments, *TRUNK)
-    shins = np.isfinite(seen[:, 0]) & _bound(segments, "shin")
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
-        logarithms.append(float(np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0))))
-        weights.append(LEGS_STD**-2)
-    return float(np.exp(np.average(logarithms, weights=weights)))
+        logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
+        errors = np.append(errors, LEGS_STD)
+    nearest = int(np.argmin(logarithms))
+    fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
+    return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
 
 
 def _floor_step(above_m: float, down: float, distance: float) -> float:
