@@ -92,6 +92,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
         )
         take.motion_action.use_fake_user = True
+        take.finish.outdated = take.finish.action is not None
         keep_reading(take, result.reconstruction.reading)
         keep_solved(take, result.reconstruction)
         keep_review(take, result.review)
