@@ -64,6 +64,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             footage_of(scene, settings), armature, settings.keyframe_action, marker_styles(settings)
         )
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+        _check_posed(len(take.keyframes), notes)
         check_reconstructible(take, method)
         reading = yield from stretch(read_footage(take, kept), TIMES, READ)
         frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
@@ -110,6 +111,20 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             frames=len(result.frames),
             keyframes=len(motion.keyframe_indices),
         )
+
+
+def _check_posed(count: int, notes: tuple[str, ...]) -> None:
+    """Refuse a take with too few keyframes, with what the animator should know of those that do not count.
+
+    Raises:
+        InputError: There are fewer than two in the footage.
+    """
+    from ..core.errors import InputError
+
+    if count < 2:
+        posed = "one keyframe lies" if count else "no keyframe lies"
+        asked = f"{posed} in the footage; at least 2 are needed, so pose the actor and store more"
+        raise InputError(". ".join((asked, *notes)))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct,))

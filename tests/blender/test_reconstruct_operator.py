@@ -170,3 +170,16 @@ def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.Prop
         with pytest.raises(InputError, match="has no actor"):
             kind.finish(job, scene, outcome)
     assert len(bpy.data.actions) == actions and take.finish.action is None
+
+
+def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.PropertyGroup) -> None:
+    """None, one, or one beside others that lie outside the footage: the sentence says which."""
+    take.keyframe_action = bpy.data.actions.new("Empty")
+    with pytest.raises(RuntimeError, match="no keyframe lies in the footage; at least 2 are needed"):
+        bpy.ops.keymark.reconstruct()
+    for frame in (3, 40):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.keymark.store_keyframe()
+    with pytest.raises(RuntimeError, match=r"one keyframe lies.* Keys at 40 lie outside the footage"):
+        bpy.ops.keymark.reconstruct()
+    assert take.motion_action is None
