@@ -142,3 +142,17 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
     curve.keyframe_points[1].co[1] += 0.05
     curve.update()
     assert previews() > 0
+
+
+def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
+    """The button is grey and says so, instead of failing once it is pressed; a second one makes it live."""
+    scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
+    take.keyframe_action = None
+    take.armature.animation_data.action = None
+    scene.frame_set(scene.frame_start)
+    bpy.ops.keymark.store_keyframe()
+    with pytest.raises(RuntimeError, match="there is only one"):
+        reconstruct()
+    scene.frame_set(scene.frame_start + 8)
+    bpy.ops.keymark.store_keyframe()
+    assert reconstruct.poll()
