@@ -22,9 +22,9 @@ FILLED_SHARE = 0.7
 """Share of the picture's height that a body fills of which nothing is seen."""
 SIZE_STD = 0.08
 """The distance read off sizes in the picture errs by this share."""
-TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.15, 0.08
+TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
 """By a region's area (sleeves differ, bodies turn), by how high the trunk is over the shins (knees bend)."""
-MIDDLE = 0.4
+MIDDLE = 0.45
 """Share of the evidence that says the body is nearer than it is placed."""
 TRUNK = ("trunk", "chest", "pelvis")
 FLOOR_STD_M = 0.05
