@@ -85,7 +85,7 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
             if lens_is_guess(take):
                 say(
                     self,
-                    "WARNING",
+                    "INFO",
                     "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
                     lens=take.guessed_lens_mm,
                 )

@@ -10,7 +10,7 @@ import bpy
 from ...core.errors import InputError
 from .failures import reported
 from .redraw import redraw_sidebars, redraw_sidebars_soon
-from .say import label
+from .say import label, say
 
 if TYPE_CHECKING:
     from ...core.progress import Progress
@@ -82,7 +82,7 @@ class JobOperator:
         """Go on with the job, or stop it."""
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
-            self.report({"INFO"}, "Cancelled")
+            say(self, "INFO", "Cancelled")
             return {"CANCELLED"}
         if event.type != "TIMER" or self._job is None:
             return {"PASS_THROUGH"}

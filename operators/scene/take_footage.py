@@ -11,6 +11,7 @@ from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..show_view import look_through
 from .camera_view import fit_beside_sidebar
+from .reviewing import clear_review
 from .takes import find_take, footage_of
 
 PLAIN_NAME = "clip"
@@ -29,12 +30,17 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
 
 
 def clip_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Follow a clip that was chosen for a take, by whatever way."""
-    clip = take.clip
+    """Follow a clip that was chosen for a take, by whatever way; what was found in another one is let go."""
+    clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
-        give_footage(take, clip)
+        give_footage(take, clip)  # which comes back here
         return
     note_clip(take)
+    if clip is not None and before and take.clip_state.contents != before:
+        take.reading_key = take.review_key = ""
+        take.proposals.clear()
+        take.notes.clear()
+        clear_review(take)
 
 
 def camera_chosen(take: bpy.types.PropertyGroup) -> None:
@@ -55,9 +61,20 @@ def note_clip(take: bpy.types.PropertyGroup) -> None:
     state.variable_rate = False
     if take.clip is None or state.missing:
         return
+    note_contents(take)
     state.rate = footage_of(take.id_data, take).rate
     if take.clip.source == "MOVIE":
         state.variable_rate = _has_variable_rate(take)
+
+
+def note_contents(take: bpy.types.PropertyGroup) -> None:
+    """Note what a take's clip is known by, as it is on disk now; one that is not there stays what it was."""
+    try:
+        from ...core.footage.reading_key import footage_digest
+
+        take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
+    except (InputError, ModuleNotFoundError):  # what reads the clip will say so
+        return
 
 
 def is_missing(clip: bpy.types.MovieClip | None) -> bool:
