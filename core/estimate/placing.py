@@ -23,7 +23,7 @@ FILLED_SHARE = 0.7
 SIZE_STD = 0.08
 """The distance read off sizes in the picture errs by this share."""
 TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
-"""By a region's area (bodies turn, sleeves differ more), by how high the trunk is over the shins (knees bend)."""
+"""By a region's area (bodies turn, sleeves differ), by how high the trunk is over the shins (knees bend)."""
 AGREEING = 1.5
 """Sizes that differ by more than so many standard deviations are not of the same distance."""
 TRUNK = ("trunk", "chest", "pelvis")
