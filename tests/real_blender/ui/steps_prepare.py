@@ -60,7 +60,7 @@ def footage(person: Person) -> Steps[None]:
 
 
 def look_through_camera(person: Person) -> Steps[None]:
-    """Numpad 0, and Home to fit its frame to the region; what was loaded by its button is shown so already."""
+    """Numpad 0, and Home to fit its frame to the region; what was loaded by its button is so already."""
     view = person.hands.area("VIEW_3D").spaces.active
     if view.region_3d.view_perspective == "CAMERA":
         return
