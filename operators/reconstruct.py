@@ -7,7 +7,7 @@ import bpy
 
 from .running.job_operator import JobOperator
 from .running.live_preview import LivePreview
-from .running.requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
+from .running.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
 from .running.say import say
 from .scene.marker_styles import marker_styles
 from .scene.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
@@ -47,7 +47,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, all_colors, keyframes, idle)
+        return all_met(cls, context, footage, actor, markers, all_colors, two_keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""

@@ -144,6 +144,20 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
     assert previews() > 0
 
 
+def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
+    """The button is grey and says so, instead of failing once it is pressed; a second one makes it live."""
+    scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
+    take.keyframe_action = None
+    take.armature.animation_data.action = None
+    scene.frame_set(scene.frame_start)
+    bpy.ops.keymark.store_keyframe()
+    with pytest.raises(RuntimeError, match="there is only one"):
+        reconstruct()
+    scene.frame_set(scene.frame_start + 8)
+    bpy.ops.keymark.store_keyframe()
+    assert reconstruct.poll()
+
+
 def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
     """The result is let go; no Action, key or review of it stays."""
     from types import SimpleNamespace

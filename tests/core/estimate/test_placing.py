@@ -63,7 +63,7 @@ def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
     bent[BODY.skeleton.dof_names.index("waist.rotation_x")] = 1.3
     found = place_standing(BODY, CAMERA, 0, film(Posture.stack([true.plus(bent)])), SEGMENTS)
     depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
-    assert depth[1] == pytest.approx(depth[0], rel=0.1)
+    assert depth[1] == pytest.approx(depth[0], rel=0.12)
 
 
 def test_a_ground_elsewhere_is_left_alone() -> None:
