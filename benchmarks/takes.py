@@ -10,6 +10,10 @@ ROOT = Path(__file__).resolve().parent.parent
 NAMED_PLACES = "KEYMARK_TAKES"
 """Environment variable of further folders of takes, apart as in PATH."""
 OUTPUT = ROOT / "out" / "bench"
+GIVEN_PLACES = (ROOT.parent / "shared" / "takes", ROOT / "presets" / "demo")
+"""The takes that methods are made and tuned with."""
+GROUPS = ("given", "studio")
+"""Those, and all others."""
 
 
 def load_project() -> None:
@@ -28,10 +32,10 @@ def take_names() -> dict[str, Path]:
     named = [Path(place) for place in os.environ.get(NAMED_PLACES, "").split(os.pathsep) if place]
     found: dict[str, Path] = {}
     for place in (
-        ROOT.parent / "shared" / "takes",
+        GIVEN_PLACES[0],
         ROOT / "out" / "takes",
         *named,
-        ROOT / "presets" / "demo",
+        GIVEN_PLACES[1],
     ):
         for truth in sorted(place.glob("*/truth.json")):
             name = truth.parent.name
@@ -57,6 +61,11 @@ def chosen_takes(wanted: Sequence[str]) -> dict[str, Path]:
             )
             raise SystemExit(2)
     return chosen
+
+
+def group_of(folder: Path) -> str:
+    """Which of the two groups a take is of: means over both together would hide what tuning did."""
+    return GROUPS[0] if folder.resolve().parent in GIVEN_PLACES else GROUPS[1]
 
 
 def write_results(name: str, markdown: str, json_text: str) -> None:

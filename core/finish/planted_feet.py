@@ -5,7 +5,7 @@ others where they were, legs and hips changed as little and as smoothly as that 
 correction fades, so that nothing jumps and frames further away stay as they are.
 """
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
 from .contacts import STRAY_M, Contact, find_contacts
+from .rig import Rig
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ PACE_STD_PER_S = 2.0
 """Change of these changes in a second, in units of themselves: small, so that knees do not flicker."""
 UNCHANGED_STD = 1e-6
 """The same for frames without a correction, in units of the above."""
+HELD_M = 0.001
+"""How far few keys may move an ankle that rests [m]: they must not make it slide again."""
 STEPS = 8
 SETTLED_M = 1e-5
 
@@ -89,6 +92,23 @@ def plant_feet(
             break
     after = body.points(body.pose(planted))[:, ankles]
     return PlantedFeet(planted, contacts, _skate_mm(places, contacts), _skate_mm(after, contacts))
+
+
+def tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact]) -> Array:
+    """(F, P) how far each of the rig's points may be off [m].
+
+    Args:
+        rig: The actor.
+        frame_count: F.
+        tolerance_m: What is allowed in general [m].
+        contacts: Rests of the ankles, left and right, which are allowed no more than `HELD_M`.
+    """
+    allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
+    row = {bone.name: index for index, bone in enumerate(rig.bones)}
+    for contact in contacts:
+        ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
+        allowed[contact.first : contact.last + 1, ankle] = min(HELD_M, tolerance_m)
+    return allowed
 
 
 def _changing(body: Body) -> NDArray[np.intp]:

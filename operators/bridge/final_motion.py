@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
-from ...core.body.skeleton import SIDES, Skeleton
+from ...core.body.skeleton import Skeleton
 from ...core.errors import InputError
-from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.rig import Rig, Shown, channel_count
 from .actions import channelbag_for, existing_channelbag
@@ -54,7 +53,8 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     channelbag = existing_channelbag(action, armature_object)
     wanted = set(moved_paths(armature_object, body.skeleton))
     curves = channelbag.fcurves if channelbag is not None else ()
-    ranges = [curve.range() for curve in curves if curve.data_path in wanted]
+    keyed = [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+    ranges = [curve.range() for curve in keyed]
     first = int(np.ceil(min((r[0] for r in ranges), default=0.0) - ROUNDING))
     last = int(np.floor(max((r[1] for r in ranges), default=0.0) + ROUNDING))
     if last <= first:
@@ -155,26 +155,6 @@ def posed_positions(
         return np.zeros(0, dtype=np.intp)
     posed = np.array(keyed_frames(armature_object, keyframe_action, skeleton))
     return np.flatnonzero(np.isin(frames, np.round(posed)))
-
-
-def tolerances(
-    rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact], held_m: float
-) -> Array:
-    """(F, P) how far each of the rig's points may be off [m].
-
-    Args:
-        rig: The actor.
-        frame_count: F.
-        tolerance_m: What is allowed in general [m].
-        contacts: Rests of the ankles, left and right.
-        held_m: What is allowed to an ankle that rests, where that is less [m].
-    """
-    allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
-    row = {bone.name: index for index, bone in enumerate(rig.bones)}
-    for contact in contacts:
-        ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
-        allowed[contact.first : contact.last + 1, ankle] = min(held_m, tolerance_m)
-    return allowed
 
 
 def write_final(

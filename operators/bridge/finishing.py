@@ -13,7 +13,7 @@ from ...core.body.kinematics import Body
 from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
-from ...core.finish.planted_feet import plant_feet
+from ...core.finish.planted_feet import plant_feet, tolerances
 from ...core.finish.rig import Rig
 from ...core.progress import Job, Progress, within
 from .actor_lengths import read_body
@@ -23,7 +23,6 @@ from .final_motion import (
     posed_positions,
     read_values,
     shown_postures,
-    tolerances,
     with_planted_legs,
 )
 from .rig import read_rig
@@ -34,8 +33,6 @@ Note = tuple[str, dict[str, Any]]
 
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
-HELD_M = 0.001
-"""How far few keys may move an ankle that rests [m]: they must not make it slide again."""
 NOTICEABLE_M = 0.005
 """Distance [m] between a pose and its nearest posture that the animator is told of."""
 BEYOND = (
@@ -116,7 +113,7 @@ def finish_motion(
         values, contacts, notes = yield from planting
     if wanted.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, contacts, notes)
-    allowed = tolerances(rig, len(frames), wanted.tolerance_m, contacts, HELD_M)
+    allowed = tolerances(rig, len(frames), wanted.tolerance_m, contacts)
     reducing = reduce_keys(rig, frames, values, allowed, exact, wanted.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)

@@ -1,5 +1,7 @@
 """Placing a standing body before the camera."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
@@ -52,6 +54,16 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     assert abs(soles_m(found)) < 0.05
     error = np.linalg.norm(found.translation - true.translation)
     assert error < 0.6 * np.linalg.norm(near.translation - true.translation)
+
+
+def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
+    """Bent forward, the trunk looks small and near the shins; the shins still tell the distance."""
+    true = standing_posture(BODY, np.zeros(3))
+    bent = np.zeros(BODY.skeleton.dof_count)
+    bent[BODY.skeleton.dof_names.index("waist.rotation_x")] = 1.3
+    found = place_standing(BODY, CAMERA, 0, film(Posture.stack([true.plus(bent)])), SEGMENTS)
+    depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
+    assert depth[1] == pytest.approx(depth[0], rel=0.1)
 
 
 def test_a_ground_elsewhere_is_left_alone() -> None:
@@ -112,3 +124,15 @@ def test_pixels_that_cannot_be_a_person_are_refused() -> None:
         ground_place(CAMERA, 0, 1.8, (160.0, 220.0), (160.0, 30.0))
     with pytest.raises(InputError, match="pixels apart"):
         ground_place(CAMERA, 0, 1.8, (160.0, 100.0), (160.0, 110.0))
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5])
+def test_a_trunk_that_is_hidden_in_part_does_not_send_the_body_away(share: float) -> None:
+    """A table hides most of it; the sleeves and how far apart things are still tell the distance."""
+    true = standing_posture(BODY)
+    tracks = seen(true)
+    area = np.array(tracks.area)
+    area[0, SEGMENTS.index("trunk")] *= share
+    found = place_standing(BODY, CAMERA, 0, replace(tracks, area=area), SEGMENTS)
+    depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
+    assert abs(depth[1] / depth[0] - 1.0) < 0.06
