@@ -11,9 +11,8 @@ from .body.kinematics import Pose
 from .estimate.confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .estimate.terms.regions import RegionNoise, limb_widths
 from .estimate.weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
-from .footage.segmentation.ellipse import ellipse_outline
+from .footage.segmentation.ellipse import CORNERS, ellipse_outline
 from .observation.regions import RegionModel
-from .observation.silhouette import CORNERS, silhouettes
 from .progress import Job, Part, within
 from .reconstruct import Reconstruction
 from .take import Take
@@ -44,7 +43,7 @@ class Review:
     observed: Array
     """(F, M, K, 2) closed outline of each region seen [px]: the even ellipse of equal moments."""
     predicted: Array
-    """(F, M, K', 2) closed outline of each marker as the motion predicts it [px]."""
+    """(F, M, K, 2) the same of what the motion predicts to be visible of each marker [px]."""
     points: Array
     """(F, 13, 3) principal points in the world [m]."""
     image_points: Array
@@ -170,7 +169,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
 
 
 def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:
-    """Outlines (F, M, K', 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
+    """Outlines (F, M, K, 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
     outlines = np.full((*centroid.shape[:2], CORNERS, 2), np.nan)
     distance = np.full(centroid.shape[:2], np.nan)
     for first in range(0, len(centroid), FRAMES_AT_ONCE):
@@ -179,7 +178,8 @@ def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[
         frame = np.arange(len(centroid))[chunk]
         predicted = model.evaluate(pose[chunk], frame)
         seen = predicted.visible > RegionNoise().least_visible
-        outlines[chunk] = np.where(seen[..., None, None], silhouettes(model, pose[chunk], frame), np.nan)
+        shape = ellipse_outline(predicted.centroid, predicted.second_moment)
+        outlines[chunk] = np.where(seen[..., None, None], shape, np.nan)
         apart = np.linalg.norm(predicted.centroid - centroid[chunk], axis=-1)
         distance[chunk] = np.where(seen, apart, np.nan)
     return outlines, distance

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .running.say import say
 from .scene.takes import ensure_take
 from .ui.properties.marker import SEGMENTS
 
@@ -21,7 +22,7 @@ class KEYMARK_OT_add_marker(bpy.types.Operator):
         take = ensure_take(context.scene)
         segment = next_segment(take)
         if segment is None:
-            self.report({"ERROR"}, "Every body part has a marker already")
+            say(self, "ERROR", "Every body part has a marker already")
             return {"CANCELLED"}
         append_marker(take, segment)
         return {"FINISHED"}
@@ -40,7 +41,7 @@ class KEYMARK_OT_add_usual_markers(bpy.types.Operator):
         taken = {marker.segment for marker in take.markers}
         missing = [segment for segment in USUAL_SEGMENTS if segment not in taken]
         if not missing:
-            self.report({"INFO"}, "Trunk, forearms and shins have markers already")
+            say(self, "INFO", "Trunk, forearms and shins have markers already")
             return {"CANCELLED"}
         first = len(take.markers)
         for segment in missing:

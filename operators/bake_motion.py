@@ -8,7 +8,7 @@ import bpy
 from .running.job_operator import JobOperator
 from .running.requirements import actor, all_met, idle, motion
 from .running.say import say
-from .scene.takes import active_take, take_called
+from .scene.takes import active_take, actor_of, take_called
 
 if TYPE_CHECKING:
     from ..core.progress import Job
@@ -54,11 +54,14 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Write the final Action and let it animate the actor."""
+        from ..core.errors import InputError
         from .bridge.actions import assign_action
         from .bridge.final_motion import write_final
 
         take, finished = take_called(scene, result.take), result.finished
-        settings, armature_object = take.finish, take.armature
+        settings, armature_object = take.finish, actor_of(take)
+        if take.motion_action is None:
+            raise InputError("the motion has been deleted meanwhile; nothing was changed")
         if settings.action is None:
             settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
         settings.action.use_fake_user = True

@@ -68,6 +68,12 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
                     "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
                     names=names,
                 )
+            elif not (np.isfinite(fit.before_px).any() and np.isfinite(fit.residual_px).any()):
+                say(
+                    self,
+                    "WARNING",
+                    "Seen from the camera, the body hides the markers that this frame shows; check the pose",
+                )
             else:
                 say(
                     self,

@@ -11,6 +11,8 @@ from .scene.takes import add_take, find_take
 
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+NAMED = 3
+"""So many of the objects that hide the footage are named."""
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
 
@@ -54,7 +56,14 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         """Load it."""
         with reported(self):
             from .bridge.scene_footage import load_footage
-            from .scene.take_footage import give_footage, lens_is_guess, look_through_camera, name_for
+            from .scene.in_the_way import names_in_the_way
+            from .scene.take_footage import (
+                give_footage,
+                lens_is_guess,
+                look_through_camera,
+                name_for,
+                show_range,
+            )
 
             scene = context.scene
             path = Path(bpy.path.abspath(self.filepath))
@@ -63,6 +72,7 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
             take = take or add_take(scene, name_for(path))
             give_footage(take, clip)
             look_through_camera(context, take)
+            show_range(context)
             say(
                 self,
                 "INFO",
@@ -75,9 +85,18 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
             if lens_is_guess(take):
                 say(
                     self,
-                    "WARNING",
+                    "INFO",
                     "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
                     lens=take.guessed_lens_mm,
+                )
+            hiding = names_in_the_way(context, take)
+            if hiding:
+                say(
+                    self,
+                    "WARNING",
+                    "In front of the footage: {names}; to see the performer, select what hides them and "
+                    "press H (Alt H brings it back)",
+                    names=", ".join(hiding[:NAMED] + (["..."] if len(hiding) > NAMED else [])),
                 )
             return {"FINISHED"}
         return {"CANCELLED"}

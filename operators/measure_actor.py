@@ -2,7 +2,7 @@
 
 import bpy
 
-from .pick_marker_color import NAVIGATION
+from .pick_marker_color import NAVIGATION, NOT_SHOWN
 from .running.failures import reported
 from .running.requirements import all_met, bones_editable, camera, footage, idle
 from .running.say import label, say
@@ -60,12 +60,12 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
 
         take = active_take(context.scene)
         self.stature = take.stature
-        if not shows_footage(context, take):
-            say(
-                self,
-                "ERROR",
-                "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
-            )
+        shown = None
+        with reported(self):
+            shown = shows_footage(context, take)
+        if not shown:
+            if shown is not None:  # else it has been said why
+                say(self, "ERROR", NOT_SHOWN)
             return {"CANCELLED"}
         from .ui.overlays.measuring import Clicks, show
 

@@ -45,7 +45,7 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
-            from .scene.take_footage import look_through_camera
+            from .scene.take_footage import look_through_camera, show_range
             from .scene.take_scene import read_for_scene, show_take
             from .scene.takes import active_take
 
@@ -53,6 +53,7 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
             opened = read_for_scene(folder, self.keyframes)
             show_take(context, opened)
             look_through_camera(context, active_take(context.scene))
+            show_range(context)
             for note in opened.notes:
                 self.report({"WARNING"}, note)
             count = len(opened.take.keyframes)

@@ -37,6 +37,7 @@ REQUESTS = {
     ".L": "Click on the marker: {segment}, the performer's own left",
     ".R": "Click on the marker: {segment}, the performer's own right",
 }
+NOT_SHOWN = "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor"
 MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 
@@ -90,15 +91,16 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         from .ui.footage_view import shows_footage
 
         take = active_take(context.scene)
-        if not shows_footage(context, take):
-            self.report(
-                {"ERROR"},
-                "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
-            )
+        shown = None
+        with reported(self):
+            shown = shows_footage(context, take)
+        if not shown:
+            if shown is not None:  # else it has been said why
+                say(self, "ERROR", NOT_SHOWN)
             return {"CANCELLED"}
         segment = self._segment(take)
         if segment is None:
-            self.report({"ERROR"}, "Every body part has a marker already")
+            say(self, "ERROR", "Every body part has a marker already")
             return {"CANCELLED"}
         sentence = label(REQUESTS.get(segment[-2:], MIDDLE_REQUEST), segment=label(segment_title(segment)))
         context.window_manager.keymark_progress.show("", 0.0)
@@ -125,7 +127,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
             self.cancel(context)
-            self.report({"ERROR"}, "That is not on the footage; click on a marker in it")
+            say(self, "ERROR", "That is not on the footage; click on a marker in it")
             return {"CANCELLED"}
         self.pixel = pixel
         context.window.cursor_modal_restore()

@@ -12,7 +12,7 @@ from .running.say import say
 from .scene.marker_styles import marker_styles
 from .scene.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
 from .scene.reviewing import show_review
-from .scene.takes import active_take, footage_of, take_called
+from .scene.takes import active_take, actor_of, footage_of, take_called
 
 if TYPE_CHECKING:
     from ..core.progress import Job, Progress
@@ -89,7 +89,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
 
         take, motion = take_called(scene, result.take), result.reconstruction.motion
         take.motion_action = write_motion(
-            take.armature, motion, take.motion_action, take.keyframe_action, result.frames
+            actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
         )
         take.motion_action.use_fake_user = True
         keep_reading(take, result.reconstruction.reading)

@@ -38,10 +38,13 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and write the folder."""
         with reported(self):
+            from ..core.errors import InputError
             from ..core.progress import run
             from ..core.take import write_take
             from .bridge.scene_take import read_scene_take
 
+            if not self.directory:
+                raise InputError("no folder is named to save the take in; give directory")
             scene_take = active_take(context.scene)
             take, notes = run(
                 read_scene_take(

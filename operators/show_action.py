@@ -3,8 +3,15 @@
 import bpy
 
 from .running.failures import reported
-from .running.requirements import actor, all_met
+from .running.requirements import actor, all_met, idle
+from .running.say import say
 from .scene.takes import active_take
+
+NOT_THERE = {
+    "KEYFRAMES": "There are no keyframes yet; pose the actor and store one",
+    "MOTION": "There is no motion yet; reconstruct it",
+    "FINAL": "There is no final Action yet; bake it",
+}
 
 
 class KEYMARK_OT_show_action(bpy.types.Operator):
@@ -26,8 +33,8 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor."""
-        return all_met(cls, context, actor)
+        """There must be an actor, and no job that shows it what is found."""
+        return all_met(cls, context, actor, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Assign the Action."""
@@ -38,7 +45,7 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
             "FINAL": settings.finish.action,
         }[self.which]
         if action is None:
-            self.report({"ERROR"}, f"There is no {self.which.lower()} Action yet")
+            say(self, "ERROR", NOT_THERE[self.which])
             return {"CANCELLED"}
         with reported(self):
             from .bridge.actions import assign_action

@@ -23,15 +23,29 @@ class KEYMARK_OT_show_masks(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Switch over; colors that were not looked for in this session are looked for now."""
         manager = context.window_manager
-        manager.keymark_show_masks = not manager.keymark_show_masks
         with reported(self):
-            if manager.keymark_show_masks:
+            if not manager.keymark_show_masks:
                 if preview_of(active_take(context.scene)) is None:
-                    bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+                    _look_for_markers()
                 look_at_frame(context.scene)
+            manager.keymark_show_masks = not manager.keymark_show_masks
             redraw_footage(context)
             return {"FINISHED"}
         return {"CANCELLED"}
+
+
+def _look_for_markers() -> None:
+    """Have them looked for, on a timer where there is one.
+
+    Raises:
+        InputError: They cannot be.
+    """
+    from ..core.errors import InputError
+
+    try:
+        bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        raise InputError(str(error).removeprefix("Error: ").strip()) from error
 
 
 def redraw_footage(context: bpy.types.Context) -> None:

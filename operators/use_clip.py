@@ -38,7 +38,7 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it behind the take's camera."""
-        from .scene.take_footage import give_footage, look_through_camera, name_for
+        from .scene.take_footage import give_footage, look_through_camera, name_for, show_range
 
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
@@ -55,6 +55,7 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
         take = take or add_take(scene, name_for(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
         give_footage(take, clip)
         look_through_camera(context, take)
+        show_range(context)
         return {"FINISHED"}
 
 

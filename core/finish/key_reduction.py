@@ -22,7 +22,7 @@ from .rig import Rig
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-GENEROUS = 1.0 / 3.0
+GENEROUS = 0.5
 """Share of the tolerance within which keys are added first: the choice among them comes by taking away."""
 BLAME = 0.6
 """A bone gets a key where its own error is at least this share of the largest that adds to a point's."""

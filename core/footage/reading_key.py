@@ -50,6 +50,21 @@ def of_same_footage(key: str, other: str) -> bool:
     return bool(key) and key.rpartition("-")[0] == other.rpartition("-")[0]
 
 
+def footage_digest(path: Path) -> str:
+    """Return a digest that changes with a clip's file, or any image of a sequence, wherever it lies.
+
+    Args:
+        path: the clip, as `Clip.open` takes it.
+
+    Raises:
+        InputError: the clip is not there or cannot be read.
+    """
+    try:
+        return digest(*_footage(path, 0.0))
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
 def _footage(path: Path, fps: float) -> tuple[object, ...]:
     images = find_images(path)
     if images is None:

@@ -118,11 +118,11 @@ def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
     active, hidden = layer.objects.active, chosen.hide_get(view_layer=layer)
     mode = active.mode if active is not None else "OBJECT"
     selected = [one for one in layer.objects if one.select_get(view_layer=layer)]
-    _set_mode("OBJECT", mode)
-    chosen.hide_set(False, view_layer=layer)
-    if not chosen.visible_get(view_layer=layer):
-        raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
     try:
+        _set_mode("OBJECT", mode)
+        chosen.hide_set(False, view_layer=layer)
+        if not chosen.visible_get(view_layer=layer):
+            raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
         for one in selected:
             one.select_set(False, view_layer=layer)
         chosen.select_set(True, view_layer=layer)

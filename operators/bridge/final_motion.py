@@ -52,7 +52,8 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     channelbag = existing_channelbag(action, armature_object)
     wanted = set(moved_paths(armature_object, body.skeleton))
     curves = channelbag.fcurves if channelbag is not None else ()
-    ranges = [curve.range() for curve in curves if curve.data_path in wanted]
+    keyed = [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+    ranges = [curve.range() for curve in keyed]
     first = int(np.ceil(min((r[0] for r in ranges), default=0.0) - ROUNDING))
     last = int(np.floor(max((r[1] for r in ranges), default=0.0) + ROUNDING))
     if last <= first:

@@ -56,6 +56,15 @@ class Footage:
         return self.clip.frame_start - self.clip.frame_offset
 
     @property
+    def shown_s(self) -> float:
+        """Time [s] of the scene's current frame from the clip's first.
+
+        Raises:
+            InputError: There is no clip.
+        """
+        return (self.scene.frame_current - self.first_frame) / self.rate
+
+    @property
     def path(self) -> Path:
         """The clip's file.
 

@@ -28,7 +28,7 @@ def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
     x, y = np.floor(np.asarray(pixel, dtype=np.float64)).astype(int)
     if not (0 <= x < width and 0 <= y < height):
         raise InputError(f"pixel ({x}, {y}) lies outside the footage, which is {width} x {height} pixels")
-    image = FrameReader(footage.open()).image_at(shown_time(footage))
+    image = FrameReader(footage.open()).image_at(footage.shown_s)
     if image is None:
         raise InputError(
             f"the footage has no frame at scene frame {footage.scene.frame_current}; go to one it has"
@@ -36,12 +36,3 @@ def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
     around = image[max(0, y - REACH_PX) : y + REACH_PX + 1, max(0, x - REACH_PX) : x + REACH_PX + 1]
     blue, green, red = (round(float(value)) for value in np.median(around.reshape(-1, 3), axis=0))
     return red, green, blue
-
-
-def shown_time(footage: Footage) -> float:
-    """Time [s] of the scene's current frame from the clip's first.
-
-    Raises:
-        InputError: There is no clip.
-    """
-    return (footage.scene.frame_current - footage.first_frame) / footage.rate

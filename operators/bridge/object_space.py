@@ -54,9 +54,14 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
 
 
 def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
-    """The object as its scene evaluates it now; the object itself where no scene holds it."""
-    for scene in blender_object.users_scene:
-        layer = scene.view_layers[0]
-        layer.update()
-        return blender_object.evaluated_get(layer.depsgraph)
-    return blender_object
+    """The object as its scene evaluates it now; the object itself where no scene holds it.
+
+    Of several scenes that hold it, each at a frame of its own, the one that is worked in counts.
+    """
+    scenes = blender_object.users_scene
+    if not scenes:
+        return blender_object
+    scene = bpy.context.scene if bpy.context.scene in scenes else scenes[0]
+    layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
+    layer.update()
+    return blender_object.evaluated_get(layer.depsgraph)

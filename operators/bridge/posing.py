@@ -92,6 +92,11 @@ def frame_in_footage(
     current = footage.scene.frame_current_final
     index = int(np.argmin(np.abs(frames - current)))
     if abs(float(frames[index]) - current) > NEAREST + 1e-6:
+        if frames[0] < current < frames[-1]:
+            raise InputError(
+                f"the footage, whose rate varies, has no frame of its own at {current:g}; "
+                f"go to frame {round(float(frames[index]))}"
+            )
         raise InputError(
             f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
         )

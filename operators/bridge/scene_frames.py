@@ -1,4 +1,7 @@
-"""Going through a scene's frames, or an armature's Actions, and coming back with everything as it was."""
+"""Going through a scene's frames, or an armature's Actions, and coming back with everything as it was.
+
+Blender forgets what is posed and not keyed as soon as it evaluates a frame: both give it back.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,13 +12,19 @@ import bpy
 from .actions import assign_action
 from .object_space import evaluated
 
+Pose = dict[str, list[tuple[float, ...]]]
+"""Values of all channels, by bone."""
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 @contextmanager
 def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
-    """Yield a function that evaluates the scene at a frame, fractional ones too; then go back."""
+    """Yield a function that evaluates the scene at a frame, fractional ones too; then go back.
+
+    Whatever is posed and not keyed, on any performer's armature, is there again afterwards.
+    """
     before = scene.frame_current, scene.frame_subframe
+    poses = [(actor, _pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
 
     def go_to(frame: float) -> None:
         whole = floor(frame)
@@ -25,6 +34,8 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
         yield go_to
     finally:
         scene.frame_set(before[0], subframe=before[1])
+        for actor, pose in poses:
+            _give_back(actor, pose)
 
 
 @contextmanager
@@ -32,8 +43,7 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
     """Let `action`, or nothing, animate the armature meanwhile; then give back Action and unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
-    bones = armature_object.pose.bones
-    pose = {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
+    pose = _pose_of(armature_object)
     if action is None:
         data.action = None
     elif data.action != action:
@@ -46,6 +56,20 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
             if before[1] is not None:
                 data.action_slot = before[1]
             evaluated(armature_object)  # a new Action is evaluated once, which would undo the unkeyed changes
-        for name, values in pose.items():
-            for channel, value in zip(CHANNELS, values, strict=True):
-                setattr(bones[name], channel, value)
+        _give_back(armature_object, pose)
+
+
+def _is_animated(item: bpy.types.Object) -> bool:
+    return item.type == "ARMATURE" and item.animation_data is not None and item.is_editable
+
+
+def _pose_of(armature_object: bpy.types.Object) -> Pose:
+    bones = armature_object.pose.bones
+    return {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
+
+
+def _give_back(armature_object: bpy.types.Object, pose: Pose) -> None:
+    for name, values in pose.items():
+        bone = armature_object.pose.bones[name]
+        for channel, value in zip(CHANNELS, values, strict=True):
+            setattr(bone, channel, value)

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 import bpy
 
 from ...core.errors import KeymarkError
+from .redraw import redraw_sidebars_soon
+from .say import say
 
 
 @contextmanager
@@ -16,14 +18,17 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
     """
     try:
         yield
+        redraw_sidebars_soon()
     except ModuleNotFoundError as error:
         missing = (error.name or "").partition(".")[0]
-        operator.report(
-            {"ERROR"},
-            f"Keymark needs the Python library {missing}, which is not there; "
+        say(
+            operator,
+            "ERROR",
+            "Keymark needs the Python library {missing}, which is not there; "
             "install Keymark from its package for this platform, which brings it along",
+            missing=missing,
         )
     except KeymarkError as error:
         operator.report({"ERROR"}, str(error))
     except ReferenceError:
-        operator.report({"ERROR"}, "Something the job works on was removed meanwhile; run it again")
+        say(operator, "ERROR", "Something the job works on was removed meanwhile; run it again")

@@ -2,16 +2,15 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Generator
-from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
-from bpy.app import timers
 
 from ...core.errors import InputError
 from .failures import reported
-from .say import label
+from .redraw import redraw_sidebars, redraw_sidebars_soon
+from .say import label, say
 
 if TYPE_CHECKING:
     from ...core.progress import Progress
@@ -21,8 +20,6 @@ SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 TIMER_S = 0.01
 EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
 """Before so much is done nobody can tell how long the rest takes."""
-SETTLING_S = 0.1
-"""After which everything has been drawn once."""
 PREFIX = "KEYMARK_OT_"
 
 
@@ -85,7 +82,7 @@ class JobOperator:
         """Go on with the job, or stop it."""
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
-            self.report({"INFO"}, "Cancelled")
+            say(self, "INFO", "Cancelled")
             return {"CANCELLED"}
         if event.type != "TIMER" or self._job is None:
             return {"PASS_THROUGH"}
@@ -125,9 +122,7 @@ class JobOperator:
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
-        # Blender moves sub-panels up only when it draws once more after the panel above them has shrunk.
-        if not bpy.app.background:
-            timers.register(partial(redraw_sidebars, bpy.context), first_interval=SETTLING_S)
+        redraw_sidebars_soon()
 
     def _scene(self) -> bpy.types.Scene:
         """The scene that the job was started in, whatever it is called by now."""
@@ -161,20 +156,11 @@ def time_left(elapsed_s: float, fraction: float) -> str:
     return label("about {seconds:.0f} s left", seconds=max(step * round(seconds / step), 1.0))
 
 
-def redraw_sidebars(context: bpy.types.Context) -> None:
-    """Have every sidebar that shows a job's progress drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
-
-
-def job_is_running(context: bpy.types.Context) -> bool:
-    """Whether one of Keymark's jobs runs in any window."""
+def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
+    """Whether one of Keymark's jobs runs in any window, or that of one operator: `keymark.reconstruct`."""
+    wanted = job.replace("keymark.", PREFIX) or PREFIX
     return any(
-        operator.bl_idname.startswith(PREFIX)
+        operator.bl_idname.startswith(wanted)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )

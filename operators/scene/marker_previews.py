@@ -47,7 +47,8 @@ class Preview:
     labels: tuple[str, ...]
     colors: tuple[tuple[float, float, float], ...]
     reader: "FrameReader | None" = None
-    frame: int | None = None
+    time_s: float | None = None
+    """Of that frame, from the clip's first [s]."""
     masks: tuple[ColorMask, ...] = field(default=())
 
 
@@ -85,22 +86,31 @@ def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
     """
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
-    if preview is None or preview.frame == scene.frame_current:
+    if preview is None or is_of_frame(preview, scene):
         return preview
-    preview.masks = _masks(preview, footage_of(scene, take))
-    preview.frame = scene.frame_current
+    footage = footage_of(scene, take)
+    preview.masks = _masks(preview, footage)
+    preview.time_s = footage.shown_s
     return preview
+
+
+def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
+    """Whether a preview of the active take's markers is of the frame that the scene shows.
+
+    Another scene may show the same clip at other times, and a clip may be moved in time.
+    """
+    take = find_take(scene)
+    return take is not None and preview.time_s == footage_of(scene, take).shown_s
 
 
 def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
     from ...core.footage.clips.frame_reader import FrameReader
     from ...core.footage.segmentation.mask_outlines import mask_outlines
     from ...core.footage.segmentation.regions import colour_masks
-    from ..bridge.footage_color import shown_time
 
     if preview.reader is None:
         preview.reader = FrameReader(footage.open())
-    image = preview.reader.image_at(shown_time(footage))
+    image = preview.reader.image_at(footage.shown_s)
     if image is None:
         return ()
     coverages = colour_masks(image, preview.check.model)
@@ -111,6 +121,6 @@ def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
 
 
 def _key(take: bpy.types.PropertyGroup) -> Key:
-    """The footage's file, and the names and colors of the markers that have one."""
+    """What the footage is known by, and the names and colors of the markers that have one."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
-    return bpy.path.abspath(take.clip.filepath, library=take.clip.library), picked
+    return take.clip_state.contents, picked

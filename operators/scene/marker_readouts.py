@@ -7,6 +7,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.footage import Footage
 from .marker_previews import keep_preview
+from .take_footage import note_contents
 
 if TYPE_CHECKING:
     from ...core.footage.clips.clip_samples import ClipSamples
@@ -18,7 +19,8 @@ MOST_CLIPS = 2
 """Clips whose samples are kept, some megabytes each, so that another color is judged at once."""
 SAMPLING_SHARE = 0.7
 
-_samples: "dict[tuple[str, int, int, int], ClipSamples]" = {}
+_samples: "dict[str, ClipSamples]" = {}
+"""By what the clip's file is known by."""
 
 
 def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job[MarkerCheck]":
@@ -32,11 +34,10 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
     """
     from ...core.footage.clips.clip_samples import sample_clip
     from ...core.footage.marker_check import check_markers
+    from ...core.footage.reading_key import footage_digest
     from ...core.progress import within
 
-    path = footage.path
-    about = path.stat()
-    key = (str(path), about.st_mtime_ns, about.st_size, footage.clip.frame_duration)
+    key = footage_digest(footage.path)
     samples = _samples.pop(key, None)
     if samples is None:
         job = sample_clip(footage.open())
@@ -62,6 +63,7 @@ def write_readouts(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> list[str]:
     """Store what was found with the markers, keep the colors for previews; return all warnings."""
+    note_contents(take)
     readouts = {readout.name: readout for readout in check.readouts}
     for marker in take.markers:
         readout = readouts.get(marker.name)
@@ -72,6 +74,6 @@ def write_readouts(
         marker.area, marker.area_share = readout.area_px, readout.area_share
         marker.distinctness = readout.distinctness
         marker.warning = "\n".join(readout.warnings)
-        marker.checked_clip = take.clip.filepath
+        marker.checked_clip = take.clip_state.contents
     keep_preview(take, styles, check)
     return [sentence for readout in check.readouts for sentence in readout.warnings]

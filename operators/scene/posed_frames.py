@@ -7,25 +7,25 @@ from bpy.app.handlers import persistent
 
 SAME_FRAME = 0.5
 """A key nearer than this [frames] is the frame's own."""
-_posed: dict[tuple[str, str], tuple[float, ...]] = {}
-"""By the names of an armature and an Action: the frames keyed there."""
+_posed: dict[tuple[int, int], tuple[float, ...]] = {}
+"""By an armature and an Action, as Blender numbers them in a session: the frames keyed there."""
 
 
 def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
     """Scene frames that are keyed in the take's keyframe Action, in order, wherever they were moved."""
     if take.armature is None or take.keyframe_action is None:
         return ()
-    names = take.armature.name_full, take.keyframe_action.name_full
-    if names not in _posed:
+    both = take.armature.session_uid, take.keyframe_action.session_uid
+    if both not in _posed:
         from ...core.body.human import HUMAN
         from ...core.errors import InputError
         from ..bridge.keyframes import keyed_frames
 
         try:
-            _posed[names] = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+            _posed[both] = keyed_frames(take.armature, take.keyframe_action, HUMAN)
         except InputError:  # an armature of other bones
-            _posed[names] = ()
-    return _posed[names]
+            _posed[both] = ()
+    return _posed[both]
 
 
 def is_posed(take: bpy.types.PropertyGroup, frame: float) -> bool:

@@ -26,6 +26,8 @@ Result = TypeVar("Result")
 MOST_REMEMBERED = 6
 """Results of each kind in memory: those of the takes at hand."""
 FOLDER = "results"
+EXTENSION = (__package__ or "").partition(".operators")[0]
+"""By what Blender knows Keymark, and gives it a folder of its own."""
 
 
 class Remembered(Generic[Result]):
@@ -142,9 +144,8 @@ def _save(key: str, arrays: "Arrays") -> None:
 def _store() -> "Store":
     from ...core.files.store import Store
 
-    package = (__package__ or "").rpartition(".")[0]
     try:
-        folder = Path(bpy.utils.extension_path_user(package, path=FOLDER))
+        folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
     except ValueError:  # not installed as an extension
         folder = Path(bpy.app.tempdir) / FOLDER
     return Store(folder)

@@ -10,6 +10,8 @@ from ..bridge.attach_footage import attach_footage, is_guess
 from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..show_view import look_through
+from .camera_view import fit_beside_sidebar
+from .reviewing import clear_review
 from .takes import find_take, footage_of
 
 PLAIN_NAME = "clip"
@@ -28,12 +30,17 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
 
 
 def clip_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Follow a clip that was chosen for a take, by whatever way."""
-    clip = take.clip
+    """Follow a clip that was chosen for a take, by whatever way; what was found in another one is let go."""
+    clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
-        give_footage(take, clip)
+        give_footage(take, clip)  # which comes back here
         return
     note_clip(take)
+    if clip is not None and before and take.clip_state.contents != before:
+        take.reading_key = take.review_key = ""
+        take.proposals.clear()
+        take.notes.clear()
+        clear_review(take)
 
 
 def camera_chosen(take: bpy.types.PropertyGroup) -> None:
@@ -54,9 +61,20 @@ def note_clip(take: bpy.types.PropertyGroup) -> None:
     state.variable_rate = False
     if take.clip is None or state.missing:
         return
+    note_contents(take)
     state.rate = footage_of(take.id_data, take).rate
     if take.clip.source == "MOVIE":
         state.variable_rate = _has_variable_rate(take)
+
+
+def note_contents(take: bpy.types.PropertyGroup) -> None:
+    """Note what a take's clip is known by, as it is on disk now; one that is not there stays what it was."""
+    try:
+        from ...core.footage.reading_key import footage_digest
+
+        take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
+    except (InputError, ModuleNotFoundError):  # what reads the clip will say so
+        return
 
 
 def is_missing(clip: bpy.types.MovieClip | None) -> bool:
@@ -81,14 +99,19 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
         return
     look_through(space, take.id_data, camera)
-    render = take.id_data.render
-    if render.resolution_y <= render.resolution_x or bpy.app.background:
+    fit_beside_sidebar(context.area, take.id_data.render, camera.data)
+
+
+def show_range(context: bpy.types.Context) -> None:
+    """Let the timelines span the scene's range, which the footage has just given it."""
+    if bpy.app.background:  # nobody sees one, and Blender may have none
         return
-    # Blender fits pictures by their width, which shows an upright one in part. A button's region is its own.
-    region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
-    with context.temp_override(region=region):
-        if bpy.ops.view3d.view_center_camera.poll():
-            bpy.ops.view3d.view_center_camera()
+    for area in context.screen.areas:
+        region = next((each for each in area.regions if each.type == "WINDOW"), None)
+        if area.ui_type == "TIMELINE" and region is not None:
+            with context.temp_override(area=area, region=region):
+                if bpy.ops.action.view_all.poll():
+                    bpy.ops.action.view_all()
 
 
 def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:

@@ -44,6 +44,17 @@ def take_called(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGr
     raise InputError("the take that the job was about has been removed meanwhile; nothing was changed")
 
 
+def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
+    """A take's armature.
+
+    Raises:
+        InputError: It has none, or it has been deleted.
+    """
+    if take.armature is None:
+        raise InputError(f"take '{take.name}' has no actor; build one, or choose its armature")
+    return take.armature
+
+
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Add a take, which becomes the active one; a number makes its name unique."""
     settings = scene.keymark

@@ -7,7 +7,7 @@ from uuid import uuid4
 import bpy
 from bpy.app.handlers import persistent
 
-from .take_footage import is_missing
+from .take_footage import is_missing, note_contents
 from .takes import VERSION, add_take
 
 VALUES = ("stature", "keyframe_count", "active_marker", "armature", "keyframe_action", "motion_action")
@@ -28,6 +28,8 @@ def look_at(scene: bpy.types.Scene) -> None:
         _upgrade_flat(scene)
     for take in settings.takes:
         take.clip_state.missing = is_missing(take.clip)
+        if take.clip is not None:
+            note_contents(take)
     if len(settings.takes):
         settings.version = VERSION
 

@@ -205,3 +205,22 @@ def test_a_format_that_blender_lacks_is_refused(
     monkeypatch.setitem(FORMATS, "USD", gone)
     with pytest.raises(RuntimeError, match="USD cannot be written: Enable the add-on USD Exporter"):
         bpy.ops.keymark.export_motion(format="USD", filepath=str(tmp_path / "wave.usdc"))
+
+
+def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
+    """The actor stays hidden, and the armature that is posed stays in its mode."""
+    scene, actor = bpy.context.scene, take.armature
+    layer = bpy.context.view_layer
+    hidden = bpy.data.collections.new("Hidden")
+    scene.collection.children.link(hidden)
+    scene.collection.objects.unlink(actor)
+    hidden.objects.link(actor)
+    layer.layer_collection.children["Hidden"].hide_viewport = True
+    other = bpy.data.objects.new("Other", bpy.data.armatures.new("Other"))
+    scene.collection.objects.link(other)
+    layer.objects.active = other
+    bpy.ops.object.mode_set(mode="POSE")
+    actor.hide_set(True)
+    with pytest.raises(RuntimeError, match="is hidden with its collection"):
+        bpy.ops.keymark.export_motion(format="BVH", filepath=str(tmp_path / "wave.bvh"))
+    assert other.mode == "POSE" and actor.hide_get() and not list(tmp_path.iterdir())

@@ -58,9 +58,8 @@ def context(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         event_timer_remove=timers.remove,
         modal_handler_add=lambda operator: True,
     )
-    monkeypatch.setattr(
-        "keymark.operators.running.job_operator.bpy.app", SimpleNamespace(background=False), raising=False
-    )
+    screen = SimpleNamespace(background=False, translations=bpy.app.translations)
+    monkeypatch.setattr("keymark.operators.running.job_operator.bpy.app", screen, raising=False)
     return SimpleNamespace(
         scene=bpy.context.scene,
         window=bpy.context.window,

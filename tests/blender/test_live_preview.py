@@ -100,3 +100,29 @@ def test_a_reconstruction_hands_out_what_it_has_found(actor: bpy.types.Object, m
     assert watched and state(actor) != before
     KEYMARK_OT_reconstruct.unwatch(job)
     assert state(actor) == before
+
+
+def test_what_is_undone_meanwhile_is_not_the_preview(actor: bpy.types.Object, tiny_take: Take) -> None:
+    """Undo moves things in memory: the preview is taken back first, and goes on afterwards."""
+    bpy.ops.ed.undo_push(message="Before")
+    actor.location.x = 1.0
+    bpy.ops.ed.undo_push(message="Moved")
+    before = actor.animation_data.action.name, bpy.context.scene.frame_current
+    preview = LivePreview(bpy.context.scene, actor, FRAMES)
+    batch = type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])
+    preview.show(Preview(9, batch))
+    held = []
+    bpy.app.handlers.undo_pre.append(lambda *_: held.append(preview._changes))
+    try:
+        bpy.ops.ed.undo()
+    finally:
+        bpy.app.handlers.undo_pre.pop()
+    assert held == [None]
+    actor = active_take(bpy.context.scene).armature
+    assert (actor.animation_data.action.name, bpy.context.scene.frame_current) == before
+    assert actor.location.x == 0.0
+    preview.show(Preview(9, batch))
+    preview.end()
+    for name in ("save_pre", "undo_pre", "redo_pre"):
+        handlers = getattr(bpy.app.handlers, name)
+        assert not any(getattr(handler, "__self__", None) is preview for handler in handlers)

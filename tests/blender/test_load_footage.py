@@ -224,3 +224,16 @@ def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
     bpy.ops.wm.save_mainfile()
     here.rename(there)
     assert not reopened(there / "scene.blend").clip_state.missing
+
+
+def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> None:
+    """What Blender made for the attempt goes; what the animator had does not, tracking and all."""
+    clip = tmp_path / "broken.mp4"
+    clip.write_bytes(bytes(2000))
+    with pytest.raises(RuntimeError, match="cannot"):
+        bpy.ops.keymark.load_footage(filepath=str(clip))
+    assert not len(bpy.data.movieclips)
+    had = bpy.data.movieclips.load(str(clip))
+    with pytest.raises(RuntimeError, match="cannot"):
+        bpy.ops.keymark.load_footage(filepath=str(clip))
+    assert list(bpy.data.movieclips) == [had]

@@ -1,15 +1,19 @@
 """Markers: adding, picking, checking, and what is drawn of them."""
 
+import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
+import cv2
 import numpy as np
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take import Take
 from keymark.operators.check_markers import KEYMARK_OT_check_markers
-from keymark.operators.scene.marker_previews import forget_previews, look_at_frame, preview_of
+from keymark.operators.scene.marker_previews import forget_previews, is_of_frame, look_at_frame, preview_of
+from keymark.operators.scene.take_footage import note_clip
 from keymark.operators.scene.takes import active_take, add_take, take_called
 from keymark.operators.ui.overlays.mask import free_height, tinted
 
@@ -230,3 +234,63 @@ def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) ->
     for operator in ("reconstruct", "propose_keyframes"):
         with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):
             getattr(bpy.ops.keymark, operator)()
+
+
+def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """The same path with other pictures: no readout, no sample and no mask of the old ones."""
+    take = active_take(opened)
+    clip = tmp_path / "clip.mp4"
+    shutil.copy(bpy.path.abspath(take.clip.filepath), clip)
+    take.clip.filepath = str(clip)
+    bpy.ops.keymark.check_markers()
+    assert take.markers[0].found == 13
+    first = preview_of(take)
+    writer = cv2.VideoWriter(str(clip), cv2.VideoWriter_fourcc(*"mp4v"), 25.0, (160, 120))
+    for _ in range(13):
+        writer.write(np.full((120, 160, 3), 90, np.uint8))
+    writer.release()
+    note_clip(take)
+    assert not take.markers[0].has_readout(take) and preview_of(take) is None
+    bpy.ops.keymark.check_markers()
+    assert take.markers[0].has_readout(take) and take.markers[0].found == 0
+    assert preview_of(take) is not None is not first
+
+
+def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> None:
+    """The same scene frame shows another of its frames then."""
+    take = active_take(opened)
+    bpy.ops.keymark.check_markers()
+    opened.frame_set(5)
+    before = look_at_frame(opened).masks
+    assert look_at_frame(opened).masks is before
+    take.clip.frame_start += 4
+    assert not is_of_frame(preview_of(take), opened)
+    assert look_at_frame(opened).masks is not before
+
+
+def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """What was read and reviewed of one is not drawn over the other; the same one again loses nothing."""
+    take = active_take(opened)
+    bpy.ops.keymark.propose_keyframes()
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    take.clip = take.clip
+    assert take.reading_key and take.review_key and len(take.proposals) and take.review.frame_count == 13
+    other = tmp_path / "other.mp4"
+    shutil.copy(bpy.path.abspath(take.clip.filepath), other)
+    with other.open("ab") as file:
+        file.write(bytes(64))
+    take.clip = bpy.data.movieclips.load(str(other))
+    assert not take.reading_key and not take.review_key
+    assert not len(take.proposals) and take.review.frame_count == 0 and not len(take.review.weak_frames)
+    assert take.motion_action is not None and take.keyframe_action is not None
+
+
+def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """One sentence, and the switch stays as it was."""
+    forget_previews()
+    active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
+    with pytest.raises(RuntimeError, match="the footage is not there") as caught:
+        bpy.ops.keymark.show_masks()
+    assert "Traceback" not in str(caught.value)
+    assert not bpy.context.window_manager.keymark_show_masks

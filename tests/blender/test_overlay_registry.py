@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
+from keymark.core.errors import InputError
 from keymark.operators.ui.overlays import registry
 from keymark.operators.ui.overlays.registry import Overlay, guarded
 
@@ -71,3 +72,18 @@ def test_without_a_screen_no_handler_is_added() -> None:
     registry.register()
     assert registry._handlers == []
     registry.unregister()
+
+
+def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
+    """A camera of a kind that no footage has, say: no error, and no overlay that stays off."""
+    calls = []
+
+    def draw(context: bpy.types.Context) -> None:
+        calls.append(context)
+        raise InputError("camera 'Camera' is of type ORTHO; footage needs a perspective one")
+
+    handler = guarded(BROKEN, draw)
+    handler()
+    handler()
+    assert len(calls) == 2 and not registry.failures()
+    assert blending == ["ALPHA", "NONE"] * 2

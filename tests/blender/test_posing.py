@@ -1,17 +1,23 @@
 """Building, measuring and posing the actor over the footage, scripted as an animator would press it."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.body.standing import hip_height_m, standing_height_m
+from keymark.core.errors import InputError
 from keymark.core.motion import Motion
 from keymark.core.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
+from keymark.operators.scene.marker_styles import marker_styles
 from keymark.operators.scene.posed_frames import posed_frames, unposed
-from keymark.operators.scene.takes import active_take
+from keymark.operators.scene.results import reading_of
+from keymark.operators.scene.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -261,3 +267,67 @@ def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene,
     before = off_m(opened, wave_motion, 4)
     bpy.ops.keymark.fit_pose(start="POSE")
     assert off_m(opened, wave_motion, 4) < 0.8 * before
+
+
+def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.Scene) -> None:
+    """Blender forgets unkeyed poses when it goes to another frame; no performer's is lost."""
+    take = active_take(opened)
+    opened.frame_set(5)
+    camera = take.camera
+    camera.keyframe_insert("location", frame=1)
+    camera.location.x += 0.01
+    camera.keyframe_insert("location", frame=13)
+    take.armature.pose.bones["head"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    before = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    frame = frame_in_footage(footage_of(opened, take), marker_styles(take))
+    fit_to_frame(frame, take.armature, take.keyframe_action, "POSE")
+    bpy.context.view_layer.update()
+    after = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    np.testing.assert_allclose(after, before, atol=1e-6)
+
+
+def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.Scene) -> None:
+    """A linked copy of the scene shows the same actor at a frame of its own."""
+    opened.frame_set(1)
+    first = posture_of(opened)
+    bpy.ops.scene.new(type="LINK_COPY")
+    copy = bpy.context.scene
+    assert copy != opened and opened in active_take(copy).armature.users_scene
+    copy.frame_set(7)
+    apart = np.abs(posture_of(copy).minus(first)).max()
+    opened_again = read_keyframes(
+        copy,
+        active_take(copy).armature,
+        active_take(copy).keyframe_action,
+        read_body(active_take(copy).armature, HUMAN),
+        np.arange(1.0, 14.0),
+    ).keyframes
+    assert apart > 0.01
+    assert np.abs(opened_again[0].posture.minus(opened_again[1].posture)).max() > 0.01
+
+
+def test_posed_frames_are_those_of_this_very_action(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Not of one that had the same name before."""
+    take = active_take(opened)
+    before, name = posed_frames(take), take.keyframe_action.name
+    assert len(before) == len(tiny_take.keyframes)
+    bpy.data.actions.remove(take.keyframe_action)
+    take.keyframe_action = bpy.data.actions.new(name)
+    assert take.keyframe_action.name == name and posed_frames(take) == ()
+
+
+def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy.types.Scene) -> None:
+    """It does not lie outside the footage; the nearest frame is named."""
+    take = active_take(opened)
+    bpy.ops.keymark.propose_keyframes()
+    reading = reading_of(take)
+    stretched = reading.tracks.time_s.copy()
+    stretched[6:] += 2.0 / 25.0
+    varying = replace(reading, tracks=replace(reading.tracks, time_s=stretched))
+    opened.frame_set(7)
+    with pytest.raises(InputError, match="no frame of its own at 7; go to frame 6"):
+        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)
+    opened.frame_set(40)
+    with pytest.raises(InputError, match="lies outside the footage"):
+        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)

@@ -142,3 +142,31 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
     curve.keyframe_points[1].co[1] += 0.05
     curve.update()
     assert previews() > 0
+
+
+def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
+    """The result is let go; no Action, key or review of it stays."""
+    from types import SimpleNamespace
+
+    from keymark.core.errors import InputError
+    from keymark.core.progress import run
+    from keymark.operators.bake_motion import KEYMARK_OT_bake_motion
+    from keymark.operators.reconstruct import KEYMARK_OT_reconstruct
+
+    scene, job = bpy.context.scene, SimpleNamespace(report=lambda *_: None)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    outcomes = [
+        (kind, run(kind.start(job, scene))) for kind in (KEYMARK_OT_reconstruct, KEYMARK_OT_bake_motion)
+    ]
+    actions = len(bpy.data.actions)
+    motion = take.motion_action
+    take.motion_action = None
+    with pytest.raises(InputError, match="motion has been deleted"):
+        KEYMARK_OT_bake_motion.finish(job, scene, outcomes[1][1])
+    take.motion_action = motion
+    bpy.data.objects.remove(take.armature)
+    for kind, outcome in outcomes:
+        with pytest.raises(InputError, match="has no actor"):
+            kind.finish(job, scene, outcome)
+    assert len(bpy.data.actions) == actions and take.finish.action is None

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import keymark
 import pytest
 from keymark.core.files.store import Store
 from keymark.core.footage.reading import Reading
@@ -82,3 +83,16 @@ def test_a_file_of_something_else_counts_as_absent(loads: list[str], reading: Re
     folder.write_text("in the way")
     results.keep_reading(take, replace(reading, key="reading-3-4"))
     assert results.reading_of(take) is not None
+
+
+def test_results_lie_in_the_extensions_own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Blender is asked by the extension's name, or a file that is opened again would find nothing."""
+    asked: list[str] = []
+
+    def extension_path_user(package: str, *, path: str = "", create: bool = False) -> str:
+        asked.append(package)
+        return str(tmp_path / path)
+
+    monkeypatch.setattr(bpy.utils, "extension_path_user", extension_path_user)
+    assert results._store().folder == tmp_path / "results"
+    assert asked == [keymark.__name__]

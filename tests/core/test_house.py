@@ -139,7 +139,7 @@ def test_a_circle_is_found() -> None:
         ("core.body.skeleton", "from ...operators import bridge"),
         ("core.score", "from ..operators import bridge"),
         ("core.body.skeleton", "from ..footage import camera"),
-        ("core.footage.clips.clip", "from ..take import Take"),
+        ("core.footage.clips.clip", "from ...take import Take"),
         ("core.errors", "from .body import skeleton"),
         ("core.estimate.kalman", "from ..reconstruct import reconstruct"),
         ("core.reconstruct", "from . import report"),

@@ -15,7 +15,14 @@ from gpu_extras.batch import batch_for_shader
 from numpy.typing import NDArray
 
 from ....core.errors import KeymarkError
-from ...scene.marker_previews import ColorMask, Preview, forget_previews, look_at_frame, preview_of
+from ...scene.marker_previews import (
+    ColorMask,
+    Preview,
+    forget_previews,
+    is_of_frame,
+    look_at_frame,
+    preview_of,
+)
 from ...scene.takes import find_take
 from ..footage_view import FootageView, footage_view
 from . import drawing
@@ -44,7 +51,7 @@ def draw(context: bpy.types.Context) -> None:
     if take is None or not context.window_manager.keymark_show_masks:
         return
     preview = preview_of(take)
-    if preview is None or preview.frame != context.scene.frame_current or not preview.masks:
+    if preview is None or not preview.masks or not is_of_frame(preview, context.scene):
         return
     view = footage_view(context.scene, take, context.area, context.region)
     if view is not None:

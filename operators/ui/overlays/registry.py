@@ -9,6 +9,8 @@ from typing import Any
 import bpy
 import gpu
 
+from ....core.errors import KeymarkError
+
 DrawFunction = Callable[[bpy.types.Context], None]
 
 logger = logging.getLogger(__name__)
@@ -55,6 +57,8 @@ def guarded(overlay: Overlay, draw: DrawFunction) -> Callable[[], None]:
         gpu.state.blend_set("ALPHA")
         try:
             draw(bpy.context)
+        except KeymarkError:
+            pass  # a camera of another kind, say: there is nothing to draw until that is mended
         except Exception as error:
             _failures[overlay] = str(error) or type(error).__name__
             logger.exception("Keymark's overlay '%s' failed and is switched off", overlay.name)

@@ -5,6 +5,9 @@ import bpy
 from ...running.job_operator import job_is_running
 from ...scene.takes import find_take
 
+ESCAPE_UNITS = 2.9
+"""Width of the word Esc with an icon."""
+
 
 class SidebarPanel:
     """Where all of Keymark's panels are."""
@@ -36,14 +39,24 @@ class TakePanel(SubPanel):
         return find_take(context.scene) is not None
 
 
-def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
-    """Draw how far the running job is; return whether one runs. An eyedropper that waits does no work."""
+def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: str = "") -> bool:
+    """Draw how far the running job is, on one line; return whether it runs.
+
+    What it stands in for is a line as well, so that nothing moves when a job begins or ends: Blender draws
+    panels over each other for a moment where that happens. An eyedropper that waits does no work.
+
+    Args:
+        layout: Where.
+        context: Whose job.
+        job: Only that of this operator, as in `keymark.reconstruct`; any by default.
+    """
     progress = context.window_manager.keymark_progress
-    if not job_is_running(context) or not progress.stage:
+    if not progress.stage or not job_is_running(context, job):
         return False
+    row = layout.row(align=True)
     percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
-    layout.progress(factor=progress.fraction, text=percent)
-    row = layout.row()
-    row.label(text="Esc cancels", icon="CANCEL")
-    row.label(text=progress.time_left, translate=False)
+    row.progress(factor=progress.fraction, text=(job and progress.time_left) or percent)
+    escape = row.row()
+    escape.ui_units_x = ESCAPE_UNITS
+    escape.label(text="Esc", icon="CANCEL")
     return True

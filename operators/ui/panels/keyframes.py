@@ -5,7 +5,7 @@ import bpy
 from ...running.say import label
 from ...scene.posed_frames import posed_frames, proposed_frames, unposed
 from ...scene.takes import active_take
-from .base import TakePanel
+from .base import TakePanel, draw_progress
 
 
 class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
@@ -16,7 +16,9 @@ class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw how far the posing is, and what poses and stores."""
         take, column = active_take(context.scene), self.column()
-        _draw_progress(column, take)
+        if not len(take.proposals):
+            _draw_propose(column, context)
+        _draw_posed(column, take)
         row = column.row(align=True)
         row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
         going = row.operator("keymark.jump_to_proposal", text="Next to Pose")
@@ -25,12 +27,19 @@ class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
         _draw_here(column, context.scene, take)
         posing = column.column(align=True)
         posing.scale_y = 1.2
-        posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
+        if not draw_progress(posing, context, "keymark.fit_pose"):
+            posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
         posing.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
         posing.operator("keymark.store_keyframe", icon="KEY_HLT")
 
 
-def _draw_progress(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The button that proposes frames, or how far that is."""
+    if not draw_progress(layout, context, "keymark.propose_keyframes"):
+        layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
+
+
+def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """How many of the proposed keyframes are posed, and how many others."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
     if not proposed:
@@ -40,7 +49,9 @@ def _draw_progress(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) ->
     done = proposed - left
     text = label("{done} of {count} posed", done=done, count=proposed)
     if posed > done:
-        text = label("{done} of {count} posed, {more} more", done=done, count=proposed, more=posed - done)
+        text = label(
+            "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
+        )
     layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
 
 
@@ -50,7 +61,7 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
     data = take.armature.animation_data if take.armature is not None else None
     if data is not None and data.action is not None and data.action == take.motion_action:
         row = layout.row()
-        row.label(text="The motion is shown", icon="ERROR")
+        row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
@@ -66,12 +77,13 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
 
     bl_label = "Proposals"
     bl_parent_id = "KEYMARK_PT_keyframes"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what proposes frames, and the Action with the keyframes."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "keyframe_count")
-        column.operator("keymark.propose_keyframes", icon="MARKER_HLT")
+        _draw_propose(column, context)
         column.separator()
         column.prop(take, "keyframe_action", text="Action")
 

@@ -92,17 +92,17 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the takes and the next step."""
         layout, take = self.layout, find_take(context.scene)
-        if draw_progress(layout, context):
-            return
         if is_newer(context.scene):
             box = layout.box().column(align=True)
             box.label(text="A newer Keymark wrote this file", icon="ERROR")
             box.label(text="Update Keymark before editing", icon="BLANK1")
-        if take is None:
+        if take is None and not draw_progress(layout, context):
             _draw_beginning(layout)
+        if take is None:
             return
         _draw_takes(layout, context.scene.keymark)
-        layout.label(text=next_step(take), icon="FORWARD")
+        if not draw_progress(layout, context):
+            layout.label(text=next_step(take), icon="FORWARD")
 
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
@@ -119,8 +119,14 @@ def _draw_beginning(layout: bpy.types.UILayout) -> None:
 def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """The list of takes; a single one is a line."""
     row = layout.row()
-    row.template_list("KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4)
-    buttons = row.column(align=True)
+    if len(settings.takes) == 1:
+        buttons = row.row(align=True)
+        buttons.prop(settings.takes[0], "name", text="", icon="FILE_MOVIE")
+    else:
+        row.template_list(
+            "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
+        )
+        buttons = row.column(align=True)
     buttons.menu("KEYMARK_MT_add_take", text="", icon="ADD")
     buttons.operator("keymark.remove_take", text="", icon="REMOVE")
     buttons.menu("KEYMARK_MT_take_specials", text="", icon="DOWNARROW_HLT")

@@ -70,10 +70,8 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
         return find_take(context.scene) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the running job, or the markers."""
+        """Draw the markers."""
         take = active_take(context.scene)
-        if draw_progress(self.layout, context):
-            return
         if context.space_data.clip != take.clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
         draw_markers(self.layout, context)
@@ -96,7 +94,8 @@ def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if take.active_marker < len(take.markers):
         _draw_marker(layout, context, take, take.markers[take.active_marker])
     row = layout.row(align=True)
-    row.operator("keymark.check_markers", icon="VIEWZOOM")
+    if not draw_progress(row, context, "keymark.check_markers"):
+        row.operator("keymark.check_markers", icon="VIEWZOOM")
     shown = context.window_manager.keymark_show_masks
     row.operator("keymark.show_masks", icon="HIDE_OFF" if shown else "HIDE_ON", depress=shown)
 
@@ -110,7 +109,8 @@ def _draw_marker(
     """Draw the active marker, how to pick its color, and what was found of it."""
     pick = layout.row()
     pick.scale_y = 1.3
-    pick.operator("keymark.pick_marker_color", text="Pick from Footage", icon="EYEDROPPER")
+    if not draw_progress(pick, context, "keymark.pick_marker_color"):
+        pick.operator("keymark.pick_marker_color", text="Pick from Footage", icon="EYEDROPPER")
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False

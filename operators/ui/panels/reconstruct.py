@@ -19,9 +19,9 @@ class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the running job, the method, and the switch between keyframes and motion."""
         take, column = active_take(context.scene), self.column()
-        if not draw_progress(column, context):
-            row = column.row()
-            row.scale_y = 1.4
+        row = column.row()
+        row.scale_y = 1.4
+        if not draw_progress(row, context, "keymark.reconstruct"):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         column.prop(take, "method")
         column.prop(take, "live_preview")

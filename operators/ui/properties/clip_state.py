@@ -9,6 +9,9 @@ class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
     missing: bpy.props.BoolProperty(
         name="Missing", description="The clip's file was not found", options={"HIDDEN"}
     )
+    contents: bpy.props.StringProperty(
+        name="Contents", description="What the clip's file is known by again", options={"HIDDEN"}
+    )
     rate: bpy.props.FloatProperty(
         name="Rate",
         description="Frames per second by which the clip lies on the time line",

@@ -87,7 +87,9 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         name="Warning", description="What may go wrong with the marker, one sentence a line"
     )
     checked_clip: bpy.props.StringProperty(
-        name="Checked Clip", description="The file in which the marker was looked for", options={"HIDDEN"}
+        name="Checked Clip",
+        description="What the clip in which the marker was looked for is known by",
+        options={"HIDDEN"},
     )
 
     @property
@@ -97,7 +99,8 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
 
     def has_readout(self, take: bpy.types.PropertyGroup) -> bool:
         """Whether what was found holds for the footage of the take it belongs to."""
-        return bool(self.sampled and take.clip is not None and self.checked_clip == take.clip.filepath)
+        contents = take.clip_state.contents
+        return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
 
 
 def register() -> None:

@@ -1,5 +1,7 @@
 """Placing a standing body before the camera."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
@@ -122,3 +124,15 @@ def test_pixels_that_cannot_be_a_person_are_refused() -> None:
         ground_place(CAMERA, 0, 1.8, (160.0, 220.0), (160.0, 30.0))
     with pytest.raises(InputError, match="pixels apart"):
         ground_place(CAMERA, 0, 1.8, (160.0, 100.0), (160.0, 110.0))
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5])
+def test_a_trunk_that_is_hidden_in_part_does_not_send_the_body_away(share: float) -> None:
+    """A table hides most of it; the sleeves and how far apart things are still tell the distance."""
+    true = standing_posture(BODY)
+    tracks = seen(true)
+    area = np.array(tracks.area)
+    area[0, SEGMENTS.index("trunk")] *= share
+    found = place_standing(BODY, CAMERA, 0, replace(tracks, area=area), SEGMENTS)
+    depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
+    assert abs(depth[1] / depth[0] - 1.0) < 0.06

@@ -130,8 +130,6 @@ def _browse(person: Person, key: str) -> Steps[None]:
     yield from person.hands.press(key)
     yield from until(lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport")
     yield from turns(3)
-    if key == "RET":
-        yield from person.hands.press("ESC")  # a warning of what was loaded pops up, and takes every key
 
 
 def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
