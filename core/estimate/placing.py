@@ -22,10 +22,10 @@ FILLED_SHARE = 0.7
 """Share of the picture's height that a body fills of which nothing is seen."""
 SIZE_STD = 0.08
 """The distance read off sizes in the picture errs by this share."""
-TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.15, 0.08
-"""By a region's area (sleeves differ, bodies turn), by how high the trunk is over the shins (knees bend)."""
-MIDDLE = 0.4
-"""Share of the evidence that says the body is nearer than it is placed."""
+TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
+"""By a region's area (bodies turn, sleeves differ), by how high the trunk is over the shins (knees bend)."""
+AGREEING = 1.5
+"""Sizes that differ by more than so many standard deviations are not of the same distance."""
 TRUNK = ("trunk", "chest", "pelvis")
 FLOOR_STD_M = 0.05
 """Height of the soles above a floor that is stood upon [m]."""
@@ -63,7 +63,6 @@ def place_standing(
     if regions is None or not known.any():
         return _in_the_middle(body, camera, frame, standing)
     model = RegionModel(body, camera, tuple(MarkerPlacement(segment) for segment in segments))
-    whole = regions.visible[0] & ~regions.clipped[0]
     centroid = _centre(regions.centroid[0], known)
     _, direction = camera.rays(centroid, frame)
     distance = _usual_distance(body, camera)
@@ -75,7 +74,7 @@ def place_standing(
         _, ray = camera.rays(_centre(shown.centroid[0], known), frame)
         offset = (ray - direction) * distance
         ratio = _relative_size(
-            segments, whole, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
+            segments, known, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
         )
         distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
     by_size = location + distance * direction - offset
@@ -118,7 +117,7 @@ def ground_place(
 
 
 def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> NDArray[np.bool_]:
-    """(M,) the markers whose middle the body is placed by: the trunk, else whatever is seen whole."""
+    """(M,) the markers to be placed by: the trunk and the shins, else whatever is seen."""
     if regions is None:
         return np.zeros(len(segments), dtype=bool)
     seen = regions.visible[0] & ~regions.clipped[0]
@@ -136,7 +135,7 @@ def _centre(centroid: Array, known: NDArray[np.bool_]) -> Array:
 
 def _relative_size(
     segments: tuple[str, ...],
-    seen_whole: NDArray[np.bool_],
+    known: NDArray[np.bool_],
     shown: Array,
     shown_area: Array,
     seen: Array,
@@ -144,26 +143,22 @@ def _relative_size(
 ) -> float:
     """How much larger the body is shown than it is seen.
 
-    Every region's area tells, and how far the shins are below the trunk, which sleeves and clothes do not
-    change. What hides a marker, turns its limb away or bends a knee makes it small, and nothing makes it as
-    much larger: so a middle of all is taken, not their mean, and somewhat on the larger side.
+    A region's area tells, and better, where they are seen, how far the shins are below the trunk: sleeves
+    and clothes do not change that. Whatever hides, bends or turns a limb away makes all of these smaller and
+    never larger than in one who stands. So what falls short of the largest by more than both err is left out.
     """
-    trunk = _bound(segments, *TRUNK)
-    area = 0.5 * np.log(shown_area[seen_whole] / seen_area[seen_whole])
-    errors = np.where(trunk, TRUNK_AREA_STD, LIMB_AREA_STD)[seen_whole]
-    trunk, shins = trunk & seen_whole, np.isfinite(seen[:, 0]) & _bound(segments, "shin")
+    shins = np.isfinite(seen_area) & _bound(segments, "shin")
+    told = known | shins
+    logarithms = 0.5 * np.log(shown_area[told] / seen_area[told])
+    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[told]
+    trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
-        area = np.append(area, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
+        logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
         errors = np.append(errors, LEGS_STD)
-    return float(np.exp(_weighted_quantile(area, 1.0 / errors**2, MIDDLE)))
-
-
-def _weighted_quantile(values: Array, weights: Array, share: float) -> float:
-    """The value below which a share of the weight lies, each value's own counted half."""
-    order = np.argsort(values)
-    below = np.cumsum(weights[order]) - 0.5 * weights[order]
-    return float(np.interp(share * weights.sum(), below, values[order]))
+    nearest = int(np.argmin(logarithms))
+    fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
+    return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
 
 
 def _floor_step(above_m: float, down: float, distance: float) -> float:
