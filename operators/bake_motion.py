@@ -74,7 +74,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
             finished.frames,
             finished.motion,
         )
-        settings.keys_before = finished.keys_before
+        settings.keys_before, settings.outdated = finished.keys_before, False
         settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
         assign_action(armature_object, settings.action)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)

@@ -6,7 +6,7 @@ import bpy
 
 from .running.failures import reported
 from .running.requirements import actor, all_met, idle, motion
-from .running.say import say
+from .running.say import say, warn_if_outdated
 from .scene.export_formats import FORMATS
 from .scene.takes import active_take
 
@@ -71,6 +71,7 @@ class KEYMARK_OT_export_motion(bpy.types.Operator):
             path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), FORMATS[self.format].suffix))
             span = int(frames[0]), int(frames[-1])
             export_motion(context.scene, take.armature, action, span, self.format, path)
+            warn_if_outdated(self, take)
             say(self, "INFO", "Wrote {path}", path=path)
             return {"FINISHED"}
         return {"CANCELLED"}

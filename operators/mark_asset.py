@@ -4,7 +4,7 @@ import bpy
 
 from .running.failures import reported
 from .running.requirements import actor, all_met, idle, motion
-from .running.say import say
+from .running.say import say, warn_if_outdated
 from .scene.takes import active_take
 
 
@@ -34,6 +34,7 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
             details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
             mark_action(action, details, picture)
             _refresh_asset_browsers(context)
+            warn_if_outdated(self, take)
             say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
             return {"FINISHED"}
         return {"CANCELLED"}

@@ -113,9 +113,10 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         from .ui.overlays.measuring import show
 
         show(None)
-        _redraw(context)
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
+        if context.window is not None:  # else Blender is closing it, or opens another file
+            _redraw(context)
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Measure, give the actor what was measured, and stand it there unless it has keyframes."""

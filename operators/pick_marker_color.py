@@ -139,7 +139,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the cursor back and stop the job; Blender calls this as well."""
-        if self._job is None:
+        if self._job is None and context.window is not None:
             context.window.cursor_modal_restore()
         super().cancel(context)
 

@@ -7,7 +7,7 @@ import bpy
 
 from .running.job_operator import JobOperator
 from .running.live_preview import LivePreview
-from .running.requirements import actor, all_colors, all_met, footage, idle, keyframes, markers
+from .running.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
 from .running.say import say
 from .scene.marker_styles import marker_styles
 from .scene.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
@@ -47,7 +47,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, all_colors, keyframes, idle)
+        return all_met(cls, context, footage, actor, markers, all_colors, two_keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
@@ -64,6 +64,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             footage_of(scene, settings), armature, settings.keyframe_action, marker_styles(settings)
         )
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+        _check_posed(len(take.keyframes), notes)
         check_reconstructible(take, method)
         reading = yield from stretch(read_footage(take, kept), TIMES, READ)
         frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
@@ -92,6 +93,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
         )
         take.motion_action.use_fake_user = True
+        take.finish.outdated = take.finish.action is not None
         keep_reading(take, result.reconstruction.reading)
         keep_solved(take, result.reconstruction)
         keep_review(take, result.review)
@@ -109,6 +111,20 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             frames=len(result.frames),
             keyframes=len(motion.keyframe_indices),
         )
+
+
+def _check_posed(count: int, notes: tuple[str, ...]) -> None:
+    """Refuse a take with too few keyframes, with what the animator should know of those that do not count.
+
+    Raises:
+        InputError: There are fewer than two in the footage.
+    """
+    from ..core.errors import InputError
+
+    if count < 2:
+        posed = "one keyframe lies" if count else "no keyframe lies"
+        asked = f"{posed} in the footage; at least 2 are needed, so pose the actor and store more"
+        raise InputError(". ".join((asked, *notes)))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct,))

@@ -10,7 +10,7 @@ from ...core.motion import Motion
 from .actions import assign_action, channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .bone_channels import bone_channels
-from .keys import add_generated_keys, copy_keys, ensure_fcurve, remove_generated_keys
+from .keys import add_generated_keys, copy_as_generated, ensure_fcurve, remove_generated_keys
 from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
 
 Array = NDArray[np.float64]
@@ -96,18 +96,17 @@ def _copy_leaves(
     source: bpy.types.Action,
     channelbag: bpy.types.ActionChannelbag,
 ) -> None:
-    """Copy the curves of bones without degrees of freedom; what an earlier run copied is replaced."""
-    given = existing_channelbag(source, armature_object)
-    if given is None:
-        return
+    """Copy the curves of bones without degrees of freedom; of what is there, only earlier copies go."""
     leaves = {
         bone_path(model.name, channel): model.name
         for model in skeleton_bones(armature_object, skeleton)
         if not model.chain
         for channel in (*ALL_PATHS, "location")
     }
-    for curve in given.fcurves:
+    remove_generated_keys(channelbag, leaves)
+    given = existing_channelbag(source, armature_object)
+    for curve in given.fcurves if given is not None else ():
         bone = leaves.get(curve.data_path)
         if bone is None:
             continue
-        copy_keys(curve, ensure_fcurve(channelbag, curve.data_path, curve.array_index, bone))
+        copy_as_generated(curve, ensure_fcurve(channelbag, curve.data_path, curve.array_index, bone))

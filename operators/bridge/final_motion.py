@@ -19,6 +19,7 @@ from .fcurves import bone_path, moved_paths, posture_columns
 from .joint_frames import posture_from_frames
 from .keyframes import keyed_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
+from .review_curves import is_review_curve
 from .rotation_modes import rotation_path
 
 Array = NDArray[np.float64]
@@ -169,7 +170,8 @@ def write_final(
 
     Args:
         armature_object: The actor.
-        source: The Action the motion was read from; its other curves (hands, feet, properties) are copied.
+        source: The Action the motion was read from; its other curves (hands, feet, properties) are
+            copied, but for those that judge the motion.
         action: Where to write.
         body: The actor's body.
         rig: The actor as `read_rig` finds it.
@@ -194,7 +196,7 @@ def write_final(
     written = set(moved_paths(armature_object, body.skeleton))
     given = existing_channelbag(source, armature_object)
     for fcurve in given.fcurves if given is not None else ():
-        if fcurve.data_path not in written:
+        if fcurve.data_path not in written and not is_review_curve(fcurve):
             group = fcurve.group.name if fcurve.group is not None else armature_object.name
             copy_keys(fcurve, ensure_fcurve(channelbag, fcurve.data_path, fcurve.array_index, group))
     action.use_frame_range = True

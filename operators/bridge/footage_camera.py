@@ -15,11 +15,14 @@ UNTOUCHED_CAMERA_MM = (50.0, 36.0)
 STARTUP_PLACE_M = (7.3589, -6.9258, 4.9583)
 """Where the camera of Blender's startup file stands [m]."""
 SAME = 1e-3
+SYMBOL_M = 0.3
+"""Size of the camera's symbol [m]: the usual metre stands in the picture of every other view."""
 
 
 def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
     """Add a camera to a scene."""
     camera_object = bpy.data.objects.new(CAMERA_NAME, bpy.data.cameras.new(CAMERA_NAME))
+    camera_object.data.display_size = SYMBOL_M
     scene.collection.objects.link(camera_object)
     return camera_object
 

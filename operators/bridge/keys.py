@@ -1,6 +1,8 @@
 """Keys on F-curves, in bulk. Those that Keymark made are told from the animator's by Blender's key type.
 
-Only keys of the type GENERATED are ever replaced or removed.
+Only keys of the type GENERATED are ever replaced or removed, and of these not the ones that the animator has
+given another value: Blender leaves their type as it was. That a key has its first value is seen by `back`,
+a number which only the interpolation of that name uses; it holds the value that the key was made with.
 """
 
 from collections.abc import Iterable
@@ -13,12 +15,46 @@ Array = NDArray[np.float64]
 Keys = dict[str, NDArray[np.generic]]
 """Properties of N keys by name: (N,), or (N, 2) for places."""
 
+UNMARKED = 0.0
+"""`back` of a key that says nothing of its first value; earlier versions made all so."""
+MARK_OF_ZERO = 1e-30
 SAME_FRAME = 1e-3
 """Keys nearer than this [frames] lie on the same frame."""
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
 ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
 FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
+
+
+def _generated(keys: Keys) -> NDArray[np.bool_]:
+    """(N,) which keys are Keymark's, with the values it gave them."""
+    back = keys["back"]
+    changed = (back != _mark(keys)) & (back != UNMARKED)
+    changed &= keys["interpolation"] != _enum_value("interpolation", "BACK")
+    return (keys["type"] == _enum_value("type", "GENERATED")) & ~changed
+
+
+def _mark(keys: Keys) -> NDArray[np.float32]:
+    """(N,) what tells that keys have the values they have now."""
+    values = keys["co"][:, 1].astype(np.float32)
+    return np.where(values == UNMARKED, np.float32(MARK_OF_ZERO), values)
+
+
+def _as_generated(keys: Keys) -> Keys:
+    """The keys as Keymark's own."""
+    used = keys["interpolation"] == _enum_value("interpolation", "BACK")
+    return {
+        **keys,
+        "type": np.full(len(used), _enum_value("type", "GENERATED"), np.int32),
+        "back": np.where(used, keys["back"], _mark(keys)).astype(np.float32),
+    }
+
+
+def _as_animators(keys: Keys) -> Keys:
+    """The keys as the animator's: none is of the type GENERATED."""
+    types, generated = keys["type"], _enum_value("type", "GENERATED")
+    plain = np.where(types == generated, _enum_value("type", "KEYFRAME"), types).astype(np.int32)
+    return {**keys, "type": plain}
 
 
 def _enum_value(name: str, item: str) -> int:
@@ -87,15 +123,18 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
-    """Remove the GENERATED keys of the curves with these data paths, and curves left without keys."""
+    """Remove the GENERATED keys of the curves with these data paths, and curves left without keys.
+
+    Keys that the animator has given another value stay, and are from now on of the animator's own type.
+    """
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
         keys = _read_keys(fcurve)
-        own = keys["type"] != _enum_value("type", "GENERATED")
+        own = ~_generated(keys)
         if not own.any():
             channelbag.fcurves.remove(fcurve)
-        elif not own.all():
-            _write_keys(fcurve, {name: values[own] for name, values in keys.items()})
+        else:
+            _write_keys(fcurve, _as_animators({name: values[own] for name, values in keys.items()}))
 
 
 def add_generated_keys(
@@ -112,10 +151,14 @@ def add_generated_keys(
         values: (F,) values of the property.
     """
     fcurve = ensure_fcurve(channelbag, path, index, group)
-    keys = _new_keys(frames, values, "GENERATED", "LINEAR")
+    _add_between(fcurve, _as_generated(_new_keys(frames, values, "GENERATED", "LINEAR")))
+
+
+def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
+    """Add keys to a curve on the frames that have none."""
     if len(fcurve.keyframe_points):
         kept = _read_keys(fcurve)
-        free = _distances(frames, kept["co"][:, 0]) > SAME_FRAME
+        free = _distances(keys["co"][:, 0], kept["co"][:, 0]) > SAME_FRAME
         keys = _merged(kept, {name: column[free] for name, column in keys.items()})
     _write_keys(fcurve, keys)
 
@@ -200,5 +243,10 @@ def ensure_fcurve(
 
 
 def copy_keys(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
-    """Replace a curve's keys by another's, handles and interpolation included."""
-    _write_keys(target, _read_keys(source))
+    """Replace a curve's keys by another's, handles and interpolation included, all as the animator's."""
+    _write_keys(target, _as_animators(_read_keys(source)))
+
+
+def copy_as_generated(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+    """Add another curve's keys as GENERATED ones; where the animator has a key, that key stays alone."""
+    _add_between(target, _as_generated(_read_keys(source)))

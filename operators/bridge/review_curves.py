@@ -82,6 +82,12 @@ def curve_path(name: str) -> str:
     return f'["{bpy.utils.escape_identifier(name + SUFFIX)}"]'
 
 
+def is_review_curve(fcurve: bpy.types.FCurve) -> bool:
+    """Whether a curve shows how far frames can be believed, and is no part of the motion."""
+    end = f'{bpy.utils.escape_identifier(SUFFIX)}"]'
+    return str(fcurve.data_path).startswith('["') and str(fcurve.data_path).endswith(end)
+
+
 def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Action, review: Review) -> None:
     """Write all curves into the motion's Action; those of an earlier review are replaced.
 

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
+from ..scene.posed_frames import forget, posed_frames
 from ..scene.takes import find_take
 from .job_operator import job_is_running
 
@@ -57,6 +58,18 @@ def keyframes(context: bpy.types.Context) -> str | None:
     """There is an Action with keyframes."""
     take = find_take(context.scene)
     return None if take and take.keyframe_action else "Pose the actor and store a keyframe first"
+
+
+def two_keyframes(context: bpy.types.Context) -> str | None:
+    """There are keyframes to find frames between."""
+    take = find_take(context.scene)
+    if take is None or take.keyframe_action is None:
+        return keyframes(context)
+    if len(posed_frames(take)) == 1:
+        forget()  # a script may have set a key that Blender has not told of yet
+    if len(posed_frames(take)) == 1:
+        return "Store a keyframe at another frame first; there is only one"
+    return None
 
 
 def motion(context: bpy.types.Context) -> str | None:

@@ -21,6 +21,12 @@ def say(operator: bpy.types.Operator, kind: str, template: str, **values: Any) -
     operator.report({kind}, bpy.app.translations.pgettext_rpt(template).format(**values))
 
 
+def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup) -> None:
+    """Say so where a take's final Action, which goes out, was made from an earlier motion."""
+    if take.finish.action is not None and take.finish.outdated:
+        say(operator, "WARNING", "The final Action is of an earlier motion; bake it again for the newest")
+
+
 def label(template: str, **values: Any) -> str:
     """A line of a panel; draw it with `translate=False`, as it is translated already."""
     return str(bpy.app.translations.pgettext_iface(template)).format(**values)

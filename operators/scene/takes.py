@@ -86,10 +86,11 @@ def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage
 
 
 def bring_forward(scene: bpy.types.Scene) -> None:
-    """Let the scene show the active take: its clip, its camera, its range of frames."""
+    """Let the scene show the active take: its clip, its camera, its range of frames, its actor selected."""
     take = find_take(scene)
     if take is None:
         return
+    _select(scene, take.armature)
     if take.camera is not None and take.camera.name in scene.objects:
         scene.camera = take.camera
     clip = take.clip
@@ -103,3 +104,17 @@ def bring_forward(scene: bpy.types.Scene) -> None:
         size = (clip.size[0], clip.size[1])
         set_scene_range(scene, size, rate, footage.first_frame, clip.frame_duration)
         scene.frame_current = min(max(scene.frame_current, scene.frame_start), scene.frame_end)
+
+
+def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) -> None:
+    """Let timelines and the next mode be about an actor, unless the animator is busy with another's."""
+    layer = bpy.context.view_layer
+    if armature_object is None or bpy.context.scene != scene or armature_object.name not in layer.objects:
+        return
+    before = layer.objects.active
+    if before == armature_object or (before is not None and before.mode != "OBJECT"):
+        return
+    for chosen in list(layer.objects.selected):
+        chosen.select_set(False)
+    armature_object.select_set(True)
+    layer.objects.active = armature_object

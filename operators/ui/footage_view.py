@@ -52,8 +52,11 @@ class FootageView:
 def footage_view(
     scene: bpy.types.Scene, take: bpy.types.PropertyGroup, area: bpy.types.Area, region: bpy.types.Region
 ) -> FootageView | None:
-    """How a region of an editor shows a take's footage; None where it does not show it."""
-    if take.clip is None or region.type != "WINDOW" or not all(take.clip.size):
+    """How a region of an editor shows a take's footage; None where it does not show it.
+
+    In place of a file that is missing Blender shows a picture of another size.
+    """
+    if take.clip is None or take.clip_state.missing or region.type != "WINDOW" or not all(take.clip.size):
         return None
     space = area.spaces.active
     if area.type == "VIEW_3D":

@@ -29,4 +29,6 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: reconstruct the motion"
     if take.finish.action is None:
         return "Next: review, then finish"
+    if take.finish.outdated:
+        return "Next: review, then bake again"
     return "Next: mark as asset, or export"

@@ -16,6 +16,7 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.final_motion import motion_frames, read_values
 from keymark.operators.bridge.keyframes import store_pose
+from keymark.operators.bridge.review_curves import curve_path
 from keymark.operators.bridge.rig import read_rig
 from keymark.operators.scene.takes import add_take
 
@@ -197,6 +198,16 @@ def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) ->
     bpy.ops.keymark.bake_motion()
     points = curves(take, take.finish.action)['pose.bones["hand.L"].rotation_quaternion', 0].keyframe_points
     assert [point.co.x for point in points][-1] == 9.0
+
+
+def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> None:
+    """The final Action holds the motion and the animator's own properties, not how far to believe frames."""
+    channelbag = existing_channelbag(take.motion_action, take.armature)
+    for path in (curve_path("Confidence"), '["mood"]'):
+        channelbag.fcurves.new(path, index=0).keyframe_points.insert(4.0, 0.5)
+    bpy.ops.keymark.bake_motion()
+    paths = {path for path, _ in curves(take, take.finish.action)}
+    assert '["mood"]' in paths and curve_path("Confidence") not in paths
 
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:

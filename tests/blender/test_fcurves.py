@@ -100,6 +100,21 @@ def test_a_second_run_replaces_generated_keys_only(actor: bpy.types.Object, wave
     assert key_count(actor, action) == before + 1  # the key at 5 stands in for a generated one
 
 
+def test_a_generated_key_that_was_keyed_over_is_the_animators(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """Blender leaves its type as it was; the value tells."""
+    action = write_motion(actor, wave_motion)
+    bone = actor.pose.bones["forearm.L"]
+    bone.rotation_euler.x = 1.25
+    bone.keyframe_insert("rotation_euler", index=0, frame=5)
+    for _ in range(2):
+        write_motion(actor, wave_motion, action)
+        points = curves(actor, action)['pose.bones["forearm.L"].rotation_euler', 0].keyframe_points
+        assert [point.co.x for point in points if point.type == "KEYFRAME"] == [5.0]
+        assert next(point.co.y for point in points if point.co.x == 5.0) == 1.25
+
+
 def test_a_shorter_second_run_leaves_no_stale_keys(actor: bpy.types.Object, wave_motion: Motion) -> None:
     """Keys of frames that are not in the new motion are gone."""
     action = write_motion(actor, wave_motion)
@@ -154,6 +169,24 @@ def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_mot
     assert not any("scale" in path for path, _ in curves(actor, action))
     write_motion(actor, wave_motion, action, posed)
     assert len(curves(actor, action)) == CHANNELS + 4
+
+
+def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """Of a hand's keys only the copies of the keyframes' are replaced."""
+    hand = actor.pose.bones["hand.R"]
+    for frame in (1, 13):
+        hand.keyframe_insert("rotation_quaternion", frame=frame)
+    posed = actor.animation_data.action
+    action = write_motion(actor, wave_motion, keyframe_action=posed)
+    hand.rotation_quaternion = (0.6, 0.8, 0.0, 0.0)
+    for frame in (5, 13):
+        hand.keyframe_insert("rotation_quaternion", frame=frame)
+    write_motion(actor, wave_motion, action, posed)
+    curve = curves(actor, action)['pose.bones["hand.R"].rotation_quaternion', 1]
+    assert [key.co.x for key in curve.keyframe_points] == [1.0, 5.0, 13.0]
+    assert [key.co.y for key in curve.keyframe_points] == pytest.approx([0.0, 0.8, 0.8])
 
 
 def test_fractional_frames_of_an_uneven_clip_are_kept(actor: bpy.types.Object, wave_motion: Motion) -> None:

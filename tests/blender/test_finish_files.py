@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -9,12 +10,15 @@ import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.errors import InputError
 from keymark.core.motion import Motion
+from keymark.core.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.fcurves import write_motion
+from keymark.operators.running.say import warn_if_outdated
 from keymark.operators.scene.export_formats import FORMATS, Format
-from keymark.operators.scene.takes import add_take
+from keymark.operators.scene.takes import active_take, add_take
+from keymark.operators.ui.next_step import next_step
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
@@ -224,3 +228,23 @@ def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup
     with pytest.raises(RuntimeError, match="is hidden with its collection"):
         bpy.ops.keymark.export_motion(format="BVH", filepath=str(tmp_path / "wave.bvh"))
     assert other.mode == "POSE" and actor.hide_get() and not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: Path) -> None:
+    """Reconstructed again, the motion is newer than what an export writes; baked again, it is not."""
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
+    take = active_take(bpy.context.scene)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    assert not take.finish.outdated and next_step(take) == "Next: review, then finish"
+    bpy.ops.keymark.bake_motion()
+    assert not take.finish.outdated
+    bpy.ops.keymark.reconstruct()
+    assert take.finish.outdated and next_step(take) == "Next: review, then bake again"
+    said: list[tuple[set[str], str]] = []
+    warn_if_outdated(SimpleNamespace(report=lambda *words: said.append(words)), take)
+    assert [kind for kind, _ in said] == [{"WARNING"}] and "bake it again" in said[0][1]
+    bpy.ops.keymark.bake_motion()
+    warn_if_outdated(SimpleNamespace(report=lambda *words: said.append(words)), take)
+    assert not take.finish.outdated and len(said) == 1

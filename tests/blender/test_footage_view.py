@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.operators.ui.footage_view import FootageView
+from keymark.operators.ui.footage_view import FootageView, footage_view
 
 PIXELS = np.array([[0.0, 0.0], [160.0, 0.0], [80.5, 31.25]])
 
@@ -40,3 +40,12 @@ def test_a_point_is_found_where_the_lens_put_it(camera: Camera) -> None:
     straight, _ = replace(lens, distortion=(0.0, 0.0, 0.0)).project(point)
     assert np.abs(recorded - straight).max() > 0.5
     assert view(lens).to_region(recorded) == pytest.approx(view(None).to_region(straight), abs=0.02)
+
+
+def test_no_editor_shows_footage_whose_file_is_missing() -> None:
+    """Blender shows a picture of another size in its place: marks would lie anywhere."""
+    clip = SimpleNamespace(size=(256, 256))
+    space = SimpleNamespace(clip=clip, view="CLIP")
+    area = SimpleNamespace(type="CLIP_EDITOR", spaces=SimpleNamespace(active=space))
+    take = SimpleNamespace(clip=clip, clip_state=SimpleNamespace(missing=True))
+    assert footage_view(SimpleNamespace(), take, area, SimpleNamespace(type="WINDOW")) is None

@@ -144,6 +144,20 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
     assert previews() > 0
 
 
+def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
+    """The button is grey and says so, instead of failing once it is pressed; a second one makes it live."""
+    scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
+    take.keyframe_action = None
+    take.armature.animation_data.action = None
+    scene.frame_set(scene.frame_start)
+    bpy.ops.keymark.store_keyframe()
+    with pytest.raises(RuntimeError, match="there is only one"):
+        reconstruct()
+    scene.frame_set(scene.frame_start + 8)
+    bpy.ops.keymark.store_keyframe()
+    assert reconstruct.poll()
+
+
 def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
     """The result is let go; no Action, key or review of it stays."""
     from types import SimpleNamespace
@@ -170,3 +184,19 @@ def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.Prop
         with pytest.raises(InputError, match="has no actor"):
             kind.finish(job, scene, outcome)
     assert len(bpy.data.actions) == actions and take.finish.action is None
+
+
+def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.PropertyGroup) -> None:
+    """None or one beside others that lie outside the footage: the sentence says which do not count."""
+    take.keyframe_action = bpy.data.actions.new("Elsewhere")
+    for frame, said in (
+        (40, None),
+        (41, r"no keyframe lies in the footage.* Keys at 40, 41 lie outside the footage"),
+        (3, r"one keyframe lies in the footage.* Keys at 40, 41 lie outside the footage"),
+    ):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.keymark.store_keyframe()
+        if said is not None:
+            with pytest.raises(RuntimeError, match=said):
+                bpy.ops.keymark.reconstruct()
+    assert take.motion_action is None

@@ -86,6 +86,22 @@ def test_takes_of_one_clip_keep_the_animators_range(tiny_take: Take) -> None:
     assert scene.frame_end == 7
 
 
+def test_switching_selects_the_takes_actor_but_not_from_under_the_animator(tiny_take: Take) -> None:
+    """Timelines show what is selected; whoever poses another armature goes on."""
+    scene = open_take(tiny_take)
+    bpy.ops.keymark.add_performer()
+    bpy.ops.keymark.build_actor()
+    actors = [take.armature for take in scene.keymark.takes]
+    for index in (0, 1, 0):
+        scene.keymark.active_take = index
+        assert bpy.context.view_layer.objects.active == actors[index]
+        assert list(bpy.context.view_layer.objects.selected) == [actors[index]]
+    bpy.ops.object.mode_set(mode="POSE")
+    scene.keymark.active_take = 1
+    assert bpy.context.view_layer.objects.active == actors[0]
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def test_another_performer_shares_clip_and_camera_only(tiny_take: Take) -> None:
     """A guess of the lens is one for both, until it is confirmed for both."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))

@@ -48,6 +48,8 @@ def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
         row.operator("keymark.show_action", text=text, depress=depress).which = which
     lines = column.column(align=True)
     lines.scale_y = 0.85
+    if settings.outdated:
+        lines.label(text="The motion is newer: bake again", icon="ERROR")
     kept = label("{after} keys instead of {before}", after=settings.keys_after, before=settings.keys_before)
     lines.label(text=kept, icon="KEYFRAME_HLT", translate=False)
     if settings.furthest_mm > 0.0:

@@ -42,6 +42,7 @@ def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
         box.label(text="The clip's file is missing", icon="ERROR")
         box.label(text=bpy.path.basename(clip.filepath), translate=False, icon="BLANK1")
         box.operator("keymark.relocate_clip", text="Find Clip", icon="VIEWZOOM")
+        return  # Blender knows no size of what is not there
     facts = column.column(align=True)
     facts.active = False
     size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])

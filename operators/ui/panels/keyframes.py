@@ -59,8 +59,9 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
     """What this frame is: posed, proposed, or the motion's, which is no good to pose in."""
     frame = scene.frame_current
     data = take.armature.animation_data if take.armature is not None else None
-    if data is not None and data.action is not None and data.action == take.motion_action:
-        row = layout.row()
+    shown = data.action if data is not None else None
+    if shown is not None and shown in (take.motion_action, take.finish.action):
+        row = layout.row(align=True)
         row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):

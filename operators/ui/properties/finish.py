@@ -50,6 +50,11 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         description="The Action that holds the finished motion, in keys of your own to edit",
         type=bpy.types.Action,
     )
+    outdated: bpy.props.BoolProperty(
+        name="Outdated",
+        description="The motion was reconstructed again since the final Action was made",
+        options={"HIDDEN"},
+    )
     keys_before: bpy.props.IntProperty(name="Keys Before", options={"HIDDEN"})
     keys_after: bpy.props.IntProperty(name="Keys After", options={"HIDDEN"})
     furthest_mm: bpy.props.FloatProperty(name="Furthest", options={"HIDDEN"})

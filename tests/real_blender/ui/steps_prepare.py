@@ -60,11 +60,12 @@ def footage(person: Person) -> Steps[None]:
 
 
 def look_through_camera(person: Person) -> Steps[None]:
-    """Numpad 0, unless the viewport looks through the camera already; Home fits its frame to the region."""
+    """Numpad 0, and Home to fit its frame to the region; what was loaded by its button is so already."""
     view = person.hands.area("VIEW_3D").spaces.active
+    if view.region_3d.view_perspective == "CAMERA":
+        return
     yield from person.hands.move_over("VIEW_3D")
-    if view.region_3d.view_perspective != "CAMERA":
-        yield from person.hands.press("NUMPAD_0")
+    yield from person.hands.press("NUMPAD_0")
     yield from until(lambda: view.region_3d.view_perspective == "CAMERA", "the camera's view")
     yield from person.hands.press("HOME")
     yield from turns(20)  # the view glides there
