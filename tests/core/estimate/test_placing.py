@@ -56,6 +56,16 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     assert error < 0.6 * np.linalg.norm(near.translation - true.translation)
 
 
+def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
+    """Bent forward, the trunk looks small and near the shins; the shins still tell the distance."""
+    true = standing_posture(BODY, np.zeros(3))
+    bent = np.zeros(BODY.skeleton.dof_count)
+    bent[BODY.skeleton.dof_names.index("waist.rotation_x")] = 1.3
+    found = place_standing(BODY, CAMERA, 0, film(Posture.stack([true.plus(bent)])), SEGMENTS)
+    depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
+    assert depth[1] == pytest.approx(depth[0], rel=0.12)
+
+
 def test_a_ground_elsewhere_is_left_alone() -> None:
     """A performer on a stage of two metres is not pulled to the floor."""
     camera = looking_down(0.3, (0.0, -4.0, 4.3))
