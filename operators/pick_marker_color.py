@@ -14,6 +14,7 @@ from .running.say import label, say
 from .scene.marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .scene.marker_styles import marker_styles, set_marker_color
 from .scene.takes import active_take, footage_of, take_called
+from .show_masks import redraw_footage
 from .ui.properties.marker import segment_title
 
 if TYPE_CHECKING:
@@ -74,6 +75,9 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
+    _masks_before: bool | None = None
+    """Whether masks were shown when the eyedropper was taken up; None in a script, which sees none."""
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be footage."""
@@ -103,7 +107,10 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             say(self, "ERROR", "Every body part has a marker already")
             return {"CANCELLED"}
         sentence = label(REQUESTS.get(segment[-2:], MIDDLE_REQUEST), segment=label(segment_title(segment)))
-        context.window_manager.keymark_progress.show("", 0.0)
+        manager = context.window_manager
+        manager.keymark_progress.show("", 0.0)
+        self._masks_before = manager.keymark_show_masks
+        _show_masks(context, False)  # the footage itself is what is clicked on
         context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
         context.window.cursor_modal_set("EYEDROPPER")
         context.window_manager.modal_handler_add(self)
@@ -141,6 +148,8 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         """Give the cursor back and stop the job; Blender calls this as well."""
         if self._job is None and context.window is not None:
             context.window.cursor_modal_restore()
+        if self._masks_before is not None:
+            _show_masks(context, self._masks_before)
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
@@ -164,6 +173,8 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             marker = take.markers[result.index]
         set_marker_color(marker, result.color)
         write_readouts(take, result.styles, result.check)
+        if self._masks_before is not None:  # picked by a click: what would be found of it is seen at once
+            _show_masks(bpy.context, True)
         show_frame(scene)
         for sentence in marker.warning.splitlines():
             self.report({"WARNING"}, sentence)
@@ -187,6 +198,11 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         """The body part whose marker is picked; None where there is none left to add one on."""
         index = self._index(take)
         return next_segment(take) if index is None else str(take.markers[index].segment)
+
+
+def _show_masks(context: bpy.types.Context, shown: bool) -> None:
+    context.window_manager.keymark_show_masks = shown
+    redraw_footage(context)
 
 
 def _styles(

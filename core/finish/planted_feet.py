@@ -30,7 +30,7 @@ PACE_STD_PER_S = 2.0
 """Change of these changes in a second, in units of themselves: small, so that knees do not flicker."""
 UNCHANGED_STD = 1e-6
 """The same for frames without a correction, in units of the above."""
-HELD_M = 0.001
+HELD_M = 0.0005
 """How far few keys may move an ankle that rests [m]: they must not make it slide again."""
 STEPS = 8
 SETTLED_M = 1e-5

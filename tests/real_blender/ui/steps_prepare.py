@@ -93,7 +93,7 @@ def markers(person: Person) -> Steps[None]:
         for marker, style in zip(person.take.markers, person.known.markers, strict=True)
     ]
     expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
-    yield from person.hands.click_button("keymark.show_masks")
+    expect(bpy.context.window_manager.keymark_show_masks, "picking does not show the masks")
     yield from person.look("markers")
     yield from person.hands.click_button("keymark.show_masks")
 
