@@ -117,7 +117,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for the click, then go on with the job that it starts."""
+        """Wait for a click on the footage, then go on with the job that it starts."""
         if self._job is not None:
             return super().modal(context, event)
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
@@ -133,9 +133,9 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
-            self.cancel(context)
-            say(self, "ERROR", "That is not on the footage; click on a marker in it")
-            return {"CANCELLED"}
+            sentence = label("That is not on the footage; click on a marker in it   |   Esc: Cancel")
+            context.workspace.status_text_set(sentence)
+            return {"RUNNING_MODAL"}
         self.pixel = pixel
         context.window.cursor_modal_restore()
         with reported(self):

@@ -54,7 +54,7 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     if not progress.stage or not job_is_running(context, job):
         return False
     row = layout.row(align=True)
-    percent = f"{progress.stage} ({100.0 * progress.fraction:.0f}%)"
+    percent = f"{100.0 * progress.fraction:.0f}%  {progress.stage}"  # a narrow sidebar cuts the end off
     row.progress(factor=progress.fraction, text=(job and progress.time_left) or percent)
     escape = row.row()
     escape.ui_units_x = ESCAPE_UNITS
