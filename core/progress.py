@@ -7,6 +7,8 @@ from typing import TypeVar
 from .body.posture import Posture
 
 Result = TypeVar("Result")
+Given = TypeVar("Given")
+Shown = TypeVar("Shown")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +40,8 @@ Job = Generator[Progress, None, Result]
 """A job that yields its progress and returns its result; closing it cancels it."""
 
 
-def run(job: Job[Result], report: Callable[[Progress], None] | None = None) -> Result:
-    """Drive a job to its end and return its result, passing each progress to `report`."""
+def run(job: Generator[Given, None, Result], report: Callable[[Given], object] | None = None) -> Result:
+    """Drive a job, or a part of one, to its end and return its result, passing each progress to `report`."""
     while True:
         try:
             progress = next(job)
@@ -50,38 +52,44 @@ def run(job: Job[Result], report: Callable[[Progress], None] | None = None) -> R
             report(progress)
 
 
-def finished(part: Generator[object, None, Result]) -> Result:
-    """Drive any part of a job to its end at once, and return its result."""
-    while True:
-        try:
-            next(part)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
-
-
 def within(stage: str, part: Part[Result], first: float, last: float) -> Job[Result]:
     """Run a part that yields its own fraction as the stretch `first` to `last` of a whole job."""
     fraction = first
-    while True:
-        try:
-            done = next(part)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
+
+    def progress(done: float | Preview) -> Progress:
+        nonlocal fraction
         if isinstance(done, Preview):
-            yield Progress(stage, fraction, done)
-        else:
-            fraction = first + (last - first) * done
-            yield Progress(stage, fraction)
+            return Progress(stage, fraction, done)
+        fraction = done
+        return Progress(stage, fraction)
+
+    return _changed(scaled(part, first, last), progress)
 
 
 def stretch(job: Job[Result], first: float, last: float) -> Job[Result]:
     """Run a job as the stretch `first` to `last` of a longer one."""
+    return _changed(job, lambda done: replace(done, fraction=first + (last - first) * done.fraction))
+
+
+def scaled(part: Generator[float | Preview | None, None, Result], first: float, last: float) -> Part[Result]:
+    """Run a part as the stretch `first` to `last`; one that only says that it still runs stays at `first`."""
+
+    def share(done: float | Preview | None) -> float | Preview:
+        if isinstance(done, Preview):
+            return done
+        return first if done is None else first + (last - first) * done
+
+    return _changed(part, share)
+
+
+def _changed(
+    part: Generator[Given, None, Result], change: Callable[[Given], Shown]
+) -> Generator[Shown, None, Result]:
+    """Run a generator with each thing it yields changed; returns its result."""
     while True:
         try:
-            progress = next(job)
+            given = next(part)
         except StopIteration as stop:
             result: Result = stop.value
             return result
-        yield replace(progress, fraction=first + (last - first) * progress.fraction)
+        yield change(given)

@@ -17,7 +17,7 @@ from ..footage.tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
 from ..prior.belief import Belief
-from ..progress import finished
+from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .terms.ground import GroundTerm
@@ -97,7 +97,7 @@ def calibrated(
     if len(frame) < CALIBRATED_FROM:
         return uncalibrated(model)
     width_px = limb_widths(model, keyframes.translation, frame)
-    return finished(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
+    return run(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
 
 
 def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> ExpectedRegions:

@@ -7,9 +7,7 @@ trusted; the regions, the prior's depths, feet at rest and the hinges' ranges pu
 annealed, so that early steps do not lock on to a wrong visibility.
 """
 
-from collections.abc import Generator
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +19,7 @@ from ..footage.clips.album import Album
 from ..footage.tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
-from ..progress import Part, Preview
+from ..progress import Part, scaled
 from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence, read_keyframes
 from .revision import changed_frames, held, revised_share, revised_windows, same_setting
@@ -30,7 +28,6 @@ from .window_problem import ClipProblem
 from .windows import Window, windows
 
 Array = NDArray[np.float64]
-Result = TypeVar("Result")
 
 MARKERS_SHARE = 0.5
 """Share of the work that is done before contours are looked for."""
@@ -105,7 +102,7 @@ def estimate_whole_clip(
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     index = np.array(keyframe_indices, dtype=np.intp)
     reading = read_keyframes(model, options.regions, observed[index], width_px[index], prior[index], index)
-    evidence = yield from _share(reading, 0.0, 0.0)
+    evidence = yield from scaled(reading, 0.0, 0.0)
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     problem = ClipProblem(
@@ -150,14 +147,14 @@ def _solve_windows(
     states = []
     for window, begun, ended in stretches:
         part = problem.window(window)
-        yield from _share(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
+        yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.bare())
     contours = None if earlier is None else earlier.contours
     if earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
         learning = learn_contours(problem.body, known, album, Posture.concatenate(kept), problem.keyframes)
-        contours = yield from _share(learning, MARKERS_SHARE, MARKERS_SHARE)
+        contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     residual_px = np.empty(problem.observed.quality.shape) if earlier is None else earlier.residual_px.copy()
@@ -166,9 +163,9 @@ def _solve_windows(
         first, last = (MARKERS_SHARE + (1.0 - MARKERS_SHARE) * share for share in (begun, ended))
         part = problem.window(window, states.pop(0))
         if contours is not None:
-            yield from _share(part.follow_contours(contours), first, last)
+            yield from scaled(part.follow_contours(contours), first, last)
         inner = slice(window.keep_first, window.keep_last)
-        posture, covariance[inner], residual_px[inner] = yield from _share(part.kept(), last, last)
+        posture, covariance[inner], residual_px[inner] = yield from scaled(part.kept(), last, last)
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
@@ -182,17 +179,3 @@ def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Postu
         inner = slice(window.keep_first, window.keep_last)
         translation[inner], rotations[inner], angles[inner] = piece.translation, piece.rotations, piece.angles
     return Posture(base.skeleton, translation, rotations, angles)
-
-
-def _share(part: Generator[float | Preview | None, None, Result], first: float, last: float) -> Part[Result]:
-    """Run a part as the stretch `first` to `last`; one that only says that it still runs stays at `first`."""
-    while True:
-        try:
-            done = next(part)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
-        if isinstance(done, Preview):
-            yield done
-        else:
-            yield first if done is None else first + (last - first) * done

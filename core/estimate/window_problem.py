@@ -11,7 +11,7 @@ from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..observation import depths
 from ..prior.variability import REFERENCE_STEP_S
-from ..progress import Part, Preview
+from ..progress import Part, Preview, scaled
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
 from .keyframe_evidence import KeyframeEvidence
@@ -129,12 +129,8 @@ class WindowProblem:
         for look in range(LOOKS):
             looking = contours.term(self.state.posture, self.state.frame)
             begun, looked = look / LOOKS, (look + LOOKING_SHARE) / LOOKS
-            while True:
-                try:
-                    yield begun + (looked - begun) * next(looking)
-                except StopIteration as stop:
-                    self.terms = [*others, stop.value]
-                    break
+            term = yield from scaled(looking, begun, looked)
+            self.terms = [*others, term]
             yield from self._descend(REFINEMENTS, looked, (look + 1) / LOOKS)
 
     def _descend(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:

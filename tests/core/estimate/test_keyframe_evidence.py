@@ -11,7 +11,7 @@ from keymark.core.estimate.posing_error import posing_covariance, velocities
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
-from keymark.core.progress import finished
+from keymark.core.progress import run
 
 FRAMES = 90
 MOTION = exercise(FRAMES)
@@ -32,7 +32,7 @@ def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> Ke
     """The evidence of keyframes posed at `POSED`."""
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
-    return finished(read_keyframes(model, RegionNoise(), observed, width, posed, POSED))
+    return run(read_keyframes(model, RegionNoise(), observed, width, posed, POSED))
 
 
 def posed_by_hand(seed: int) -> Posture:
