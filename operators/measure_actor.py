@@ -2,8 +2,9 @@
 
 import bpy
 
-from .pick_marker_color import NAVIGATION, NOT_SHOWN
 from .running.failures import reported
+from .running.footage_clicks import NAVIGATION, footage_is_shown
+from .running.redraw import redraw_footage
 from .running.requirements import all_met, bones_editable, camera, footage, idle
 from .running.say import label, say
 from .scene.marker_styles import marker_styles
@@ -56,16 +57,9 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for two clicks on the footage."""
-        from .ui.footage_view import shows_footage
-
         take = active_take(context.scene)
         self.stature = take.stature
-        shown = None
-        with reported(self):
-            shown = shows_footage(context, take)
-        if not shown:
-            if shown is not None:  # else it has been said why
-                say(self, "ERROR", NOT_SHOWN)
+        if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
         from .ui.overlays.measuring import Clicks, show
 
@@ -83,7 +77,7 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
             return {"CANCELLED"}
         if event.type == "MOUSEMOVE":
             self._clicks.mouse = event.mouse_x, event.mouse_y
-            _redraw(context)
+            redraw_footage(context)
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         from .ui.footage_view import pixel_under
@@ -106,7 +100,7 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         else:
             wanted = label("Now click on the floor between the feet   |   Esc: Cancel")
         context.workspace.status_text_set(wanted)
-        _redraw(context)
+        redraw_footage(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the cursor back; Blender calls this as well."""
@@ -114,7 +108,7 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
 
         show(None)
         if context.window is not None:  # else Blender is closing it, or opens another file
-            _redraw(context)
+            redraw_footage(context)
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)
 
@@ -146,12 +140,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
                 )
             return {"FINISHED"}
         return {"CANCELLED"}
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for area in context.screen.areas:
-        if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
-            area.tag_redraw()
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

@@ -8,13 +8,14 @@ import bpy
 from .add_marker import append_marker, free_name, next_segment
 from .check_markers import show_frame
 from .running.failures import reported
+from .running.footage_clicks import NAVIGATION, footage_is_shown
 from .running.job_operator import JobOperator
+from .running.redraw import redraw_footage
 from .running.requirements import all_met, footage, idle
 from .running.say import label, say
 from .scene.marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .scene.marker_styles import marker_styles, set_marker_color
 from .scene.takes import active_take, footage_of, take_called
-from .show_masks import redraw_footage
 from .ui.properties.marker import segment_title
 
 if TYPE_CHECKING:
@@ -22,23 +23,10 @@ if TYPE_CHECKING:
     from ..core.footage.marker_style import MarkerStyle
     from ..core.progress import Job
 
-NAVIGATION = {
-    *(
-        "MIDDLEMOUSE",
-        "WHEELUPMOUSE",
-        "WHEELDOWNMOUSE",
-        "TRACKPADPAN",
-        "TRACKPADZOOM",
-        "MOUSEPAN",
-        "MOUSEZOOM",
-    ),
-    *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
-}
 REQUESTS = {
     ".L": "Click on the marker: {segment}, the performer's own left",
     ".R": "Click on the marker: {segment}, the performer's own right",
 }
-NOT_SHOWN = "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor"
 MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 
@@ -92,15 +80,8 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on the footage."""
-        from .ui.footage_view import shows_footage
-
         take = active_take(context.scene)
-        shown = None
-        with reported(self):
-            shown = shows_footage(context, take)
-        if not shown:
-            if shown is not None:  # else it has been said why
-                say(self, "ERROR", NOT_SHOWN)
+        if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
         segment = self._segment(take)
         if segment is None:

@@ -3,6 +3,7 @@
 import bpy
 
 from .running.failures import reported
+from .running.redraw import redraw_footage
 from .running.requirements import a_color, all_met, footage, idle, markers
 from .scene.marker_previews import look_at_frame, preview_of
 from .scene.takes import active_take
@@ -46,14 +47,6 @@ def _look_for_markers() -> None:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
     except RuntimeError as error:
         raise InputError(str(error).removeprefix("Error: ").strip()) from error
-
-
-def redraw_footage(context: bpy.types.Context) -> None:
-    """Have every editor that may show footage drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
-                area.tag_redraw()
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_masks,))

@@ -1,20 +1,38 @@
-"""Having the sidebars drawn again."""
+"""Having editors, or their sidebars, drawn again."""
+
+from collections.abc import Iterator
 
 import bpy
 from bpy.app import timers
 
+FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
 SETTLING_S = 0.1
 """After which everything has been drawn once."""
 
 
+def areas(context: bpy.types.Context, *kinds: str) -> Iterator[bpy.types.Area]:
+    """Every area of these kinds, in all windows."""
+    for window in context.window_manager.windows:
+        yield from (area for area in window.screen.areas if area.type in kinds)
+
+
+def redraw_editors(context: bpy.types.Context, *kinds: str) -> None:
+    """Have every editor of these kinds drawn again."""
+    for area in areas(context, *kinds):
+        area.tag_redraw()
+
+
+def redraw_footage(context: bpy.types.Context) -> None:
+    """Have every editor that may show footage drawn again."""
+    redraw_editors(context, *FOOTAGE_EDITORS)
+
+
 def redraw_sidebars(context: bpy.types.Context) -> None:
     """Have every sidebar that shows a job's progress drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "CLIP_EDITOR"}:
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
+    for area in areas(context, *FOOTAGE_EDITORS):
+        for region in area.regions:
+            if region.type == "UI":
+                region.tag_redraw()
 
 
 def redraw_sidebars_soon() -> None:

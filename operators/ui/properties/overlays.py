@@ -4,16 +4,12 @@ import bpy
 
 from ....core.body.human import HUMAN
 from ..overlays import registry
+from .marker import segment_title
 
 
 def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     registry.try_again()
     registry.redraw(context)
-
-
-def _title(point: str) -> str:
-    part, _, side = point.partition(".")
-    return part.title() + {"L": " Left", "R": " Right", "": ""}[side]
 
 
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
@@ -52,7 +48,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     path_points: bpy.props.EnumProperty(
         name="Points",
         description="Points whose way is drawn; Shift-click to choose several",
-        items=[(name, _title(name), "", 1 << place) for place, name in enumerate(HUMAN.point_names)],
+        items=[(name, segment_title(name), "", 1 << place) for place, name in enumerate(HUMAN.point_names)],
         options={"ENUM_FLAG"},
         default={"wrist.L", "wrist.R"},
         update=_changed,

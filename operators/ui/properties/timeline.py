@@ -2,12 +2,11 @@
 
 import bpy
 
+from ...running.redraw import redraw_editors
+
 
 def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "DOPESHEET_EDITOR":
-                area.tag_redraw()
+    redraw_editors(context, "DOPESHEET_EDITOR")
 
 
 class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
