@@ -1,26 +1,24 @@
 """`keyframes.json`: posed frames, given by thirteen points or by the values of the degrees of freedom."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body.kinematics import Body
 from .body.posture import Posture
+from .body.posture_fields import FARTHEST_M, posture_to_json, read_posture, rounded
 from .body.posture_fit import fit_posture
 from .errors import InputError
 from .files.fields import Fields, listed
 from .files.json_file import read_json, shown, write_json
-from .prior.keyframes import Keyframe
+from .prior.keyframes import Keyframe, Matched
 
 Array = NDArray[np.float64]
 
-FARTHEST_M = 1000.0
-LARGEST_ANGLE_RAD = 4.0 * np.pi
-DECIMALS = 6
-"""Micrometres and microradians: far below any measurement, and files stay short."""
+NAMES_LONGEST = 200
 
 
 def read_keyframes(path: Path, body: Body, frame_start: int, frame_count: int | None) -> tuple[Keyframe, ...]:
@@ -28,7 +26,7 @@ def read_keyframes(path: Path, body: Body, frame_start: int, frame_count: int | 
 
     A keyframe holds `frame` and `posture` (every degree of freedom by name, metres and radians), or `frame`
     and `points` (thirteen points [m], world axes), to which a posture of the actor is fitted. With both, the
-    posture counts.
+    posture counts. One that nobody posed says in `matched` which library it comes from.
 
     Args:
         path: The file.
@@ -64,25 +62,15 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
     rows = []
     for keyframe in keyframes:
         points = body.points(body.pose(keyframe.posture))
-        rows.append(
-            {
-                "frame": keyframe.index + frame_start,
-                "posture": posture_to_json(keyframe.posture),
-                "points": dict(zip(body.skeleton.point_names, rounded(points), strict=True)),
-            }
-        )
+        row = {
+            "frame": keyframe.index + frame_start,
+            "posture": posture_to_json(keyframe.posture),
+            "points": dict(zip(body.skeleton.point_names, rounded(points), strict=True)),
+        }
+        if keyframe.matched is not None:
+            row["matched"] = asdict(keyframe.matched)
+        rows.append(row)
     write_json(path, {"keyframes": rows}, indent=1)
-
-
-def posture_to_json(posture: Posture) -> dict[str, Any]:
-    """A posture, or a batch along the first axis, by name of degree of freedom [m, rad]."""
-    vector = posture.to_vector()  # (..., D)
-    return dict(zip(posture.skeleton.dof_names, rounded(np.moveaxis(vector, -1, 0)), strict=True))
-
-
-def rounded(values: Array) -> Any:
-    """Nested lists of numbers, rounded to six decimals, with no negative zero."""
-    return (np.round(values, DECIMALS) + 0.0).tolist()
 
 
 def _index(row: Fields, frame_start: int, frame_count: int | None) -> int:
@@ -114,7 +102,7 @@ def _keyframes(posed: Sequence[Fields], indices: Sequence[int], body: Body) -> l
     for place, row in enumerate(posed):
         if row.has("posture"):
             valid = f"an object with {listed(body.skeleton.dof_names, 3)}"
-            postures[place] = _posture(row.child("posture", valid), body)
+            postures[place] = read_posture(row.child("posture", valid), body.skeleton)
         elif not row.has("points"):
             raise InputError(f"{row.where} has neither points nor posture; it must have one of them")
         if row.has("points"):
@@ -128,8 +116,26 @@ def _keyframes(posed: Sequence[Fields], indices: Sequence[int], body: Body) -> l
     keyframes = []
     for place, index in enumerate(indices):
         error = np.linalg.norm(body.points(body.pose(postures[place])) - points[place], axis=-1)
-        keyframes.append(Keyframe(index, postures[place], float(np.nan_to_num(error.mean()))))
+        residual_m = float(np.nan_to_num(error.mean()))
+        keyframes.append(Keyframe(index, postures[place], residual_m, _matched(posed[place])))
     return keyframes
+
+
+def _matched(row: Fields) -> Matched | None:
+    if not row.has("matched"):
+        return None
+    fields = row.child("matched", "an object with library, posture, mirrored and confidence")
+    mirrored = fields.required("mirrored", "true or false")
+    if not isinstance(mirrored, bool):
+        raise InputError(f"{fields.where}: mirrored is {shown(mirrored)}; it must be true or false")
+    names = []
+    for name in ("library", "posture"):
+        valid = f"a name of at most {NAMES_LONGEST} letters"
+        text = fields.text(name, valid)
+        if len(text) > NAMES_LONGEST:
+            raise InputError(f"{fields.where}: {name} is {shown(text)}; it must be {valid}")
+        names.append(text)
+    return Matched(names[0], names[1], mirrored, fields.number("confidence", 0.0, 1.0))
 
 
 def _points(fields: Fields, names: Sequence[str]) -> Array:
@@ -142,22 +148,3 @@ def _points(fields: Fields, names: Sequence[str]) -> Array:
             f"{fields.where} all lie in one place; they must be the 13 joints of a person, in metres"
         )
     return places
-
-
-def _posture(fields: Fields, body: Body) -> Posture:
-    skeleton = body.skeleton
-    unknown = [name for name in fields.values if name not in skeleton.dof_names]
-    if unknown:
-        names = listed(skeleton.dof_names)
-        raise InputError(
-            f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are {names}"
-        )
-    vector = [fields.number(name, -limit, limit) for name, limit in _dof_bounds(body).items()]
-    return Posture.from_vector(skeleton, np.asarray(vector))
-
-
-def _dof_bounds(body: Body) -> Mapping[str, float]:
-    """Largest size of each degree of freedom: metres for places, radians for angles."""
-    return {
-        name: FARTHEST_M if ".location_" in name else LARGEST_ANGLE_RAD for name in body.skeleton.dof_names
-    }

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from .body.actor import Actor
 from .body.kinematics import Body
 from .body.posture import Posture
+from .body.posture_fields import posture_to_json, rounded
 from .errors import ConversionError, InputError
 from .files.fields import Fields
 from .files.json_file import read_json, shown, write_json
-from .keyframe_file import posture_to_json, rounded
 from .motion import Motion
 
 Array = NDArray[np.float64]

@@ -22,8 +22,9 @@ from _boot import load_package  # noqa: E402
 
 load_package()
 
+from keymark.core.body.posture_fields import rounded  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
-from keymark.core.keyframe_file import rounded, write_keyframes  # noqa: E402
+from keymark.core.keyframe_file import write_keyframes  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.take import Take, write_take  # noqa: E402
 from studio.catalogue import TAKES  # noqa: E402

@@ -20,6 +20,7 @@ HEIGHTS = {
     "core.body": 2,
     "core.footage": 2,
     "core.observation": 3,
+    "core.library": 3,
     "core.prior": 4,
     "core.estimate": 5,
     "core.take": 6,

@@ -1,0 +1,52 @@
+"""Postures in files: values by name of degree of freedom, in metres and radians."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..files.fields import Fields, listed
+from ..files.json_file import shown
+from .posture import Posture
+from .skeleton import Skeleton
+
+Array = NDArray[np.float64]
+
+FARTHEST_M = 1000.0
+LARGEST_ANGLE_RAD = 4.0 * np.pi
+DECIMALS = 6
+"""Micrometres and microradians: far below any measurement, and files stay short."""
+
+
+def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
+    """A posture, or a batch along the first axis, by name of degree of freedom [m, rad]."""
+    vector = posture.to_vector()  # (..., D)
+    return dict(zip(posture.skeleton.dof_names, rounded(np.moveaxis(vector, -1, 0), decimals), strict=True))
+
+
+def rounded(values: Array, decimals: int = DECIMALS) -> Any:
+    """Nested lists of numbers, rounded, with no negative zero."""
+    return (np.round(values, decimals) + 0.0).tolist()
+
+
+def read_posture(fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHEST_M) -> Posture:
+    """The single posture that `posture_to_json` wrote.
+
+    Raises:
+        InputError: A degree of freedom is missing, unknown or out of range.
+    """
+    unknown = [name for name in fields.values if name not in skeleton.dof_names]
+    if unknown:
+        names = listed(skeleton.dof_names)
+        raise InputError(
+            f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are {names}"
+        )
+    vector = [fields.number(name, -limit, limit) for name, limit in _bounds(skeleton, farthest_m).items()]
+    return Posture.from_vector(skeleton, np.asarray(vector))
+
+
+def _bounds(skeleton: Skeleton, farthest_m: float) -> Mapping[str, float]:
+    """Largest size of each degree of freedom: metres for places, radians for angles."""
+    return {name: farthest_m if ".location_" in name else LARGEST_ANGLE_RAD for name in skeleton.dof_names}
