@@ -40,6 +40,8 @@ class Sight:
     """(V, 3, 3 M + 2) the hips' place in the world [m], with all markers trusted, then with each doubted."""
     left: Array
     """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
+    weight: Array
+    """(M,) of each marker's middle, one over its standard deviation [1/m]; 0 where it is not seen."""
     information: Array
     """(3, 3) of the hips' place [1/m²]."""
     backward: Array
@@ -126,6 +128,7 @@ def _sight(
     return Sight(
         place,
         left,
+        weight,
         by_place.T @ by_place + np.eye(3) / FAR_M**2,
         back,
         location,
