@@ -138,7 +138,7 @@ class Walk:
 
     @cached_property
     def _hips(self) -> Array:
-        """(T, 3) the hips' midpoint x, y [m] and heading [degrees]: between the feet as they bear the body."""
+        """(T, 3) the hips' midpoint x, y [m] and heading [degrees]: between the feet as they bear it."""
         weights, places = [], []
         for fall in self.footfalls:
             sign = 1.0 if fall.side == "L" else -1.0

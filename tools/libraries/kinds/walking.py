@@ -42,9 +42,8 @@ USUAL = Style()
 WALK = (1.42, 1.08, USUAL)
 GAITS = {
     "walk": (*WALK, PHASES),
-    "slow walk": (1.06, 1.28, Style(elbow=12.0), FEWER_PHASES),
-    "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), FEWER_PHASES),
-    "walk with quiet arms": (1.26, 1.12, Style(arms=0.15, elbow=9.0, aside=5.0), FEWER_PHASES),
+    "slow walk": (1.06, 1.28, Style(arms=0.4, elbow=12.0), FEWER_PHASES),
+    "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), PHASES),
 }
 """Stride [m], its time [s], how, and where in the cycle there is a posture."""
 FIRST_STEP_M = 0.5
@@ -56,7 +55,7 @@ def library() -> Library:
     made = Composer(
         "walking",
         "Walking",
-        "Walking straight ahead, slowly, as usual, briskly and with quiet arms; setting out and coming to rest.",
+        "Walking straight ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest.",
         SOURCES,
         ("walking", "gait"),
     )
@@ -91,6 +90,7 @@ def _set_out(made: Composer) -> None:
         "set out: standing": -1.2,
         "set out: left leg swings": -0.26,
         "set out: left foot lands": 0.0,
+        "set out: right leg swings": 0.28,
     }
     steps = [(made.pose(name, walk.at(time_s)), time_s + 1.2) for name, time_s in moments.items()]
     made.motion("set out", [*steps, ("walk: right heel strike", strikes["R"] + 1.2)])
@@ -99,7 +99,7 @@ def _set_out(made: Composer) -> None:
 def _come_to_rest(made: Composer) -> None:
     """From the walk's left heel strike, whose place it begins at, to standing."""
     stride_m, stride_s, style = WALK
-    aside, toes, stands_s = style.apart_m, style.toes_out, STANCE * stride_s
+    aside, toes = style.apart_m, style.toes_out
     left_m = LEADS * stride_m
     stand_m = left_m + FIRST_STEP_M
     right_s, left_s = 0.56 * stride_s, 1.12 * stride_s
@@ -114,7 +114,8 @@ def _come_to_rest(made: Composer) -> None:
         "come to rest: right leg swings": 0.26,
         "come to rest: right foot lands": right_s,
         "come to rest: left leg follows": 0.5 * (right_s + left_s) + 0.1,
-        "come to rest: standing": left_s + 0.15,
+        "come to rest: feet together": left_s + 0.05,
+        "come to rest: standing": left_s + 0.7,
     }
     steps = [(made.pose(name, walk.at(time_s)), time_s) for name, time_s in moments.items()]
     made.motion("come to rest", [("walk: left heel strike", 0.0), *steps])
