@@ -55,7 +55,7 @@ def library() -> Library:
     made = Composer(
         "walking",
         "Walking",
-        "Walking straight ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest.",
+        "Walking ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest.",
         SOURCES,
         ("walking", "gait"),
     )
