@@ -83,7 +83,7 @@ def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path
     assert file_bytes(back, tmp_path) == first
     assert set(bpy.data.user_map()) == before and mine.name == "Midstance"
     with bpy.data.libraries.load(str(folder / "gait-1.blend")) as (found, _):
-        kinds = {kind: list(getattr(found, kind)) for kind in dir(found)}
+        kinds = {kind: list(getattr(found, kind)) for kind in dir(found) if kind != "version"}
     assert [kind for kind, names in kinds.items() if names] == ["actions"]
     lines = (folder / "blender_assets.cats.txt").read_text().splitlines()
     paths = [line.split(":")[1] for line in lines if line.count(":") == 2 and not line.startswith("#")]
@@ -107,7 +107,7 @@ def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
     flexion = HUMAN.dof_names.index("elbow.L.flexion")
     change = posture.posture.minus(stored)
     assert change[flexion] == pytest.approx(0.25, abs=ANGLE)
-    pronation = HUMAN.dof_names.index("elbow.L.rotation_y")
+    pronation = HUMAN.dof_names.index("forearm.L.pronation")
     others = [i for i in range(HUMAN.dof_count) if i not in (flexion, pronation)]
     assert (change[others] == 0.0).all()
     (back,) = library_from_assets(actions)
