@@ -16,8 +16,8 @@ from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from ...core.files.json_file import parse_json
 from ...core.library.library import Library, LibraryPosture
-from ...core.library.library_file import library_from_json, library_to_json
 from ...core.library.library_fields import LONGEST_TAG
+from ...core.library.library_file import library_from_json, library_to_json
 from ...core.library.texts import LONGEST_NAME, text_fault, told_apart
 from ...core.report.posture_picture import posture_picture
 from .asset_catalogs import catalog_identifier
@@ -57,8 +57,18 @@ def add_asset(
     return action
 
 
-def show_asset(action: bpy.types.Action, library: Library, posture: LibraryPosture, order: int) -> None:
-    """Let an Action say which posture of which library it is: to people, and to `library_from_assets`."""
+def show_asset(
+    action: bpy.types.Action, library: Library, posture: LibraryPosture, order: int, *, draw: bool = True
+) -> None:
+    """Let an Action say which posture of which library it is: to people, and to `library_from_assets`.
+
+    Args:
+        action: The Action; its curves stay.
+        library: The library, or one that says the same of itself.
+        posture: What the Action's curves show, under its name.
+        order: Its place among the library's postures.
+        draw: Whether its picture is drawn too.
+    """
     details = AssetDetails(
         catalog=catalog_identifier(catalog_of(library, posture)),
         tags=posture.tags,
@@ -66,7 +76,7 @@ def show_asset(action: bpy.types.Action, library: Library, posture: LibraryPostu
         license=library.license,
         description=library.description,
     )
-    mark_action(action, details, posture_picture(Body(library.actor), posture.posture))
+    mark_action(action, details, posture_picture(Body(library.actor), posture.posture) if draw else None)
     alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
     asset = {"name": action.name, "tags": _asset_tags(action)}
     action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})

@@ -1,4 +1,4 @@
-"""Keyframe libraries as .blend files of pose assets, with their catalogs: written, and read from strangers."""
+"""Keyframe libraries as .blend files of pose assets with their catalogs: written, and read from strangers."""
 
 import shutil
 from collections.abc import Iterator, Sequence
@@ -75,7 +75,8 @@ def _check(path: Path) -> None:
         with path.open("rb") as file:
             beginning = file.read(8)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error}); it must be a .blend") from error
+        reason = error.strerror or error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be a .blend") from error
     if size > LARGEST_BYTES:
         raise InputError(
             f"{path}: has {size / 2**20:.0f} MiB; a .blend of a library has at most {LARGEST_BYTES >> 20} MiB"

@@ -18,7 +18,7 @@ from .bone_channels import channels_at_rest
 from .bones import BoneModel, bone_models, rest_matrices, usual_mode
 from .fcurves import bone_path
 from .joint_frames import posture_from_frames
-from .keys import ensure_fcurve, set_posed_keys
+from .keys import set_posed_keys
 from .object_space import ObjectSpace
 from .rig import rig_at_rest
 from .rotation_modes import rotation_path, rotation_values
@@ -78,7 +78,8 @@ def read_posture_curves(
         modes[model.name] = mode
         values[model.name] = column
         before = known[model.name]
-        if len(column) != len(before) or (np.abs(column - before) > SAME * np.maximum(1.0, np.abs(before))).any():
+        slack = SAME * np.maximum(1.0, np.abs(before))
+        if len(column) != len(before) or (np.abs(column - before) > slack).any():
             changed.append(model.name)
     if not found:
         return None

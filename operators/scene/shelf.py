@@ -1,4 +1,4 @@
-"""The libraries at hand: those that come with Keymark, and the user's own. Looked up without touching the disk.
+"""The libraries at hand: those that come with Keymark, and the user's own.
 
 The disk is read when Blender has started, and by operators that change what lies there; drawing only sees
 what was found then.
@@ -84,8 +84,6 @@ def fill(choose: str = "") -> None:
     Args:
         choose: Identifier of the library that the list shall point to; by default the same as before.
     """
-    from ...core.errors import InputError
-    from ...core.library.library_file import read_library
     from ...core.library.shelf import shelved
 
     manager = bpy.context.window_manager
@@ -96,10 +94,9 @@ def fill(choose: str = "") -> None:
     for found in shelved(folders()):
         item = shelf.libraries.add()
         item.name, item.title, item.problem = found.identifier, found.title, found.problem
-        item.version, item.is_own = found.version, found.path.parent == own
-        with suppress(InputError):  # it may have gone meanwhile; what is wrong with it stands in `problem`
-            if not found.problem:
-                _describe(item, read_library(found.path))
+        item.version, item.is_own, item.path = found.version, found.path.parent == own, str(found.path)
+        if found.library is not None:
+            _describe(item, found.library)
     names = [item.name for item in shelf.libraries]
     shelf.active = names.index(wanted) if wanted in names else 0
 

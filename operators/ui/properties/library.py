@@ -36,20 +36,18 @@ def _exact() -> "bpy.types.AnyType":
 def _details_changed(group: Group, context: bpy.types.Context) -> None:
     """Let the pose assets say what the library says now."""
     from ....core.errors import InputError
-    from ...scene.libraries import library_of_group, stamp_headers
+    from ...scene.libraries import details_changed
 
     with suppress(InputError, ModuleNotFoundError):  # half typed; whatever writes a library checks it
-        library = library_of_group(group)
-        if library is not None:
-            stamp_headers(library)
+        details_changed(group)
 
 
 def _posture_changed(posture: Group, context: bpy.types.Context) -> None:
     from ....core.errors import InputError
-    from ...scene.libraries import posture_renamed
+    from ...scene.libraries import posture_changed
 
     with suppress(InputError, ModuleNotFoundError):
-        posture_renamed(posture)
+        posture_changed(posture)
 
 
 class KEYMARK_PG_library_line(Group):
@@ -75,6 +73,9 @@ class KEYMARK_PG_library_posture(Group):
         name="Tags",
         description="Words to find the posture by, with commas between them",
         update=_posture_changed,
+    )
+    exact_tags: bpy.props.StringProperty(
+        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
     )
     action: bpy.props.PointerProperty(
         name="Pose Asset", description="The Action that holds the posture", type=bpy.types.Action
@@ -112,7 +113,7 @@ class KEYMARK_PG_library_motion(Group):
     duration_exact: _exact()
     duration_s: bpy.props.FloatProperty(
         name="Duration",
-        description="Seconds that the whole motion takes; of a cyclic one until the first posture comes again",
+        description="Seconds that the motion takes; of a cyclic one until the first posture comes again",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -186,6 +187,9 @@ class KEYMARK_PG_library(Group):
         name="Tags",
         description="Words to find the library by, with commas between them",
         update=_details_changed,
+    )
+    exact_tags: bpy.props.StringProperty(
+        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
     )
     sources: bpy.props.CollectionProperty(type=KEYMARK_PG_library_line)
     actor: bpy.props.StringProperty(

@@ -18,6 +18,7 @@ class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     license: bpy.props.StringProperty(name="License")
     description: bpy.props.StringProperty(name="Description")
     motions: bpy.props.IntProperty(name="Motions")
+    path: bpy.props.StringProperty(name="File")
     is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
     problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
     postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
