@@ -13,6 +13,7 @@ MODULES = (
     "ui.properties.clip_state",
     "ui.properties.review",
     "ui.properties.finish",
+    "ui.properties.match",
     "ui.properties.take",
     "ui.properties.timeline",
     "ui.properties.progress",
