@@ -72,6 +72,12 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
     return None
 
 
+def matches(context: bpy.types.Context) -> str | None:
+    """There are frames that a library gave postures."""
+    take = find_take(context.scene)
+    return None if take and len(take.matching.matches) else "Match a library first"
+
+
 def motion(context: bpy.types.Context) -> str | None:
     """There is a reconstructed motion."""
     take = find_take(context.scene)

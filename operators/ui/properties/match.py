@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from ....core.body.posture import Posture
     from ....core.prior.keyframes import Matched
 
+AUTOMATIC = "auto"
+"""Stands for all libraries, as on the command line."""
 PLACE_VALUES = 6
 """Degrees of freedom that say where the hips are and how they are turned; Blender's vectors are short."""
 DOUBTFUL = 0.5
@@ -19,6 +21,32 @@ FLOORS = (
     ("AUTO", "Find from Footage", "How high the floor is follows from the performer's size in the footage"),
     ("HEIGHT", "Known Height", "The floor that the performer stands on is this high in the scene"),
 )
+
+
+Entry = tuple[str, str, str, str, int]
+_entries: list[Entry] = []
+"""What the menu of libraries shows; Blender needs the words as long as it shows them."""
+
+
+def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
+    """The choice by itself, all libraries on the shelf, and the one that was chosen even if it is not there any more."""
+    from ...scene.shelf import library_items
+
+    rows = [item[:4] for item in library_items(matching, context)]
+    name = matching.library_name
+    if all(name != row[0] for row in rows):
+        rows.append((name, name, "This library is not there any more; import it again", "ERROR"))
+    _entries[:] = [(*row, number) for number, row in enumerate(rows)]
+    return _entries
+
+
+def _library_number(matching: bpy.types.PropertyGroup) -> int:
+    names = [entry[0] for entry in _libraries(matching, None)]
+    return names.index(matching.library_name)
+
+
+def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
+    matching.library_name = _libraries(matching, None)[number][0]
 
 
 def _chosen(matching: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -125,6 +153,19 @@ class KEYMARK_PG_library_chance(bpy.types.PropertyGroup):
 class KEYMARK_PG_matching(bpy.types.PropertyGroup):
     """What a take's footage is matched with, and what was found."""
 
+    library_name: bpy.props.StringProperty(
+        name="Library",
+        description="What the library is known by that is looked for; menus number theirs, which may change",
+        default=AUTOMATIC,
+        options={"HIDDEN"},
+    )
+    library: bpy.props.EnumProperty(
+        name="Library",
+        description="What the footage is matched with",
+        items=_libraries,
+        get=_library_number,
+        set=_set_library,
+    )
     floor: bpy.props.EnumProperty(
         name="Floor", description="What is known of the floor, which settles the distance", items=FLOORS
     )
