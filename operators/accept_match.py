@@ -11,7 +11,7 @@ from .scene.takes import active_take
 
 
 class KEYMARK_OT_accept_match(bpy.types.Operator):
-    """Count the chosen match as posed by you: it is believed as exactly, and matching again leaves it alone"""
+    """Count the chosen match as posed by you: it is believed as much, and matching again leaves it alone"""
 
     bl_idname = "keymark.accept_match"
     bl_label = "Accept"

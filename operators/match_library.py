@@ -42,9 +42,7 @@ class Outcome:
 
 
 class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
-    """Find which postures of a library the footage shows, and key the actor with them; \
-what you have posed stays
-    """
+    """Find the postures of a library in the footage, and key the actor with them; what you posed stays"""
 
     bl_idname = "keymark.match_library"
     bl_label = "Match"
@@ -109,17 +107,16 @@ what you have posed stays
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Key what was found beside what is posed; what earlier matching gave goes."""
         take = take_called(scene, result.take)
-        keep_reading(take, result.reading)
         keep_choice(take, result.choice, result.keyframes, result.frames)
+        keep_reading(take, result.reading)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
-        reason = result.choice.reason
-        self.report(
-            {"INFO" if result.choice.match is not None else "WARNING"}, reason[:1].upper() + reason[1:]
-        )
-        matches = take.matching.matches
-        if result.choice.match is not None:
+        matches, reason = take.matching.matches, take.matching.reason
+        if result.choice.match is None:
+            self.report({"WARNING"}, reason)
+        else:
+            self.report({"INFO"}, reason)
             say(
                 self,
                 "INFO",

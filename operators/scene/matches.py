@@ -100,7 +100,7 @@ def keep_choice(
         remove_keyframes(actor, take.keyframe_action, HUMAN, earlier)
     matching, found = take.matching, choice.match
     clear_choice(matching)
-    matching.reason = choice.reason
+    matching.reason = choice.reason[:1].upper() + choice.reason[1:]
     for library, probability in choice.ranking:
         chance = matching.ranking.add()
         chance.name, chance.probability = library.title, probability

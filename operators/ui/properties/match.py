@@ -29,7 +29,7 @@ _entries: list[Entry] = []
 
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
-    """The choice by itself, all libraries on the shelf, and the one that was chosen even if it is not there any more."""
+    """The choice by itself, all libraries on the shelf, and the chosen one though it be gone from there."""
     from ...scene.shelf import library_items
 
     rows = [item[:4] for item in library_items(matching, context)]
