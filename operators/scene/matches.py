@@ -1,6 +1,7 @@
 """A take's matches: what is known of the keyframes that a library gave, kept with the take."""
 
 from collections.abc import Mapping, Sequence
+from math import pi
 from typing import TYPE_CHECKING
 
 import bpy
@@ -61,6 +62,17 @@ def add_candidate(
     candidate = match.candidates.add()
     candidate.name, candidate.mirrored, candidate.confidence = name, mirrored, confidence
     candidate.take_posture(posture)
+    apart = _heading(posture) - _heading(match.candidates[0].posture)
+    candidate.turned = (apart + pi) % (2.0 * pi) - pi
+
+
+def _heading(posture: "Posture") -> float:
+    """Where the hips face, about the vertical [rad]."""
+    import numpy as np
+
+    from ...core.body.standing import facing_rad
+
+    return facing_rad(posture.rotations[0] @ np.array([0.0, -1.0, 0.0]))
 
 
 def clear_choice(matching: bpy.types.PropertyGroup) -> None:

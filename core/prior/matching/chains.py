@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from ...body.kinematics import Body
 from ...body.mirror import mirrored
 from ...body.posture import Posture
-from ...body.rotations import exponential
 from ...library.applying import applied
 from ...library.library import Library, LibraryMotion
 from ...library.motion_course import course

@@ -104,9 +104,7 @@ def match_library(sought: Sought, library: Library, floor_m: float | None) -> Pa
         alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
-    return LibraryMatch(
-        library, frames, _fit(path), floor, course, evidence, int(len(sampled))
-    )
+    return LibraryMatch(library, frames, _fit(path), floor, course, evidence, int(len(sampled)))
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:

@@ -105,9 +105,7 @@ class Step:
     moves: list[tuple[Road, Single]]
 
 
-def step(
-    roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single
-) -> Step:
+def step(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single) -> Step:
     """The moves between two frames.
 
     Args:

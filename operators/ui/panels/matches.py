@@ -1,5 +1,7 @@
 """Keyframes from a library: what to match, how sure it is, and choosing among what a frame may show."""
 
+from math import degrees
+
 import bpy
 
 from ...running.say import label
@@ -11,6 +13,7 @@ from .base import TakePanel, draw_progress, draw_sentence
 CLEAR = 0.6
 """Probability of a kind of motion above which nothing needs to be thought over."""
 FRAME_UNITS, PERCENT_UNITS = 2.0, 2.4
+NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
 
@@ -121,19 +124,36 @@ def _draw_candidates(layout: bpy.types.UILayout, matching: bpy.types.PropertyGro
         return
     match = matching.matches[matching.active_match]
     box = layout.column(align=True)
-    box.label(text=label("Frame {frame:g} May Show", frame=match.frame), translate=False)
+    box.label(text=label("Frame {frame:g} may show", frame=match.frame), translate=False)
     for place, candidate in enumerate(match.candidates):
-        button = box.operator(
+        row = box.row(align=True)
+        button = row.operator(
             "keymark.replace_match",
-            text=f"{candidate.name}, {percent(candidate.confidence)}",
+            text=_said_of(candidate),
             translate=False,
             icon="MOD_MIRROR" if candidate.mirrored else "ARMATURE_DATA",
             depress=place == match.chosen,
         )
         button.candidate = place
+        said = row.row()
+        said.ui_units_x = PERCENT_UNITS
+        said.alignment = "RIGHT"
+        said.label(text=percent(candidate.confidence), translate=False)
     row = layout.row(align=True)
     row.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
+
+
+def _said_of(candidate: bpy.types.PropertyGroup) -> str:
+    """A candidate's name; the turn first, as several often differ by that alone and a sidebar is narrow."""
+    angle = degrees(candidate.turned)
+    if abs(angle) < NOTICEABLE_TURN_DEG:
+        return str(candidate.name)
+    if abs(angle) > 180.0 - NOTICEABLE_TURN_DEG:
+        return label("Turned round: {posture}", posture=candidate.name)
+    if angle > 0.0:
+        return label("{angle:.0f}° left: {posture}", angle=angle, posture=candidate.name)
+    return label("{angle:.0f}° right: {posture}", angle=-angle, posture=candidate.name)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches, KEYMARK_PT_matches))

@@ -72,6 +72,11 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
     place: bpy.props.FloatVectorProperty(
         name="Place", description="Where the hips are and how they are turned", size=PLACE_VALUES
     )
+    turned: bpy.props.FloatProperty(
+        name="Turned",
+        description="How far the performer faces to their left of what matching chose, seen from above",
+        subtype="ANGLE",
+    )
     turns: bpy.props.FloatVectorProperty(
         name="Turns", description="How the joints are turned", size=HUMAN.dof_count - PLACE_VALUES
     )
