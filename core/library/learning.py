@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 FEWEST, MOST = 10, 40
 """Postures of a library, where nobody says how many."""
-DISTINCT_M = 0.07
+DISTINCT_M = 0.06
 """Further postures are taken until every frame is this near to one of them in shape."""
 TIME_SHARE = 0.5
 """How much even coverage in time counts beside distance in shape."""
