@@ -12,7 +12,7 @@ from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .shapes import headings_rad, moved, shapes, sole_heights, turned_about_z
+from .shapes import headings_rad, moved, shapes, ankle_heights, turned_about_z
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ TIME_SHARE = 0.5
 STILL_M = 0.01
 """A motion that never leaves its first shape this far has one posture only."""
 SLOW_M_S = 0.15
-"""The lower sole rests on the floor while it rises and sinks slower than this."""
+"""The lower foot rests on the floor while its ankle rises and sinks slower than this."""
 LIFTED_M = 0.08
 """A foot this far above the other is lifted."""
 DECIMALS_S = 3
@@ -123,8 +123,8 @@ def identifier_of(title: str) -> str:
 
 
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
-    """The motion over a floor at height 0: where its lower foot rests most of the time."""
-    lower = sole_heights(body, posture).min(axis=-1)
+    """The motion over a floor at height 0: where its lower foot usually rests."""
+    lower = ankle_heights(body, posture).min(axis=-1)
     slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
     return moved(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
@@ -203,7 +203,7 @@ def _names(title: str, count: int) -> list[str]:
 
 def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
     """For each posture which foot is lifted, if one is."""
-    left, right = np.moveaxis(sole_heights(body, posture), -1, 0)
+    left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
     words = np.select(
         [left - right > LIFTED_M, right - left > LIFTED_M], ["left foot up", "right foot up"], ""
     )

@@ -1,4 +1,4 @@
-"""What two postures have in common whatever place and heading they have: shape, heading and soles."""
+"""What two postures have in common whatever place and heading they have: shape, heading and the height of the ankles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,10 +55,11 @@ def shapes(body: Body, posture: Posture) -> Array:
     return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
 
 
-def sole_heights(body: Body, posture: Posture) -> Array:
-    """Heights (F, 2) of the left and the right sole [m].
+def ankle_heights(body: Body, posture: Posture) -> Array:
+    """How far (F, 2) the left and the right ankle lie above where those of feet flat on z = 0 lie [m].
 
-    They are told by the ankles: the skeleton's feet, rigid with the shins, point into the floor in a stride.
+    That tells where the floor is, as soles do not: the skeleton's feet, rigid with the shins, point into the
+    floor at the end of a step.
     """
     points = body.points(body.pose(posture))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]

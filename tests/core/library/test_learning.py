@@ -10,7 +10,7 @@ from keymark.core.body.standing import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, between, find_period_s
 from keymark.core.library.learning import About, identifier_of, learn_library
-from keymark.core.library.shapes import headings_rad, moved, shapes, sole_heights
+from keymark.core.library.shapes import headings_rad, moved, shapes, ankle_heights
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ def test_a_walk_becomes_one_cycle_that_travels_straight_ahead() -> None:
     assert 10 <= len(library.postures) <= 40 and len(motion.steps) == len(library.postures)
     kept = Posture.stack([posture.posture for posture in library.postures])
     assert np.abs(headings_rad(kept)).max() < 1e-3
-    assert abs(np.median(sole_heights(BODY, kept).min(axis=1))) < 0.03
+    assert abs(np.median(ankle_heights(BODY, kept).min(axis=1))) < 0.03
     assert np.allclose(kept.translation[0, :2], 0.0)
 
 
