@@ -12,7 +12,7 @@ from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .shapes import headings_rad, moved, shapes, ankle_heights, turned_about_z
+from .shapes import ankle_heights, headings_rad, moved, shapes, turned_about_z
 
 Array = NDArray[np.float64]
 

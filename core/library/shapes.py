@@ -1,4 +1,4 @@
-"""What two postures have in common whatever place and heading they have: shape, heading and the height of the ankles."""
+"""Postures as they are compared: their shape, whatever place and heading they have, and these."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -10,7 +10,7 @@ from keymark.core.body.standing import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, between, find_period_s
 from keymark.core.library.learning import About, identifier_of, learn_library
-from keymark.core.library.shapes import headings_rad, moved, shapes, ankle_heights
+from keymark.core.library.shapes import ankle_heights, headings_rad, moved, shapes
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
