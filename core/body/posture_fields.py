@@ -21,8 +21,16 @@ DECIMALS = 6
 
 
 def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
-    """A posture, or a batch along the first axis, by name of degree of freedom [m, rad]."""
+    """A posture, or a batch along the first axis, by name of degree of freedom [m, rad].
+
+    What `read_posture` reads gives the same numbers again.
+    """
     vector = posture.to_vector()  # (..., D)
+    # Rounded up past π, half a turn would come back as half a turn the other way.
+    turns = vector[..., posture.skeleton.ball_dofs]  # (..., B, 3)
+    size = np.linalg.norm(turns, axis=-1, keepdims=True)
+    longest = np.pi - 2.0 * 10.0**-decimals
+    vector[..., posture.skeleton.ball_dofs] = turns * np.minimum(1.0, longest / np.maximum(size, 1.0))
     return dict(zip(posture.skeleton.dof_names, rounded(np.moveaxis(vector, -1, 0), decimals), strict=True))
 
 
@@ -31,8 +39,16 @@ def rounded(values: Array, decimals: int = DECIMALS) -> Any:
     return (np.round(values, decimals) + 0.0).tolist()
 
 
-def read_posture(fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHEST_M) -> Posture:
+def read_posture(
+    fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHEST_M, *, zeros_left_out: bool = False
+) -> Posture:
     """The single posture that `posture_to_json` wrote.
+
+    Args:
+        fields: The values by name of degree of freedom.
+        skeleton: Whose degrees of freedom these are.
+        farthest_m: Largest distance from the origin along an axis [m].
+        zeros_left_out: Whether a degree of freedom that is not there is zero.
 
     Raises:
         InputError: A degree of freedom is missing, unknown or out of range.
@@ -43,7 +59,10 @@ def read_posture(fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHES
         raise InputError(
             f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are {names}"
         )
-    vector = [fields.number(name, -limit, limit) for name, limit in _bounds(skeleton, farthest_m).items()]
+    vector = [
+        0.0 if zeros_left_out and name not in fields.values else fields.number(name, -limit, limit)
+        for name, limit in _bounds(skeleton, farthest_m).items()
+    ]
     return Posture.from_vector(skeleton, np.asarray(vector))
 
 

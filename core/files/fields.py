@@ -1,8 +1,9 @@
 """Reading the fields of a JSON object: each mistake becomes one sentence with file, field and value."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import islice
 from math import isfinite
 from typing import Any
 
@@ -43,9 +44,23 @@ class Fields:
         """The value of a field that must be there; `valid` says what it must be."""
         if self.has(name):
             return self.values[name]
-        close = get_close_matches(name, [key for key in self.values if isinstance(key, str)], n=1, cutoff=0.6)
+        close = get_close_matches(name, self._first_names(), n=1, cutoff=0.6)
         hint = f" (is {shown(close[0])} meant to be it?)" if close else ""
         raise InputError(f"{self.where}: {name} is missing{hint}; it must be {valid}")
+
+    def refuse_others(self, known: Collection[str]) -> None:
+        """Refuse fields that are not known: what they mean would be lost."""
+        unknown = [name for name in self.values if name not in known]
+        if unknown:
+            close = get_close_matches(str(unknown[0])[:100], known, n=1, cutoff=0.6)
+            hint = f" (is {shown(close[0])} meant?)" if close else ""
+            raise InputError(
+                f"{self.where} has the unknown field {shown(unknown[0])}{hint}; known are {listed(known)}"
+            )
+
+    def _first_names(self) -> list[str]:
+        """Enough of the names to find a mistyped one among; comparing thousands takes long."""
+        return [name for name in islice(self.values, 100) if isinstance(name, str)]
 
     def child(self, name: str, valid: str) -> "Fields":
         """The object in a field."""

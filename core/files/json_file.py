@@ -16,22 +16,23 @@ MOST_DIGITS = 15
 """Whole numbers of more digits have no exact float64."""
 
 
-def read_json(path: Path) -> dict[str, Any]:
+def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
     """Read a JSON object.
 
     Args:
         path: The file, UTF-8, with or without a byte order mark.
+        largest_bytes: A larger file is not read.
 
     Returns:
         The object's fields; every number in it is finite.
 
     Raises:
-        InputError: The file is missing, larger than 64 MiB, not UTF-8, no JSON object, names a field
+        InputError: The file is missing, too large, not UTF-8, no JSON object, names a field
             twice or holds a number that is not finite.
     """
     try:
         value = json.loads(
-            _read_text(path),
+            _read_text(path, largest_bytes),
             object_pairs_hook=_object,
             parse_constant=_refuse_constant,
             parse_float=_float,
@@ -88,16 +89,19 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 def shown(value: Any, longest: int = 60) -> str:
     """A value as people can read it in a sentence: one line, cut where it is long."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except RecursionError:
+        text = f"a {type(value).__name__} that is nested too deeply to be shown"
     return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
-def _read_text(path: Path) -> str:
+def _read_text(path: Path, largest_bytes: int) -> str:
     valid = "it must be a JSON file in UTF-8"
     try:
-        if path.stat().st_size > LARGEST_BYTES:
+        if path.stat().st_size > largest_bytes:
             size = path.stat().st_size / 2**20
-            raise InputError(f"{path}: has {size:.0f} MiB; at most {LARGEST_BYTES // 2**20} MiB are read")
+            raise InputError(f"{path}: has {size:.1f} MiB; at most {largest_bytes / 2**20:g} MiB are read")
         return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(f"{path}: no such file; {valid}") from error

@@ -1,0 +1,75 @@
+"""Left and right exchanged, about the plane x = 0 of the world."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .actor import Actor
+from .posture import Posture
+from .skeleton import Skeleton
+
+Array = NDArray[np.float64]
+
+MIRROR = np.array([-1.0, 1.0, 1.0])
+"""What the plane makes of each coordinate."""
+OTHER_SIDE = {".L": ".R", ".R": ".L"}
+
+
+def other_side(name: str) -> str:
+    """The name of what lies opposite: `knee.L` for `knee.R`; what lies in the middle is its own opposite."""
+    return name[:-2] + OTHER_SIDE.get(name[-2:], name[-2:])
+
+
+def mirrored(posture: Posture) -> Posture:
+    """A posture, or a batch of them, as a mirror at x = 0 shows it.
+
+    Exact: only signs and places change, so that mirroring twice gives the very same numbers.
+
+    Raises:
+        ValueError: The skeleton has a joint whose opposite is missing or bends about another axis.
+    """
+    balls, hinges, signs = _opposites(posture.skeleton)
+    turned = posture.rotations[..., balls, :, :] * np.outer(MIRROR, MIRROR)
+    return Posture(
+        posture.skeleton, posture.translation * MIRROR, turned, posture.angles[..., hinges] * signs
+    )
+
+
+def mirrored_actor(actor: Actor) -> Actor:
+    """An actor with the lengths of the left side on the right and the other way round."""
+    return Actor({name: actor.segments_m[other_side(name)] for name in actor.segments_m})
+
+
+@dataclass(frozen=True)
+class _Opposites:
+    balls: tuple[int, ...]
+    hinges: tuple[int, ...]
+    signs: tuple[float, ...]
+
+
+@lru_cache(maxsize=8)
+def _pairs(skeleton: Skeleton) -> _Opposites:
+    index = {joint.name: i for i, joint in enumerate(skeleton.joints)}
+    missing = [joint.name for joint in skeleton.joints if other_side(joint.name) not in index]
+    if missing:
+        raise ValueError(f"the skeleton's joint {missing[0]} has no opposite {other_side(missing[0])}")
+    opposite = [index[other_side(joint.name)] for joint in skeleton.joints]
+    signs = []
+    for joint in skeleton.hinge_joints:
+        # M Exp(q a) M = Exp(-q M a): a rotation's axis is a pseudovector.
+        along = float(-MIRROR * skeleton.joints[opposite[joint]].axis @ np.array(skeleton.joints[joint].axis))
+        if abs(abs(along) - 1.0) > 1e-9:
+            raise ValueError(f"the skeleton's joint {skeleton.joints[joint].name} has no mirrored axis")
+        signs.append(float(np.sign(along)))
+    return _Opposites(
+        tuple(skeleton.ball_joints.index(opposite[joint]) for joint in skeleton.ball_joints),
+        tuple(skeleton.hinge_joints.index(opposite[joint]) for joint in skeleton.hinge_joints),
+        tuple(signs),
+    )
+
+
+def _opposites(skeleton: Skeleton) -> tuple[list[int], list[int], Array]:
+    pairs = _pairs(skeleton)
+    return list(pairs.balls), list(pairs.hinges), np.array(pairs.signs)

@@ -1,0 +1,109 @@
+"""Library files: one JSON object, readable by people, and never trusted.
+
+`docs/library_format.md` describes the fields. Whatever is written can be read, and then gives the same bytes.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..body.human import HUMAN
+from ..body.posture_fields import posture_to_json
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.json_file import read_json, shown
+from ..files.json_layout import write_readable_json
+from .library import Library, LibraryMotion, LibraryPosture
+from .library_fields import read_library_fields
+
+SCHEMA = "keymark-library"
+SCHEMA_VERSION = 1
+LARGEST_BYTES = 4 * 2**20
+DECIMALS = 9
+"""Nanometres and nanoradians: Blender's single precision survives."""
+
+
+def read_library(path: Path) -> Library:
+    """Read a library file.
+
+    Raises:
+        InputError: The file is missing or no library, or something in it is not what it must be.
+    """
+    return library_from_json(read_json(path, LARGEST_BYTES), str(path))
+
+
+def write_library(path: Path, library: Library) -> None:
+    """Write a library file, whole or not at all.
+
+    Raises:
+        InputError: The library is none that could be read back.
+        ConversionError: The file cannot be written.
+    """
+    value = library_to_json(library)
+    library_from_json(value, f"library {shown(library.identifier)}")
+    write_readable_json(path, value)
+
+
+def library_from_json(value: Any, where: str) -> Library:
+    """The library that `library_to_json` wrote, or that a stranger pretends to have written.
+
+    Raises:
+        InputError: Something is not what it must be; `where` begins the sentence.
+    """
+    fields = Fields.of(value, where)
+    schema = fields.values.get("schema")
+    if schema != SCHEMA:
+        raise InputError(f'{where}: schema is {shown(schema)}; a keyframe library has "{SCHEMA}" there')
+    version = fields.whole("schema_version", 1, 10**6)
+    if version > SCHEMA_VERSION:
+        raise InputError(
+            f"{where}: schema_version is {version}, made by a newer Keymark; "
+            f"this one reads libraries up to version {SCHEMA_VERSION}"
+        )
+    return read_library_fields(fields, HUMAN)
+
+
+def library_to_json(library: Library) -> dict[str, Any]:
+    """A library as what `json` can write, its fields in the order of the file; what is empty is left out."""
+    value: dict[str, Any] = {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "identifier": library.identifier,
+        "title": library.title,
+        "version": library.version,
+        "author": library.author,
+        "license": library.license,
+        "description": library.description,
+        "tags": list(library.tags),
+        "sources": list(library.sources),
+        "actor": {"segments_m": {name: _number(m) for name, m in library.actor.segments_m.items()}},
+        "motions": [_motion(motion) for motion in library.motions],
+        "postures": [_posture(posture) for posture in library.postures],
+    }
+    return _without_empty(value, ("description", "tags", "sources", "motions"))
+
+
+def _motion(motion: LibraryMotion) -> dict[str, Any]:
+    value: dict[str, Any] = {
+        "name": motion.name,
+        "cyclic": motion.cyclic,
+        "duration_s": _number(motion.duration_s),
+    }
+    if any(motion.travel):
+        value["travel"] = dict(zip(("x_m", "y_m", "heading_rad"), map(_number, motion.travel), strict=True))
+    value["steps"] = [{"time_s": _number(step.time_s), "posture": step.posture} for step in motion.steps]
+    return value
+
+
+def _posture(posture: LibraryPosture) -> dict[str, Any]:
+    values = posture_to_json(posture.posture, DECIMALS)
+    moved = {name: number for name, number in values.items() if number != 0.0}
+    return _without_empty({"name": posture.name, "tags": list(posture.tags), "posture": moved}, ("tags",))
+
+
+def _number(value: float) -> float:
+    return round(float(value), DECIMALS) + 0.0  # no negative zero
+
+
+def _without_empty(value: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:
+    return {name: item for name, item in value.items() if item or name not in names}

@@ -1,0 +1,85 @@
+"""Names and texts of a library: what may stand in them, wherever they come from."""
+
+import re
+import unicodedata
+from collections.abc import Iterable
+
+from ..errors import InputError
+from ..files.json_file import shown
+
+LONGEST_IDENTIFIER = 64
+LONGEST_NAME = 60
+"""Characters; the name of a Blender data-block holds 63 bytes."""
+IDENTIFIER_RULE = (
+    f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
+    "and the last of them a letter or digit, and no name that Windows keeps for devices"
+)
+_IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
+_DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
+_JOINERS = "\u200c\u200d"
+"""Zero-width, but letters of several scripts need them between them."""
+
+
+def is_identifier(text: object) -> bool:
+    """Whether a text may be a library's identifier, and with `.json` the name of a file on every system."""
+    return (
+        isinstance(text, str)
+        and len(text) <= LONGEST_IDENTIFIER
+        and _IDENTIFIER.fullmatch(text) is not None
+        and _DEVICES.fullmatch(text) is None
+    )
+
+
+def checked_identifier(text: object, what: str) -> str:
+    """A text that may be an identifier.
+
+    Raises:
+        InputError: It may not; `what` names it.
+    """
+    if not isinstance(text, str) or not is_identifier(text):
+        raise InputError(f"{what} is {shown(text)}; it must have {IDENTIFIER_RULE}")
+    return text
+
+
+def identifier_from(title: str, taken: Iterable[str] = ()) -> str:
+    """An identifier that resembles a title and is none of those taken."""
+    plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode().lower()
+    words = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[: LONGEST_IDENTIFIER - 4].strip("_") or "library"
+    used = set(taken)
+    candidates = (words if number == 1 else f"{words}_{number}" for number in range(1, len(used) + 10))
+    return next(candidate for candidate in candidates if is_identifier(candidate) and candidate not in used)
+
+
+def text_fault(text: object, longest: int) -> str:
+    """What is wrong with a line of text, to follow `it`; empty where nothing is."""
+    if not isinstance(text, str):
+        return "must be a text"
+    if len(text) > longest:
+        return f"must be a text of at most {longest} characters"
+    if not text.strip() or text != text.strip():
+        return "must be a text that neither is empty nor begins or ends with a space"
+    if any(_is_hidden(letter) for letter in text):
+        return "must be one line of text without control characters"
+    return ""
+
+
+def name_key(name: str) -> str:
+    """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
+    folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
+    return " ".join("".join(letter for letter in folded if not _is_hidden(letter, "")).split())
+
+
+def told_apart(name: str, taken: Iterable[str]) -> str:
+    """The name, or with a number behind it where one that looks the same is taken."""
+    keys = {name_key(other) for other in taken}
+    if name_key(name) not in keys:
+        return name
+    numbered = (
+        f"{name[: LONGEST_NAME - len(f' {number}')].rstrip()} {number}" for number in range(2, len(keys) + 3)
+    )
+    return next(candidate for candidate in numbered if name_key(candidate) not in keys)
+
+
+def _is_hidden(letter: str, allowed: str = _JOINERS) -> bool:
+    """Control, formatting (also what turns the direction of writing), halves of characters, line breaks."""
+    return letter not in allowed and unicodedata.category(letter) in ("Cc", "Cf", "Cs", "Zl", "Zp")
