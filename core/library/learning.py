@@ -1,7 +1,5 @@
 """A library from a finished motion: its postures at spread-out, distinct frames, as libraries keep them."""
 
-import re
-import unicodedata
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +11,7 @@ from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .shapes import ankle_heights, headings_rad, moved, shapes, turned_about_z
+from .texts import LONGEST_NAME, identifier_from
 
 Array = NDArray[np.float64]
 
@@ -37,8 +36,8 @@ class About:
 
     title: str
     author: str
-    license: str
-    """SPDX expression."""
+    license: str = "LicenseRef-Proprietary"
+    """SPDX expression; by default nobody is given leave for anything."""
     identifier: str = ""
     """By default made of the title."""
     version: int = 1
@@ -99,7 +98,7 @@ def learn_library(
         travel=_turned_travel(travel, turn, shift),
     )
     return Library(
-        identifier=about.identifier or identifier_of(about.title),
+        identifier=about.identifier or identifier_from(about.title),
         title=about.title,
         version=about.version,
         author=about.author,
@@ -114,12 +113,6 @@ def learn_library(
         sources=about.sources,
         tags=about.tags,
     )
-
-
-def identifier_of(title: str) -> str:
-    """An identifier made of a title: `Anna's Stroll` becomes `anna_s_stroll`."""
-    plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode().lower()
-    return re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[:64] or "library"
 
 
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
@@ -198,7 +191,8 @@ def _turned_travel(
 
 def _names(title: str, count: int) -> list[str]:
     digits = len(str(count))
-    return [f"{title} {number:0{digits}}" for number in range(1, count + 1)]
+    stem = title[: LONGEST_NAME - 1 - digits].rstrip()
+    return [f"{stem} {number:0{digits}}" for number in range(1, count + 1)]
 
 
 def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:

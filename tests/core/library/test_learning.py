@@ -1,5 +1,7 @@
 """Libraries learned from motions: which postures, where they stand, and what repeats itself."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
@@ -9,7 +11,8 @@ from keymark.core.body.skeleton import SIDES
 from keymark.core.body.standing import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, between, find_period_s
-from keymark.core.library.learning import About, identifier_of, learn_library
+from keymark.core.library.learning import About, learn_library
+from keymark.core.library.library_file import read_library, write_library
 from keymark.core.library.shapes import ankle_heights, headings_rad, moved, shapes
 from numpy.typing import NDArray
 
@@ -134,10 +137,17 @@ def test_what_cannot_be_learned_from_is_refused(frames: int, count: int | None, 
         learn_library(BODY, still, np.arange(frames) / FPS, ABOUT, count)
 
 
-@pytest.mark.parametrize(
-    ("title", "identifier"),
-    [("Anna's Stroll", "anna_s_stroll"), ("Größe 2", "groe_2"), ("../../etc", "etc"), ("散歩", "library")],
-)
-def test_identifiers_are_made_of_titles(title: str, identifier: str) -> None:
-    """Lower-case letters, digits and underscores, whatever the title holds."""
-    assert identifier_of(title) == identifier
+def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
+    """With a title as long as titles may be; identifier and names follow from it."""
+    posture, time_s = reaching()
+    about = About("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")
+    library = learn_library(BODY, posture, time_s, about)
+    write_library(tmp_path / "it.json", library)
+    read = read_library(tmp_path / "it.json")
+    assert (
+        read.identifier == library.identifier == "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
+    )
+    assert read.motions == library.motions and read.license == "LicenseRef-Proprietary"
+    assert [posture.name for posture in read.postures] == [step.posture for step in read.motions[0].steps]
+    for written, its in zip(library.postures, read.postures, strict=True):
+        assert np.abs(written.posture.minus(its.posture)).max() < 1e-8
