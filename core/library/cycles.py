@@ -5,10 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..body import rotations
+from ..body.course import straight_course
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .library import Travel
-from .shapes import headings_rad, moved, shapes, turned_about_z
+from .shapes import UP, headings_rad, moved, shapes
 
 Array = NDArray[np.float64]
 
@@ -91,7 +93,7 @@ def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) 
     turn, step = _cycle_step(posture, time_s, period_s)
     seen = []
     for cycle in range(cycles):
-        there = between(posture, time_s, begin_s + cycle * period_s + phase_s)
+        there = straight_course(posture, time_s, begin_s + cycle * period_s + phase_s)
         for _ in range(cycle):  # back to where the first cycle was
             there = moved(moved(there, 0.0, -step), -turn, np.zeros(3))
         seen.append(there)
@@ -100,14 +102,6 @@ def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) 
     gap = again.minus(mean[count:])[0]  # (D,) what the end misses
     closed = mean.plus((phase_s / period_s)[:, None] * gap)
     return Cycle(closed[:count], phase_s[:count], period_s, (float(step[0]), float(step[1]), turn))
-
-
-def between(posture: Posture, time_s: Array, wanted_s: Array) -> Posture:
-    """The postures at times within a motion, on the straight way from frame to frame."""
-    right = np.clip(np.searchsorted(time_s, wanted_s, side="right"), 1, len(time_s) - 1)
-    left = right - 1
-    share = np.clip((wanted_s - time_s[left]) / (time_s[right] - time_s[left]), 0.0, 1.0)
-    return posture[left].plus(share[:, None] * posture[right].minus(posture[left]))
 
 
 def _whole_cycles(shape: Array, time_s: Array, period_s: float) -> tuple[float, int]:
@@ -124,10 +118,10 @@ def _whole_cycles(shape: Array, time_s: Array, period_s: float) -> tuple[float, 
 def _cycle_step(posture: Posture, time_s: Array, period_s: float) -> tuple[float, Array]:
     """The turn about the vertical [rad] and then the shift (3,) [m] that lead from a cycle to the next."""
     now = time_s <= time_s[-1] - period_s
-    later = between(posture, time_s, time_s[now] + period_s)
+    later = straight_course(posture, time_s, time_s[now] + period_s)
     turned = headings_rad(later) - headings_rad(posture[now])
     turn = float(np.arctan2(np.sin(turned).mean(), np.cos(turned).mean()))
-    step = (later.translation - posture[now].translation @ turned_about_z(np.array(turn)).T).mean(axis=0)
+    step = (later.translation - posture[now].translation @ rotations.hinge(UP, np.array(turn)).T).mean(axis=0)
     return turn, np.asarray(step * [1.0, 1.0, 0.0])
 
 

@@ -10,6 +10,7 @@ from ..body.skeleton import SIDES
 
 Array = NDArray[np.float64]
 
+UP = np.array([0.0, 0.0, 1.0])
 ANKLE_OVER_SOLE = 0.36
 """Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
 
@@ -23,11 +24,6 @@ def headings_rad(posture: Posture) -> Array:
     return np.where(level > np.sqrt(0.5), ahead, across)
 
 
-def turned_about_z(angle_rad: Array) -> Array:
-    """Rotations (..., 3, 3) about the vertical."""
-    return rotations.exponential(np.asarray(angle_rad)[..., None] * np.array([0.0, 0.0, 1.0]))
-
-
 def moved(posture: Posture, angle_rad: Array, shift: Array) -> Posture:
     """Postures turned about the world's vertical axis, then shifted.
 
@@ -36,7 +32,7 @@ def moved(posture: Posture, angle_rad: Array, shift: Array) -> Posture:
         angle_rad: (F,) or one angle.
         shift: (F, 3) or (3,) [m].
     """
-    turn = turned_about_z(angle_rad)
+    turn = rotations.hinge(UP, np.asarray(angle_rad))
     place = (turn @ posture.translation[..., None])[..., 0] + shift
     matrices = np.array(posture.rotations)
     matrices[..., 0, :, :] = turn @ matrices[..., 0, :, :]
@@ -50,7 +46,7 @@ def shapes(body: Body, posture: Posture) -> Array:
     """
     points = body.points(body.pose(posture))
     ground = posture.translation * [1.0, 1.0, 0.0]
-    turn = turned_about_z(-headings_rad(posture))
+    turn = rotations.hinge(UP, -headings_rad(posture))
     seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
     return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
 

@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.course import straight_course
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.skeleton import SIDES
 from keymark.core.body.standing import standing_posture
 from keymark.core.errors import InputError
-from keymark.core.library.cycles import average_cycle, between, find_period_s
+from keymark.core.library.cycles import average_cycle, find_period_s
 from keymark.core.library.learning import About, learn_library
 from keymark.core.library.library_file import read_library, write_library
 from keymark.core.library.shapes import ankle_heights, headings_rad, moved, shapes
@@ -101,7 +102,7 @@ def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
     errors = []
     for seen in (cycle.posture, shaken[: len(cycle.time_s)]):
         wanted = shapes(BODY, seen)
-        truth = [shapes(BODY, between(exact, time_s, lag + cycle.time_s)) for lag in lags]
+        truth = [shapes(BODY, straight_course(exact, time_s, lag + cycle.time_s)) for lag in lags]
         errors.append(min(np.linalg.norm(wanted - there, axis=1).mean() for there in truth))
     assert errors[0] < 0.7 * errors[1]
 
@@ -140,13 +141,12 @@ def test_what_cannot_be_learned_from_is_refused(frames: int, count: int | None, 
 def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
     """With a title as long as titles may be; identifier and names follow from it."""
     posture, time_s = reaching()
+    identifier = "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
     about = About("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")
     library = learn_library(BODY, posture, time_s, about)
     write_library(tmp_path / "it.json", library)
     read = read_library(tmp_path / "it.json")
-    assert (
-        read.identifier == library.identifier == "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
-    )
+    assert read.identifier == library.identifier == identifier
     assert read.motions == library.motions and read.license == "LicenseRef-Proprietary"
     assert [posture.name for posture in read.postures] == [step.posture for step in read.motions[0].steps]
     for written, its in zip(library.postures, read.postures, strict=True):
