@@ -79,7 +79,7 @@ def convert(
     """
     console.stage("Reading the take")
     take, libraries = _inputs(folder, output, keyframes, library)
-    _require_blender()
+    require_blender("writing motion.blend needs")
     with output_folder(output, BELONGINGS) as place:
         solved = run(solve(take, libraries, method, floor_m), console.progress)
         take, result = solved.take, solved.reconstruction
@@ -120,12 +120,16 @@ def _left_aside(folder: Path, keyframes: Path | None) -> tuple[str, ...]:
     return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
 
 
-def _require_blender() -> None:
-    """Say so at once, not after minutes of work, where the .blend cannot be written."""
+def require_blender(what: str) -> None:
+    """Say so at once, not after minutes of work, where a .blend cannot be written or read.
+
+    Raises:
+        ConversionError: There is no Blender; the sentence begins with `what`.
+    """
     if importlib.util.find_spec("bpy") is None:
         raise ConversionError(
-            "writing motion.blend needs Blender: install its Python module (pip install 'keymark[blender]') "
-            "or run blender --command keymark convert in a Blender that has Keymark"
+            f"{what} Blender: install its Python module (pip install 'keymark[blender]') "
+            "or run blender --command keymark in a Blender that has Keymark"
         )
 
 

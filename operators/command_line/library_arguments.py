@@ -114,6 +114,7 @@ def _add_makers(inner: "Commands[LineParser]") -> None:
         _read,
     )
     read.add_argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote")
+    read.add_argument("--identifier", metavar="NAME", help="which library, where the .blend holds several")
     for maker in (merge, mirror, learn, read):
         maker.add_argument(
             "--output", "-o", metavar="FILE", type=Path, required=True, help="the new library file"

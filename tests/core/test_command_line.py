@@ -57,7 +57,7 @@ def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
         for name in (conversion.BLEND, conversion.BVH):
             (place / name).touch()
 
-    monkeypatch.setattr(conversion, "_require_blender", lambda: None)
+    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
     monkeypatch.setattr(conversion, "_write_scene", write)
 
 
