@@ -59,6 +59,8 @@ class Hand:
     """Turns the elbow from hanging below the line to the hand outward [degrees]."""
     pronation: float = 15.0
     girdle: float = 0.0
+    short: float = 0.0
+    """How far the wrist may stay short of the place where the arm is too short for it [m]."""
 
 
 @dataclass(frozen=True)
