@@ -70,15 +70,7 @@ def _side_steps(work: Composer) -> None:
     behind = Foot(-HIP_WIDE.x, 0.0, turn=-8.0)
     names = ["standing"]
     for name, left, right, centre, arms, bend, lean in (
-        (
-            "side step: leaving",
-            Foot(here.x + 0.20, -0.02, 8.0, 18.0, 0.06),
-            behind,
-            0.03,
-            _raised(46, 12, 24),
-            18,
-            -2,
-        ),
+        ("side step: leaving", Foot(here.x + 0.20, -0.02, 8.0, 18.0, 0.06), behind, 0.03, _raised(46, 12, 24), 18, -2),
         ("side step: apart", there, Foot(-HIP_WIDE.x, 0.0, -8.0, 6.0), 0.26, _raised(90, 6, 12), 16, 0),
         ("side step: closing", there, Foot(0.14, -0.01, -8.0, 20.0, 0.05), 0.45, _raised(44, 30, 48), 16, 2),
     ):
@@ -232,15 +224,9 @@ def _jumping_jacks(work: Composer) -> None:
         ("crouched", moment(legs=Foot(0.09, 0.0, 8.0), arms=HANGING, bend=38, **trunk)),
         ("leaving", moment(legs=Foot(0.09, 0.0, 8.0, 38.0), arms=_raised(38, 12, 24), bend=14, **trunk)),
         ("opening", moment(legs=flying, arms=_raised(92, 12, 26), lift=0.05, **trunk)),
-        (
-            "landing apart",
-            moment(legs=Foot(apart, 0.0, 12.0, 22.0), arms=_raised(142, 14, 22), bend=24, **trunk),
-        ),
+        ("landing apart", moment(legs=Foot(apart, 0.0, 12.0, 22.0), arms=_raised(142, 14, 22), bend=24, **trunk)),
         ("apart", moment(legs=Foot(apart, 0.0, 12.0), arms=_raised(166, 22, 22), bend=36, **trunk)),
-        (
-            "leaving apart",
-            moment(legs=Foot(apart, 0.0, 12.0, 34.0), arms=_raised(142, 14, 30), bend=14, **trunk),
-        ),
+        ("leaving apart", moment(legs=Foot(apart, 0.0, 12.0, 34.0), arms=_raised(142, 14, 30), bend=14, **trunk)),
         ("closing", moment(legs=flying, arms=_raised(76, 12, 40), lift=0.04, **trunk)),
     ):
         ahead = -0.08 if "leaving" in name else -0.05

@@ -90,9 +90,7 @@ def _boxing(
     )
 
 
-def _fist(
-    x: float, ahead: float, height: float, swivel: float, pronation: float, girdle: float = 10.0
-) -> Hand:
+def _fist(x: float, ahead: float, height: float, swivel: float, pronation: float, girdle: float = 10.0) -> Hand:
     """A wrist at a place or as near as it gets."""
     return Hand(x, -ahead, height, swivel, pronation, girdle, short=0.3)
 
@@ -118,11 +116,7 @@ def _straight_punches(work: Composer) -> None:
         (
             "cross: halfway",
             _boxing(
-                right=_fist(-0.06, 0.44, 1.40, 30, 40, 6),
-                turn=16,
-                chest=8,
-                forward=0.03,
-                feet=_rear_pivot(18, 26),
+                right=_fist(-0.06, 0.44, 1.40, 30, 40, 6), turn=16, chest=8, forward=0.03, feet=_rear_pivot(18, 26)
             ),
         ),
         (
@@ -144,9 +138,7 @@ def _straight_punches(work: Composer) -> None:
         work.pose(name, posed, "straight")
     _from_guard(work, "jab", (("jab: halfway", 0.14), ("jab", 0.26), ("jab: halfway", 0.42), ("guard", 0.62)))
     _from_guard(work, "jab to the body", (("jab to the body", 0.34), ("guard", 0.80)))
-    _from_guard(
-        work, "cross", (("cross: halfway", 0.17), ("cross", 0.32), ("cross: halfway", 0.52), ("guard", 0.78))
-    )
+    _from_guard(work, "cross", (("cross: halfway", 0.17), ("cross", 0.32), ("cross: halfway", 0.52), ("guard", 0.78)))
     _from_guard(
         work,
         "jab and cross",
@@ -180,22 +172,10 @@ def _bent_punches(work: Composer) -> None:
         ),
         (
             "rear uppercut",
-            _boxing(
-                right=rising,
-                turn=34,
-                chest=18,
-                bow=-6,
-                lean=4,
-                bend=14,
-                forward=0.04,
-                feet=_rear_pivot(40, 40),
-            ),
+            _boxing(right=rising, turn=34, chest=18, bow=-6, lean=4, bend=14, forward=0.04, feet=_rear_pivot(40, 40)),
         ),
         ("lead uppercut: loaded", _boxing(loaded, turn=12, chest=14, bow=10, lean=14, bend=44, aside=0.03)),
-        (
-            "lead uppercut",
-            _boxing(rising, turn=-16, chest=-14, bow=-6, lean=-4, bend=14, feet=_lead_pivot(-20, 14)),
-        ),
+        ("lead uppercut", _boxing(rising, turn=-16, chest=-14, bow=-6, lean=-4, bend=14, feet=_lead_pivot(-20, 14))),
     ):
         work.pose(name, posed, "hook" if "hook" in name else "uppercut")
     for name, first in (

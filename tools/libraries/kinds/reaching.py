@@ -159,15 +159,10 @@ def _aside(work: Composer) -> None:
         ("across", _reaching(_at(0.26, 0.42, 1.24, 60, 6), bow=3, waist=4, turn=38, head=(0, 10))),
         (
             "low across",
-            _reaching(
-                _at(0.36, 0.30, 0.66, 40, 2), bow=16, waist=22, lean=8, turn=34, bend=18, head=(14, 10)
-            ),
+            _reaching(_at(0.36, 0.30, 0.66, 40, 2), bow=16, waist=22, lean=8, turn=34, bend=18, head=(14, 10)),
         ),
         ("side: half", _reaching(Arm(46, 24, 10, 56), turn=-6, head=(0, -20))),
-        (
-            "side",
-            _reaching(Arm(86, 8, 6, 10, 10, 8), lean=-5, turn=-16, head=(2, -34), over=(-0.02, AT_EASE_M)),
-        ),
+        ("side", _reaching(Arm(86, 8, 6, 10, 10, 8), lean=-5, turn=-16, head=(2, -34), over=(-0.02, AT_EASE_M))),
         (
             "down beside",
             _reaching(
@@ -194,41 +189,22 @@ def _to_the_floor(work: Composer) -> None:
     balancing = Arm(72, 76, 10, 26)
     for name, posed in (
         ("floor: bowing", _reaching(Arm(30, 80, 14, 26), HANGING, bow=18, waist=14, bend=26, head=(4, 0))),
-        (
-            "floor: low",
-            _reaching(Arm(54, 84, 10, 16), Arm(48, 76, 10, 22), bow=36, waist=28, bend=60, head=(-6, 0)),
-        ),
+        ("floor: low", _reaching(Arm(54, 84, 10, 16), Arm(48, 76, 10, 22), bow=36, waist=28, bend=60, head=(-6, 0))),
         (
             "floor",
             _reaching(
-                _at(-0.10, 0.42, 0.20),
-                balancing,
-                bow=48,
-                waist=38,
-                turn=12,
-                bend=88,
-                head=(-12, 0),
-                over=(0, -0.08),
+                _at(-0.10, 0.42, 0.20), balancing, bow=48, waist=38, turn=12, bend=88, head=(-12, 0), over=(0, -0.08)
             ),
         ),
         (
             "floor, to the right",
             _reaching(
-                _at(-0.42, 0.20, 0.20),
-                balancing,
-                bow=44,
-                waist=36,
-                lean=-10,
-                turn=-26,
-                bend=88,
-                head=(-4, -10),
+                _at(-0.42, 0.20, 0.20), balancing, bow=44, waist=36, lean=-10, turn=-26, bend=88, head=(-4, -10)
             ),
         ),
         (
             "floor, to the left",
-            _reaching(
-                _at(0.28, 0.34, 0.20), balancing, bow=46, waist=40, lean=4, turn=34, bend=84, head=(-4, 10)
-            ),
+            _reaching(_at(0.28, 0.34, 0.20), balancing, bow=46, waist=40, lean=4, turn=34, bend=84, head=(-4, 10)),
         ),
     ):
         work.pose(name, posed, "one hand", "floor")

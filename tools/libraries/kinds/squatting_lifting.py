@@ -49,9 +49,7 @@ def library() -> Library:
     return work.library()
 
 
-def _bent(
-    bend: float, pelvis: float, waist: float, arms: AnyArm, feet: Foot = FEET, heels: float = 0.0
-) -> Moment:
+def _bent(bend: float, pelvis: float, waist: float, arms: AnyArm, feet: Foot = FEET, heels: float = 0.0) -> Moment:
     """Knees bent, the trunk bowed in two parts; the head looks ahead as far as it can."""
     return balanced(
         moment(
@@ -113,10 +111,7 @@ def _stoop_lifts(work: Composer) -> None:
     down = [("standing", 0.0), ("stoop: quarter", 0.45), ("stoop: half", 0.8), ("stoop: grasping", 1.3)]
     up = [("stoop: grasping", 1.6), ("stoop: half", 2.0), ("stoop: quarter", 2.3), ("box at the waist", 2.8)]
     work.motion("stoop lift", [*down, *up])
-    work.motion(
-        "touching the floor with straight knees",
-        [*down, *((name, t) for name, t in up[:3]), ("standing", 2.8)],
-    )
+    work.motion("touching the floor with straight knees", [*down, *((name, t) for name, t in up[:3]), ("standing", 2.8)])
     work.motion(
         "free lift",
         [
@@ -159,10 +154,7 @@ def _squat_lifts(work: Composer) -> None:
             ("box at the waist", 2.8),
         ],
     )
-    for name, top, seconds in (
-        ("to a shelf", "box on a shelf", 0.5),
-        ("to a high shelf", "box on a high shelf", 0.75),
-    ):
+    for name, top, seconds in (("to a shelf", "box on a shelf", 0.5), ("to a high shelf", "box on a high shelf", 0.75)):
         steps = [("box at the waist", 0.0), ("box at the chest", 0.5), (top, 0.5 + seconds)]
         steps += [("letting go of a box", 1.1 + seconds), ("standing", 1.7 + seconds)]
         work.motion(name, steps)
@@ -192,10 +184,7 @@ def _turns_with_a_box(work: Composer) -> None:
     for name, posed in (
         ("turn with a box: first foot", holding(lifted, stays, 18, 14, -0.12, -0.03)),
         ("turn with a box: between", holding(there, pivoting, 44, 12, 0.03, 0.05)),
-        (
-            "turn with a box: second foot",
-            holding(there, Foot(0.0, -0.07, 46.0, 18.0, 0.06), 64, 8, 0.15, 0.12),
-        ),
+        ("turn with a box: second foot", holding(there, Foot(0.0, -0.07, 46.0, 18.0, 0.06), 64, 8, 0.15, 0.12)),
         ("turn with a box: turned", holding(there, Foot(0.12, -0.14, 72.0), 80, 0, 0.17, 0.0)),
     ):
         work.pose(name, posed, "turn", "box")
@@ -203,10 +192,7 @@ def _turns_with_a_box(work: Composer) -> None:
     times = (0.35, 0.65, 1.0, 1.4)
     work.motion(
         "turn with a box",
-        [
-            ("box at the waist", 0.0),
-            *((f"turn with a box: {name}", t) for name, t in zip(names, times, strict=True)),
-        ],
+        [("box at the waist", 0.0), *((f"turn with a box: {name}", t) for name, t in zip(names, times, strict=True))],
     )
 
 
@@ -245,11 +231,9 @@ def _lunges(work: Composer) -> None:
         ("kneeling to pick up", lunging(0.48, 60, -0.46, 34, Hand(0.15, -0.82, 0.36, 25, short=0.2))),
     ):
         work.pose(name, posed, "lunge")
-    path = [
-        "standing",
-        *(f"lunge: {name}" for name in ("stepping", "landed", "half", "down", "half", "landed", "stepping")),
-    ]
+    path = ["standing", *(f"lunge: {name}" for name in ("stepping", "landed", "half", "down", "half", "landed", "stepping"))]
     times = (0.0, 0.5, 0.95, 1.35, 1.8, 2.25, 2.6, 3.05)
     work.motion("lunge", list(zip(path, times, strict=True)), 3.5, cyclic=True)
     path[4] = "kneeling to pick up"
     work.motion("kneeling to pick up", list(zip([*path, "standing"], (*times, 3.5), strict=True)))
+

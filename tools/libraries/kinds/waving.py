@@ -69,9 +69,7 @@ def _standing(
     )
 
 
-def _wave(
-    work: Composer, name: str, raised: str, waves: Waves, period_s: float, at_rest: str = "standing"
-) -> None:
+def _wave(work: Composer, name: str, raised: str, waves: Waves, period_s: float, at_rest: str = "standing") -> None:
     """A motion of waving alone, endless, and one that raises the hand, waves twice and lets it sink."""
     there, back = waves
     half = 0.5 * period_s
