@@ -156,7 +156,7 @@ def _straight_punches(work: Composer) -> None:
 
 def _bent_punches(work: Composer) -> None:
     """Hooks swing level around the body, uppercuts rise from below the chest; both with the elbow bent."""
-    hooking, swinging = Arm(82, 52, 56, 86, 40, 10), Arm(66, 12, 22, 88, 30, 8)
+    hooking, swinging = Arm(92, 52, 36, 86, 40, 10), Arm(72, 12, 14, 88, 30, 8)
     loaded, rising = Arm(14, 18, 6, 104, -20), Arm(58, 84, 8, 98, -60, 8)
     for name, posed in (
         ("lead hook: swinging", _boxing(swinging, turn=6, chest=12, lean=4)),
