@@ -76,7 +76,7 @@ def hips_height(moment: Moment, body: Body = BODY) -> float:
     return float(min(heights))
 
 
-def ankle_of(foot: Foot | Ankle, body: Body) -> Array:
+def ankle_of(foot: Foot | Ankle, body: Body = BODY) -> Array:
     """(3,) where the ankle of a foot with a place is [m]: it rolls about the heel or the ball."""
     if isinstance(foot, Ankle):
         return np.array([foot.x, foot.y, foot.z])
