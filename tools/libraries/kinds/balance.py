@@ -1,25 +1,27 @@
-"""Balance: on one leg, with the other bent, at the knee, to the front, the side or the back, wobbling; on tiptoe;
-walking along a beam heel to toe or with longer steps, and dipping a leg beside it. The right leg mostly carries.
+"""Balance: on one leg in many ways, wobbling, on tiptoe, and walking along a beam.
+
+Where one leg carries it is the right; mirrored it is the left.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from keymark.core.library.library import Library
 
+from ..balance import balanced_over
 from ..composing import Composer
 from ..moment import AnyArm, AnyLeg, Arm, Foot, Leg, Moment, Turn, mirrored, moment
-from ..placing import AT_EASE_M, balanced, moved
+from ..placing import moved
 
 SOURCES = (
-    "Boström, K. J. et al. (2018). The contribution of upper body movements to dynamic balance regulation during"
-    " challenged locomotion. Frontiers in Human Neuroscience 12.",
-    "Hill, M. W. et al. (2019). Upper body strategy in dynamic balance of children: arms free and restricted."
-    " Frontiers in Physiology 9.",
-    "McCurdy, K. & Langford, G. (2006). The relationship between maximum unilateral squat strength and balance in"
-    " young adult men and women. Journal of Sports Science and Medicine 5.",
-    "Otten, E. (1999). Balancing on a narrow ridge: biomechanics and control. Philosophical Transactions of the"
-    " Royal Society B 354.",
+    "Boström, K. J. et al. (2018). The contribution of upper body movements to dynamic balance regulation"
+    " during challenged locomotion. Frontiers in Human Neuroscience 12.",
+    "Hill, M. W. et al. (2019). Dynamic postural control in children: do the arms lend the legs a helping"
+    " hand? Frontiers in Physiology 9.",
+    "McCurdy, K. & Langford, G. (2006). The relationship between maximum unilateral squat strength and"
+    " balance in young adult men and women. Journal of Sports Science and Medicine 5.",
+    "Otten, E. (1999). Balancing on a narrow ridge: biomechanics and control. Philosophical Transactions"
+    " of the Royal Society B 354.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 CARRYING = Foot(-0.06, 0.0, -6.0)
@@ -40,8 +42,12 @@ def library() -> Library:
         ("exercise",),
     )
     standing = moment(legs=Foot(0.09, 0.0, 8.0), bend=8, pelvis=Turn(bow=1), waist=Turn(bow=2))
-    work.pose("standing", balanced(standing), "standing")
-    work.pose("standing, arms out", balanced(replace(standing, arms={"L": _out(70), "R": _out(70)})), "standing")
+    work.pose("standing", balanced_over(standing), "standing")
+    work.pose(
+        "standing, arms out",
+        balanced_over(replace(standing, arms={"L": _out(70), "R": _out(70)})),
+        "standing",
+    )
     _on_one_leg(work)
     _wobbling(work)
     _leg_away(work)
@@ -69,8 +75,8 @@ def _one_leg(
     head: float = 0.0,
     pelvis_lean: float | None = None,
 ) -> Moment:
-    """On the right leg; the trunk bows, leans and turns to the left, a third of the lean being the pelvis'."""
-    return balanced(
+    """On the right leg; the trunk bows, leans and turns to the left, a third of the lean in the pelvis."""
+    return balanced_over(
         moment(
             x=CARRYING.x,
             left_leg=free,
@@ -87,7 +93,9 @@ def _one_leg(
     )
 
 
-def _and_back(work: Composer, name: str, path: Sequence[str], step_s: float = 0.6, start: str = "standing") -> None:
+def _and_back(
+    work: Composer, name: str, path: Sequence[str], step_s: float = 0.6, start: str = "standing"
+) -> None:
     """From standing along a path, held at its end, and back."""
     steps = [(posture, k * step_s) for k, posture in enumerate((start, *path))]
     held = len(path) * step_s + HOLD_S
@@ -101,7 +109,7 @@ def _on_one_leg(work: Composer) -> None:
     shifted = moment(
         left_leg=replace(OTHER, pitch=16.0), right_leg=CARRYING, arms=_out(34), bend=8, waist=Turn(bow=2)
     )
-    work.pose("weight on one leg", balanced(shifted, -0.045), "one leg")
+    work.pose("weight on one leg", balanced_over(shifted, -0.045), "one leg")
     for name, posed in (
         ("foot off the floor", _one_leg(Leg(26, 4, 0, 46, 15), _out(46))),
         ("knee high", _one_leg(Leg(88, 4, 0, 92, 20), _out(82), pelvis_lean=-3)),
@@ -111,14 +119,16 @@ def _on_one_leg(work: Composer) -> None:
         ("shin back", _one_leg(Leg(-4, 3, 0, 94, 30), _out(60))),
     ):
         work.pose(name, posed, "one leg")
-    tiptoe = moment(legs=Foot(0.07, 0.0, 8.0, 36.0), arms=_out(80), bend=8, pelvis=Turn(bow=1), waist=Turn(bow=1))
-    work.pose("tiptoe", balanced(tiptoe, 0.0, -0.125), "tiptoe")
+    tiptoe = moment(
+        legs=Foot(0.07, 0.0, 8.0, 36.0), arms=_out(80), bend=8, pelvis=Turn(bow=1), waist=Turn(bow=1)
+    )
+    work.pose("tiptoe", balanced_over(tiptoe, 0.0, -0.125), "tiptoe")
     lifting = ("weight on one leg", "foot off the floor")
     _and_back(work, "knee high", (*lifting, "knee high"))
     _and_back(work, "knee high, arms down", (*lifting, "knee high, arms down"))
     _and_back(work, "foot at the knee", (*lifting, "foot at the knee"))
     _and_back(work, "tree", (*lifting, "foot at the knee", "foot at the knee, arms up"))
-    _and_back(work, "shin back", ("weight on one leg", "shin back"))
+    _and_back(work, "shin back", ("weight on one leg", "foot off the floor", "shin back"))
     _and_back(work, "on tiptoe", ("standing, arms out", "tiptoe"))
 
 
@@ -126,7 +136,9 @@ def _wobbling(work: Composer) -> None:
     """On one leg the trunk leans from side to side and the arms and the free leg against it."""
     to_left = _one_leg(Leg(24, 2, 0, 44, 15), _out(48), _out(112), lean=16, turn=-6, bend=16, waist=6)
     to_right = _one_leg(Leg(20, 26, 0, 30, 15), _out(116), _out(40), lean=-18, turn=8, bend=18, waist=8)
-    forward = _one_leg(Leg(-16, 8, 0, 34, 15), _out(80, 40), _out(74, 30), bow=18, waist=20, bend=22, head=-12)
+    forward = _one_leg(
+        Leg(-16, 8, 0, 34, 15), _out(80, 40), _out(74, 30), bow=18, waist=20, bend=22, head=-12
+    )
     work.pose("wobble: to the left", to_left, "wobble")
     work.pose("wobble: to the right", to_right, "wobble")
     work.pose("wobble: forward", forward, "wobble")
@@ -135,20 +147,34 @@ def _wobbling(work: Composer) -> None:
 
 
 def _leg_away(work: Composer) -> None:
-    """The free leg straight to the back, level with the trunk or under an upright one; to the side; to the front."""
+    """The free leg straight to the back, in line with the trunk or not; to the side; to the front."""
     for name, posed in (
         ("leg back: half", _one_leg(Leg(-8, 4, 0, 16, 30), _out(72), bow=34, waist=4, bend=12, head=-14)),
         ("leg back: level", _one_leg(Leg(-6, 2, 0, 6, 35), _out(88, 14), bow=74, waist=4, bend=14, head=-40)),
         (
             "arabesque",
-            _one_leg(Leg(-34, 6, 12, 8, 40), _out(76, 0, 10), _out(100, 84, 10), bow=34, waist=-16, turn=6, bend=9),
+            _one_leg(
+                Leg(-34, 6, 12, 8, 40), _out(76, 0, 10), _out(100, 84, 10), bow=34, waist=-16, turn=6, bend=9
+            ),
         ),
         ("leg to the side: half", _one_leg(Leg(2, 18, 6, 6, 20), _out(64), lean=-10)),
-        ("leg to the side", _one_leg(Leg(4, 34, 10, 6, 30), _out(106, 16, 46, -40), _out(38), lean=-26, pelvis_lean=-16)),
+        (
+            "leg to the side",
+            _one_leg(Leg(4, 34, 10, 6, 30), _out(106, 16, 46, -40), _out(38), lean=-26, pelvis_lean=-16),
+        ),
         ("leg to the front", _one_leg(Leg(52, 2, 4, 8, 25), _out(84), bow=-6, waist=4)),
         (
             "dip: leg beside",
-            _one_leg(Leg(-4, 34, 4, 12, 20), _out(112, 20, 58, -40), _out(32), bow=22, waist=16, lean=-26, bend=44, head=-8),
+            _one_leg(
+                Leg(-4, 34, 4, 12, 20),
+                _out(112, 20, 58, -40),
+                _out(32),
+                bow=22,
+                waist=16,
+                lean=-26,
+                bend=44,
+                head=-8,
+            ),
         ),
     ):
         work.pose(name, posed, "one leg")
@@ -160,81 +186,77 @@ def _leg_away(work: Composer) -> None:
     _and_back(work, "dip", ("weight on one leg", "leg to the side: half", "dip: leg beside"), 0.5)
 
 
+@dataclass(frozen=True)
+class Swing:
+    """A moment of the right foot's way past the left, which stands a step before where it started."""
+
+    name: str
+    share: float
+    """When, as a share of the step."""
+    foot: Foot
+    come: float
+    """How far the weight has come, in steps from the rear foot."""
+    aside: float
+    """How far the weight is to the left of the line [m]."""
+    left_arm: Arm
+    right_arm: Arm
+    lean: float = 0.0
+    """Of the trunk, to the left [degrees]."""
+
+
 def _along_a_beam(work: Composer) -> None:
     """Steps of half a metre on a line, the free foot swinging out around the other."""
-    _steps(
-        work,
-        "beam walk",
-        0.50,
-        0.80,
-        (
-            ("toe off", 0.12, Foot(0.0, 0.02, -6.0, 26.0, 0.02), 0.62, 0.02, _out(66), _out(74), 3),
-            ("swinging around", 0.38, Foot(-0.20, -0.40, -8.0, 16.0, 0.10), 0.90, 0.05, _out(60), _out(86), 8),
-            ("reaching", 0.72, Foot(-0.06, -0.86, -6.0, 4.0, 0.05), 1.12, 0.02, _out(70), _out(78), 2),
-        ),
-        _out(72),
+    off, around, there = (
+        Foot(0.0, 0.02, -6.0, 26.0, 0.02),
+        Foot(-0.2, -0.4, -8.0, 16.0, 0.1),
+        Foot(-0.06, -0.86, -6.0, 4.0, 0.05),
     )
+    swings = (
+        Swing("both feet", 0.0, Foot(-0.02, 0.0, -5.0, 14.0), 0.5, 0.0, _out(72), _out(72)),
+        Swing("toe off", 0.12, off, 0.62, 0.02, _out(66), _out(74), 3),
+        Swing("swinging around", 0.38, around, 0.90, 0.05, _out(60), _out(86), 8),
+        Swing("reaching", 0.72, there, 1.12, 0.02, _out(70), _out(78), 2),
+    )
+    _steps(work, "beam walk", 0.50, 0.80, swings)
 
 
 def _heel_to_toe(work: Composer) -> None:
     """Steps as long as a foot, slowly, the arms level."""
-    _steps(
-        work,
-        "heel to toe",
-        0.27,
-        1.05,
-        (
-            ("lifting", 0.25, Foot(-0.04, -0.02, -4.0, 14.0, 0.04), 0.85, 0.03, _out(84), _out(90), 4),
-            ("passing", 0.55, Foot(-0.15, -0.28, -4.0, 4.0, 0.07), 1.0, 0.04, _out(80), _out(96), 6),
-            ("reaching", 0.82, Foot(-0.05, -0.50, -4.0, -4.0, 0.03), 1.1, 0.02, _out(86), _out(90), 2),
-        ),
-        _out(88),
+    off, around, there = (
+        Foot(-0.04, -0.02, -4.0, 14.0, 0.04),
+        Foot(-0.15, -0.28, -4.0, 4.0, 0.07),
+        Foot(-0.05, -0.5, -4.0, -4.0, 0.03),
     )
+    swings = (
+        Swing("both feet", 0.0, Foot(-0.02, 0.0, -5.0, 14.0), 0.5, 0.0, _out(88), _out(88)),
+        Swing("lifting", 0.25, off, 0.85, 0.03, _out(84), _out(90), 4),
+        Swing("passing", 0.55, around, 1.0, 0.04, _out(80), _out(96), 6),
+        Swing("reaching", 0.82, there, 1.1, 0.02, _out(86), _out(90), 2),
+    )
+    _steps(work, "heel to toe", 0.27, 1.05, swings)
 
 
-def _steps(
-    work: Composer,
-    name: str,
-    length_m: float,
-    step_s: float,
-    swings: Sequence[tuple[str, float, Foot, float, float, Arm, Arm, float]],
-    arms: Arm,
-) -> None:
-    """A cycle of two steps along the line x = 0, the first with the right foot.
-
-    It begins with the left foot a step before the right. A swing is its name, when it is (as a share of a step),
-    the right foot's place, how far the weight has come (in steps from the rear foot), how far aside of the line
-    it is and the arms, and how far the trunk leans to the left.
-    """
-    rear, front = Foot(-0.02, 0.0, -5.0, 14.0), Foot(0.02, -length_m, 5.0)
-
-    def at(right: Foot, share: float, aside: float, left_arm: Arm, right_arm: Arm, lean: float) -> Moment:
-        weight = -length_m * share + ALONG_FOOT_M
-        return balanced(
-            moment(
+def _steps(work: Composer, name: str, length_m: float, step_s: float, swings: Sequence[Swing]) -> None:
+    """A cycle of two steps along the line x = 0, the first with the right foot."""
+    standing = Foot(0.02, -length_m, 5.0)
+    steps = []
+    for first, side in ((True, "right"), (False, "left")):
+        for swing in swings:
+            weight = -length_m * swing.come + ALONG_FOOT_M
+            posed = moment(
                 y=weight,
-                left_leg=front,
-                right_leg=right,
-                left_arm=left_arm,
-                right_arm=right_arm,
+                left_leg=standing,
+                right_leg=swing.foot,
+                left_arm=swing.left_arm,
+                right_arm=swing.right_arm,
                 bend=14,
-                pelvis=Turn(bow=2, lean=0.2 * lean),
-                waist=Turn(bow=4, lean=0.8 * lean),
+                pelvis=Turn(bow=2, lean=0.2 * swing.lean),
+                waist=Turn(bow=4, lean=0.8 * swing.lean),
                 neck=Turn(bow=14),
-            ),
-            aside,
-            weight,
-        )
-
-    moments = [("both feet", 0.0, at(rear, 0.5, 0.0, arms, arms, 0.0))]
-    moments += [
-        (phase, share, at(right, come, aside, left_arm, right_arm, lean))
-        for phase, share, right, come, aside, left_arm, right_arm, lean in swings
-    ]
-    steps = [
-        (work.pose(f"{name}: {phase} {side}", posed if first else moved(mirrored(posed), 0.0, -length_m), "beam"),
-         (share + (not first)) * step_s)
-        for first, side in ((True, "right"), (False, "left"))
-        for phase, share, posed in moments
-    ]  # fmt: skip
+            )
+            posed = balanced_over(posed, swing.aside, weight)
+            if not first:
+                posed = moved(mirrored(posed), 0.0, -length_m)
+            posture = work.pose(f"{name}: {swing.name}, {side} foot", posed, "beam")
+            steps.append((posture, (swing.share + (not first)) * step_s))
     work.motion(name, steps, 2.0 * step_s, True, (0.0, -2.0 * length_m, 0.0))
