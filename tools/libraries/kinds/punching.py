@@ -218,11 +218,13 @@ def _defence(work: Composer) -> None:
     for name, posed in (
         ("slip to the left", _boxing(turn=8, chest=10, bow=14, lean=24, bend=40, aside=0.05)),
         ("slip to the right", _boxing(turn=-10, chest=-10, bow=14, lean=-24, bend=42, aside=-0.05)),
-        ("duck", _boxing(bow=26, bend=76, forward=0.02)),
         ("block", _boxing(high, high, bow=12, bend=30)),
     ):
         work.pose(name, posed, "defence")
         _from_guard(work, name, ((name, 0.32), ("guard", 0.72)))
+    work.pose("duck: half", _boxing(bow=13, bend=50, forward=0.01), "defence")
+    work.pose("duck", _boxing(bow=26, bend=76, forward=0.02), "defence")
+    _from_guard(work, "duck", (("duck: half", 0.18), ("duck", 0.36), ("duck: half", 0.56), ("guard", 0.76)))
 
 
 def _footwork(work: Composer) -> None:

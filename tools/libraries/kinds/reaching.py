@@ -252,13 +252,15 @@ def _with_both_hands(work: Composer) -> None:
         ("both hands: front", _both(front, 5, 6, 8)),
         ("both hands: shelf", _both(overhead, 0, -4, 8, -18)),
         ("both hands: bowing", _both(Arm(38, 82, 12, 22), 22, 18, 30, 4)),
+        ("both hands: low", _both(Arm(58, 84, 10, 18), 38, 30, 58, -4)),
         ("both hands: floor", _both(floor, 48, 40, 84, -8)),
     ):
         work.pose(name, posed, "both hands")
     first = "both hands: half"
     _there_and_back(work, "both hands to the front", (first, "both hands: front"))
     _there_and_back(work, "both hands to a shelf", (first, "both hands: shelf"), 0.9)
-    _there_and_back(work, "both hands to the floor", ("both hands: bowing", "both hands: floor"), FLOOR_S)
+    low = ("both hands: bowing", "both hands: low", "both hands: floor")
+    _there_and_back(work, "both hands to the floor", low, FLOOR_S)
 
 
 def _both(arms: Arm | Hand, bow: float, waist: float, bend: float, head: float = 0.0) -> Moment:

@@ -241,16 +241,15 @@ def _lunges(work: Composer) -> None:
     for name, posed in (
         ("lunge: stepping", balanced_over(stepping, -0.04, -0.12)),
         ("lunge: landed", lunging(0.80, 34, -0.40, 5, HANGING)),
+        ("lunge: sinking", lunging(0.72, 41, -0.41, 6, HANGING)),
         ("lunge: half", lunging(0.64, 46, -0.42, 6, HANGING)),
         ("lunge: down", lunging(0.50, 58, -0.43, 7, HANGING)),
         ("kneeling to pick up", lunging(0.48, 60, -0.46, 34, Hand(0.15, -0.82, 0.36, 25, short=0.2))),
     ):
         work.pose(name, posed, "lunge")
-    path = [
-        "standing",
-        *(f"lunge: {name}" for name in ("stepping", "landed", "half", "down", "half", "landed", "stepping")),
-    ]
-    times = (0.0, 0.5, 0.95, 1.35, 1.8, 2.25, 2.6, 3.05)
+    down = ["stepping", "landed", "sinking", "half"]
+    path = ["standing", *(f"lunge: {name}" for name in (*down, "down", *reversed(down)))]
+    times = (0.0, 0.5, 0.95, 1.15, 1.35, 1.8, 2.25, 2.42, 2.6, 3.05)
     work.motion("lunge", list(zip(path, times, strict=True)), 3.5, cyclic=True)
-    path[4] = "kneeling to pick up"
+    path[5] = "kneeling to pick up"
     work.motion("kneeling to pick up", list(zip([*path, "standing"], (*times, 3.5), strict=True)))
