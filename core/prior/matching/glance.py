@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
 from .sights import sights
-from .sweep import Turned, places, sweep
+from .sweep import Turned, sweep
 
 Whole = NDArray[np.intp]
 
@@ -46,7 +46,7 @@ def glance(
     heights, weights, costs = [], [], []
     for sight in sights(camera, tracks, segments, chosen, 0.0, UNKNOWN_STD_M):
         fit = sweep(sight, states)
-        height = places(sight, states, fit)[2] - states.numbers[-2]
+        height = fit.hips[2] - states.numbers[-2, fit.states]
         share = np.exp(fit.cost.min() - fit.cost)
         heights.append(float((share * height).sum() / share.sum()))
         weights.append(float(sight.seen.sum()))

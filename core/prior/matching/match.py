@@ -120,15 +120,17 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float | None) -> 
         refined = refinement.refined(path.course())
         if look == 0:
             habits = refinement.habits(refined)
-    share, evidence = lattice.posterior()
+    shares, evidence = lattice.posterior()
     yield 0.95
     course = _every_frame(table, refined, sampled, tracks.frame_count)
     frames = tuple(
-        alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
+        alternatives(path, shares[row], int(row), int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
     likelihood = evidence / (len(sampled) * tempering)
-    return LibraryMatch(prepared.library, frames, _fit(path, habits.middle), floor, course, likelihood)
+    return LibraryMatch(
+        prepared.library, frames, _fit(refinement, refined, habits.middle), floor, course, likelihood
+    )
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
@@ -147,12 +149,16 @@ def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count:
     return interpolate(tuple(keyframes), frame_count)
 
 
-def _fit(path: Path, usual: Array) -> float:
-    """Mean weight of the markers' middles, of which one weighs less the farther it is off."""
-    weights = []
-    for sight, fit, state in zip(path.sights, path.fits, path.best, strict=True):
-        left = sight.left[fit.doubted[state]] @ path.states.numbers[:, state]
-        squared = ((left[:-1].reshape(-1, 2) * usual[:, None]) ** 2).sum(axis=1)[sight.seen]
-        weights.append(1.0 / (1.0 + squared / DEGREES))
-    known = np.concatenate(weights)
-    return float(known.mean()) if len(known) else 0.0
+def _fit(refinement: Refinement, course: Course, usual: Array) -> float:
+    """Mean weight of the markers' middles, of which one weighs less the farther it is off.
+
+    Args:
+        refinement: What the course was refined by.
+        course: The course.
+        usual: (M,) what the usual deviations were multiplied by there.
+    """
+    size = np.ones(len(usual))
+    off, _, _ = refinement.residuals(course.chain, course.values, size)
+    squared = ((off * usual[:, None]) ** 2).sum(axis=-1)
+    seen = np.array([sight.seen for sight in refinement.sights])
+    return float((1.0 / (1.0 + squared / DEGREES))[seen].mean())
