@@ -108,7 +108,7 @@ def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     if undecided:
         raise InputError(
             f"library {shown(mine.identifier)}: {listed(map(shown, undecided), 5)} differ between version "
-            f"{mine.version} and version {theirs.version}; say for each whether to keep yours or to replace it"
+            f"{mine.version} and version {theirs.version}; say for each which to keep"
         )
 
     def pick(name: str) -> bool:

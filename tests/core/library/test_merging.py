@@ -64,7 +64,7 @@ def test_different_libraries_never_touch() -> None:
 @pytest.mark.parametrize("choice", list(Choice))
 def test_merging_adds_what_is_new_and_asks_for_the_rest(choice: Choice) -> None:
     """Steps name the posture as it is called in the end; the version grows."""
-    with pytest.raises(InputError, match="'Left foot lands'"):
+    with pytest.raises(InputError, match="'Left foot lands' differ"):
         merged(MINE, THEIRS)
     result = merged(MINE, THEIRS, {"Left foot lands": choice})
     landing = "LEFT foot lands" if choice is Choice.REPLACE else "Left foot lands"
