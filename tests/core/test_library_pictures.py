@@ -85,9 +85,9 @@ def test_a_long_motion_goes_on_in_the_next_row() -> None:
     """More postures than fit beside each other are divided evenly."""
     library = small_library()
     names = [posture.name for posture in library.postures]
-    steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(16))
+    steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(18))
     long = library_sheet(replace(library, motions=(LibraryMotion("Long", steps, 2.0),)))
-    short = library_sheet(replace(library, motions=(LibraryMotion("Short", steps[:8], 2.0),)))
+    short = library_sheet(replace(library, motions=(LibraryMotion("Short", steps[:9], 2.0),)))
     assert long.shape[1] == short.shape[1] and long.shape[0] > 1.5 * short.shape[0]
 
 
