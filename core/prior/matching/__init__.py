@@ -1,0 +1,1 @@
+"""Finding a library's postures in footage."""

@@ -1,0 +1,141 @@
+"""A library found in footage: which of its postures is seen when and where, in which heading, how surely."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...body.kinematics import Body
+from ...body.posture import Posture
+from ...footage.camera import Camera
+from ...footage.tracks import RegionTracks
+from ...library.library import Library
+from ...progress import Part
+from ..interpolation import interpolate
+from ..keyframes import Keyframe
+from .alternatives import alternatives
+from .candidate import MatchedFrame
+from .chains import library_chains
+from .course_table import CourseTable
+from .floor import FLOOR_STD_M, floor_height
+from .lattice import Lattice
+from .path import Path
+from .refine import Course, Refinement
+from .sights import sights
+from .solids import marker_solids
+from .sweep import DEGREES, sweep, turned
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.intp]
+
+HEADINGS = 24
+SAMPLES_PER_S = 15.0
+"""Frames looked at: a motion's posture is known well between two that are this near."""
+CORRELATION_S = 0.25
+"""So long a performer is off the library's posture in the same way: frames nearer tell less each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sought:
+    """What is looked at: everything of a take that a match needs."""
+
+    body: Body
+    camera: Camera
+    tracks: RegionTracks
+    segments: tuple[str, ...]
+    """The segment of each marker."""
+    keyframes: Whole
+    """(K,) frames to be told the posture of."""
+
+
+@dataclass(frozen=True, eq=False)
+class LibraryMatch:
+    """A library's way through a clip."""
+
+    library: Library
+    frames: tuple[MatchedFrame, ...]
+    """The frames proposed for keyframes, in order."""
+    fit: float
+    """How well the footage is explained, 0 to 1."""
+    floor_m: float | None
+    """Height of the floor that the performer was placed on; None where none was believed in."""
+    course: Posture
+    """(F,) what the match says of every frame of the clip."""
+    log_evidence: float
+    """Logarithm of the probability of the footage, given the library, up to a constant of the footage."""
+    samples: int
+    """Frames that were looked at."""
+
+
+def match_library(sought: Sought, library: Library, floor_m: float | None) -> Part[LibraryMatch]:
+    """Find a library's postures in footage.
+
+    Args:
+        sought: The take.
+        library: The library.
+        floor_m: Height of the floor; where None, z = 0 if that agrees with the markers' sizes, else what
+            they say.
+
+    Yields:
+        The fraction that is done.
+    """
+    tracks = sought.tracks
+    sampled = sampled_frames(tracks, sought.keyframes)
+    chains = library_chains(library, sought.body)
+    solids = marker_solids(sought.body, sought.segments, chains.posture)
+    states = turned(solids, HEADINGS)
+    yield 0.05
+    floor = floor_m
+    if floor is None:
+        floor = floor_height(sought.camera, tracks, sought.segments, sampled, states)
+    yield 0.1
+    seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M)
+    fits = []
+    for index, sight in enumerate(seen):
+        fits.append(sweep(sight, states))
+        yield 0.1 + 0.3 * index / len(seen)
+    time_s = tracks.time_s[sampled]
+    usual_s = float(np.median(np.diff(time_s)))
+    tempering = min(1.0, usual_s / CORRELATION_S)
+    lattice = Lattice(chains, states, seen, fits, tempering, time_s)
+    best = lattice.best_path()
+    yield 0.7
+    share, evidence = lattice.posterior()
+    yield 0.95
+    path = Path(chains, states, seen, fits, best, time_s)
+    table = CourseTable(chains, solids)
+    refined = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M).refined(path.course())
+    course = _every_frame(table, refined, sampled, tracks.frame_count)
+    frames = tuple(
+        alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
+        for row in np.searchsorted(sampled, sought.keyframes)
+    )
+    return LibraryMatch(library, frames, _fit(path), floor, course, evidence, int(len(sampled)))
+
+
+def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
+    """The frames to look at: evenly spaced, the first, the last and the keyframes."""
+    count = tracks.frame_count
+    duration = float(tracks.time_s[-1] - tracks.time_s[0]) / max(count - 1, 1)
+    stride = max(1, round(1.0 / SAMPLES_PER_S / duration)) if duration > 0.0 else 1
+    return np.unique(np.concatenate([np.arange(0, count, stride), [count - 1], keyframes])).astype(np.intp)
+
+
+def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count: int) -> Posture:
+    """(F,) postures of the whole clip."""
+    time, heading, hips = course.values[:, 0], course.values[:, 1], course.values[:, 2:]
+    found = table.posture(course.chain, time, heading, hips)
+    keyframes = [Keyframe(int(frame), found[row]) for row, frame in enumerate(frames)]
+    return interpolate(tuple(keyframes), frame_count)
+
+
+def _fit(path: Path) -> float:
+    """Mean weight of the markers' middles, of which one weighs less the farther it is off."""
+    weights = []
+    for sight, fit, state in zip(path.sights, path.fits, path.best, strict=True):
+        left = sight.left[fit.doubted[state]] @ path.states.numbers[:, state]
+        squared = (left[:-1].reshape(-1, 2) ** 2).sum(axis=1)[sight.seen]
+        weights.append(1.0 / (1.0 + squared / DEGREES))
+    known = np.concatenate(weights)
+    return float(known.mean()) if len(known) else 0.0

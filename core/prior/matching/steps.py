@@ -1,0 +1,146 @@
+"""How one state may follow another: on in its motion at a usual speed, turning a little, travelling along."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .chains import Chains
+from .sights import Sight
+
+Array = NDArray[np.float64]
+Single = NDArray[np.float32]
+Whole = NDArray[np.int32]
+
+SLOWEST, FASTEST = 0.4, 2.5
+"""Of the typical speed."""
+SPEED_STD = 0.45
+"""Of the logarithm of the speed."""
+STAY = 0.05
+"""Probability of holding still."""
+TURN_STD = 1.0
+"""Turning besides what the motion turns [rad], over a second of independent tenths."""
+DRIFT_STD_M = 0.35
+"""Going besides what the motion travels, in a second."""
+DRIFT_CAP = np.float32(12.0)
+"""A place that the footage gives wrongly costs no more than this."""
+NOWHERE = np.float32(-1e9)
+
+
+@dataclass(frozen=True, eq=False)
+class Road:
+    """One way on for all N H states: so many postures further, so many headings aside."""
+
+    origin: Whole
+    """(N H,) the state each is reached from; N H where there is none."""
+    target: Whole
+    """(N H,) the state that each leads to; N H where there is none."""
+    way: Single
+    """(2, N H) how the motion travels on it [m], in the world."""
+
+
+@dataclass(frozen=True, eq=False)
+class Roads:
+    """All ways between the states of some chains in H headings."""
+
+    chains: Chains
+    heading_rad: Array
+    _known: dict[tuple[int, int], Road] = field(default_factory=dict)
+
+    def road(self, steps: int, aside: int) -> Road:
+        """The way on by so many postures and headings."""
+        key = steps, aside
+        if key not in self._known:
+            self._known[key] = self._road(steps, aside)
+        return self._known[key]
+
+    def _road(self, steps: int, aside: int) -> Road:
+        count = len(self.heading_rad)
+        total = len(self.chains) * count
+        before, back_way, back_turn = self.chains.advanced(-steps)
+        after, _, turn = self.chains.advanced(steps)
+        columns = np.arange(count)
+        bins = count / (2.0 * np.pi)
+
+        def states(posture: NDArray[np.intp], turned: Array, offset: int) -> Whole:
+            aim = np.rint(turned * bins).astype(int)[:, None] + offset
+            state = posture[:, None] * count + (columns + aim) % count
+            return np.where(posture[:, None] < 0, total, state).ravel().astype(np.int32)
+
+        origin = states(before, back_turn, -aside)
+        # The way back is told in the axes of the state that is come to: turned about it is the way there.
+        c, s = np.cos(self.heading_rad), np.sin(self.heading_rad)
+        x, y = -back_way[:, 0, None], -back_way[:, 1, None]
+        way = np.stack([c * x - s * y, s * x + c * y]).reshape(2, -1)
+        return Road(origin, states(after, turn, aside), way.astype(np.float32))
+
+    def pace(self, duration_s: float) -> Array:
+        """(A, N) probability of going on by 0, 1, ... A - 1 postures in a time."""
+        log_speed = np.linspace(np.log(SLOWEST), np.log(FASTEST), 25)
+        share = np.exp(-0.5 * (log_speed / SPEED_STD) ** 2)
+        share /= share.sum()
+        step = np.where(self.chains.step_s > 0.0, self.chains.step_s, np.inf)
+        going = duration_s / step * np.exp(log_speed)[:, None]  # (25, N) postures
+        most = int(np.ceil(going.max())) + 1
+        amounts = np.arange(most)[:, None, None]
+        pace = (share[:, None] * np.maximum(0.0, 1.0 - np.abs(going - amounts))).sum(axis=1)
+        pace *= 1.0 - STAY
+        pace[0] += STAY
+        return np.asarray(pace)
+
+    def asides(self, duration_s: float) -> dict[int, float]:
+        """Logarithm of the probability of so many headings aside, in a time."""
+        bin_rad = 2.0 * np.pi / len(self.heading_rad)
+        deviation = TURN_STD * np.sqrt(0.1 * duration_s) + 0.3 * bin_rad
+        reach = int(np.clip(np.ceil(2.0 * deviation / bin_rad), 1, 3))
+        weight = {k: float(np.exp(-0.5 * (k * bin_rad / deviation) ** 2)) for k in range(-reach, reach + 1)}
+        total = sum(weight.values())
+        return {k: float(np.log(value / total)) for k, value in weight.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """From one frame to the next: every road with the logarithm of its probability for every state."""
+
+    moves: list[tuple[Road, Single]]
+
+
+def step(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single) -> Step:
+    """The moves between two frames.
+
+    Args:
+        roads: The ways.
+        duration_s: Time between the frames.
+        sights: What both frames say.
+        before: (3, N H) where the hips are in every state at first [m].
+        after: And then.
+    """
+    whiten = _whitening(sights, duration_s)
+    first = np.concatenate([whiten @ before, np.zeros((3, 1), dtype=np.float32)], axis=1)
+    second = whiten @ after
+    pace = roads.pace(duration_s)
+    headings = len(roads.heading_rad)
+    moves = []
+    with np.errstate(divide="ignore"):
+        log_pace = np.maximum(np.log(pace), NOWHERE).astype(np.float32)
+    for steps in range(len(pace)):
+        if pace[steps].max() < 1e-3:
+            continue
+        going = np.repeat(log_pace[steps], headings)
+        for aside, log_share in roads.asides(duration_s).items():
+            road = roads.road(steps, aside)
+            apart = second - first[:, road.origin] - whiten[:, :2] @ road.way
+            apart *= apart
+            drift = np.minimum(np.float32(0.5) * apart.sum(axis=0), DRIFT_CAP)
+            moves.append((road, going + np.float32(log_share) - drift))
+    return Step(moves)
+
+
+def _whitening(sights: tuple[Sight, Sight], duration_s: float) -> Single:
+    """(3, 3) takes differences of places [m] to standard deviations.
+
+    What a frame leaves open of the place, mostly along the line of sight, may change from frame to frame.
+    """
+    open_to = sum(np.linalg.inv(sight.information) for sight in sights)
+    covariance = open_to + (DRIFT_STD_M * np.sqrt(duration_s * max(duration_s, 0.1))) ** 2 * np.eye(3)
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)), dtype=np.float32)

@@ -1,0 +1,114 @@
+"""How well every posture of a library explains a frame in every heading, at the best place for it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .sights import Sight, square_root
+from .solids import Solids
+
+Array = NDArray[np.float64]
+Single = NDArray[np.float32]
+
+DEGREES = 4.0
+"""Of Student's t, by which what is far off counts less."""
+ROOT_STD_M = 0.025
+"""How far off a marker's extent is: clothes, the colour's ends, a limb turned by a few degrees."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """What is to be known of N postures in each of H headings, for `sweep`."""
+
+    heading_rad: Array
+    """(H,)."""
+    numbers: Single
+    """(3 M + 2, N H) the markers' middles, the height, 1."""
+    spread: Single
+    """(M, 6, N H) entries xx, yy, zz, xy, xz, yz."""
+    shape: tuple[int, int]
+    """N, H."""
+
+
+def turned(solids: Solids, headings: int) -> Turned:
+    """All headings of some postures."""
+    angle = 2.0 * np.pi * np.arange(headings) / headings
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.zeros((headings, 3, 3))
+    turn[:, 0, 0], turn[:, 0, 1], turn[:, 1, 0], turn[:, 1, 1], turn[:, 2, 2] = c, -s, s, c, 1.0
+    postures, markers = solids.middle.shape[:2]
+    middle = np.einsum("hij,nmj->minh", turn, solids.middle)
+    flat = np.ones((3 * markers + 2, postures * headings), dtype=np.float32)
+    flat[:-2] = middle.reshape(3 * markers, -1)
+    flat[-2] = np.repeat(solids.height, headings)
+    spread = np.einsum("hia,nmab,hjb->mijnh", turn, solids.spread, turn, optimize=True)
+    entries = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+    rows = np.stack([spread[:, i, j] for i, j in entries], axis=1).reshape(markers, 6, -1)
+    return Turned(angle, flat, rows.astype(np.float32), (postures, headings))
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """How well all states explain a frame."""
+
+    cost: Single
+    """(N H,) negative logarithm of the likelihood, up to a constant of the frame."""
+    doubted: NDArray[np.uint8]
+    """(N H,) which way of finding the place was best, see `Sight.place`."""
+
+
+def places(sight: Sight, states: Turned, fit: Fit) -> Single:
+    """(3, N H) the hips' places in the world [m]."""
+    found = sight.place.astype(np.float32) @ states.numbers  # (V, 3, N H)
+    return np.asarray(np.take_along_axis(found, fit.doubted[None, None].astype(np.intp), axis=0)[0])
+
+
+def sweep(sight: Sight, states: Turned) -> Fit:
+    """Every state at the best place for it."""
+    left = sight.left.astype(np.float32) @ states.numbers  # (V, 2 M + 1, N H)
+    left *= left
+    costs = np.float32(0.5) * left[:, -1]
+    for marker in np.flatnonzero(sight.seen):
+        costs += _student(left[:, 2 * marker] + left[:, 2 * marker + 1], 2)
+    doubted = costs.argmin(axis=0).astype(np.uint8)
+    fit = Fit(np.take_along_axis(costs, doubted[None].astype(np.intp), axis=0)[0], doubted)
+    back = sight.backward.astype(np.float32)
+    hips = np.float32(sight.backward @ sight.location) - back @ places(sight, states, fit)
+    for marker in np.flatnonzero(sight.whole):
+        middle = states.numbers[3 * marker : 3 * marker + 3]
+        depth = np.maximum(hips - back @ middle, np.float32(0.1))
+        np.add(fit.cost, _student(_extent_error(sight, states, marker, depth), 3), out=fit.cost)
+    fit.cost[hips < 0.3] += np.float32(1e3)
+    return fit
+
+
+def _extent_error(sight: Sight, states: Turned, marker: int, depth: Single) -> Single:
+    """Squared difference of the extents seen and predicted, in standard deviations."""
+    a, b = sight.axes[marker]
+    product = [(a, a), (a, b), (b, b)]
+    rows = np.array([_products(u, v) for u, v in product], dtype=np.float32)
+    predicted = square_root(*(rows @ states.spread[marker]))
+    observed = sight.root[marker].astype(np.float32)
+    variance = np.float32(ROOT_STD_M**2) + (np.float32(sight.pixel) * depth) ** 2
+    squared = sum(
+        (predicted[k] - observed[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
+    )
+    return np.asarray(squared / variance)
+
+
+def _products(u: Array, v: Array) -> list[float]:
+    """Factors of the six entries of a symmetric matrix S in u S v."""
+    return [
+        u[0] * v[0],
+        u[1] * v[1],
+        u[2] * v[2],
+        u[0] * v[1] + u[1] * v[0],
+        u[0] * v[2] + u[2] * v[0],
+        u[1] * v[2] + u[2] * v[1],
+    ]
+
+
+def _student(squared: Single, dimensions: int) -> Single:
+    factor = np.float32(0.5 * (DEGREES + dimensions))
+    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES)))
