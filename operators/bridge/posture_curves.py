@@ -170,7 +170,8 @@ def _usable(values: Array, otherwise: Array, mode: str) -> Array:
 
 def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
     models = bone_models(body)
-    rig = rig_at_rest(body, rest_matrices(body), modes, AT_ORIGIN)
+    axes = {model.name: model.axes for model in models}
+    rig = rig_at_rest(body, axes, rest_matrices(body), modes, AT_ORIGIN)
     shown = rig.show([values[bone.name][None] for bone in rig.bones])
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}

@@ -16,6 +16,7 @@ CHOICES = [
     ("ASK", "Ask", "Change nothing where another library of the same identifier is there"),
     ("KEEP", "Keep Mine", "Leave the one that is there as it is, and the new one out"),
     ("REPLACE", "Replace", "Put the new one in the place of the one that is there"),
+    ("MERGE", "Add What Is New", "Add postures and motions that mine lacks; what both have stays mine"),
     ("BOTH", "Keep Both", "Give the new one an identifier of its own, and keep it beside the other"),
 ]
 """What to do with a library whose identifier is taken, as an operator's property shows it."""
@@ -46,17 +47,14 @@ class Conflict:
 
 def conflicts(new: "Iterable[Library]", there: "Callable[[str], Library | None]") -> list[Conflict]:
     """Those of some libraries whose identifier is taken by another one."""
+    from ...core.library.merging import compare
+
     pairs = ((library, there(library.identifier)) for library in new)
     return [
-        Conflict(library, other) for library, other in pairs if other is not None and not same(library, other)
+        Conflict(library, other)
+        for library, other in pairs
+        if other is not None and not compare(other, library).same
     ]
-
-
-def same(first: "Library", second: "Library") -> bool:
-    """Whether two libraries are written alike."""
-    from ...core.library.library_file import library_to_json
-
-    return library_to_json(first) == library_to_json(second)
 
 
 def settled(
@@ -72,6 +70,7 @@ def settled(
     Raises:
         InputError: Another one is there, and nobody has chosen what to do.
     """
+    from ...core.library.merging import Choice, merged
     from ...core.library.texts import identifier_from, told_apart
 
     taken = {conflict.new.identifier: conflict for conflict in conflicts(new, there)}
@@ -85,6 +84,8 @@ def settled(
                 result.append(library)
         elif choice == "REPLACE":
             result.append(library)
+        elif choice == "MERGE":
+            result.append(merged(taken[library.identifier].there, library, Choice.KEEP))
         elif choice == "BOTH":
             used = [library.identifier]
             while there(free := identifier_from(library.identifier, used)) is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.library.library import LibraryMotion, LibraryPosture, MotionStep
 from ...core.library.library_fields import LONGEST_TAG, MOST_POSTURES
+from ...core.library.mirroring import with_mirrored
 from ...core.library.texts import LONGEST_NAME, text_fault, told_apart
 from ..bridge.library_assets import add_asset
 from ..bridge.library_poses import as_kept
@@ -21,6 +22,7 @@ from .libraries import (
     add_motion_to,
     add_posture_to,
     draft,
+    library_of,
     postures_of,
     show_again,
 )
@@ -122,6 +124,35 @@ def keep_motion(
     group.active_motion = len(group.motions) - 1
     show_again(group)
     return motion
+
+
+def add_mirrored(group: Group, *, only_chosen: bool) -> int:
+    """Add the mirrored form of what a library lacks the other side of; how many postures that were.
+
+    Args:
+        group: The scene's library.
+        only_chosen: Only of the posture chosen in its list; else of all, and of the motions.
+
+    Raises:
+        InputError: None is chosen, or the library's actor has sides of different lengths.
+    """
+    library = library_of(group)
+    if only_chosen:
+        chosen = active_posture(group)
+        if chosen is None or chosen.name not in library.by_name:
+            raise InputError(f"no posture of the library '{group.name}' is chosen; choose the one to mirror")
+        library = replace(library, postures=(library.by_name[chosen.name],), motions=())
+    whole = with_mirrored(library)
+    postures = whole.postures[len(library.postures) :]
+    motions = whole.motions[len(library.motions) :]
+    names = add_named(group, postures)
+    now = dict(zip((posture.name for posture in postures), names, strict=True))
+    for motion in motions:
+        steps = tuple(replace(step, posture=now.get(step.posture, step.posture)) for step in motion.steps)
+        taken = [other.name for other in group.motions]
+        add_motion_to(group, replace(motion, name=told_apart(motion.name, taken), steps=steps))
+    show_again(group)
+    return len(names)
 
 
 def _check(group: Group, names: Sequence[str], tags: Sequence[str]) -> None:

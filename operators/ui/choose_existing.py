@@ -20,5 +20,5 @@ def draw_question(layout: bpy.types.UILayout, operator: bpy.types.Operator, foun
     if len(found) > 3:
         layout.label(text=f"... {len(found)}", icon="BLANK1", translate=False)
     column = layout.column(align=True)
-    for choice in ("KEEP", "REPLACE", "BOTH"):
+    for choice in ("KEEP", "REPLACE", "MERGE", "BOTH"):
         column.prop_enum(operator, "existing", choice)

@@ -12,16 +12,13 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m
-from keymark.core.library.library_file import read_library, write_library
+from keymark.core.library.library_file import read_library
 from keymark.core.motion import Motion
-from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.keyframes import store_pose
 from keymark.operators.bridge.object_space import evaluated
 from keymark.operators.bridge.pose import read_posture, write_posture
 from keymark.operators.scene.libraries import add_library, library_of
-from keymark.operators.scene.new_actor import new_keyframe_action
 from keymark.operators.scene.takes import active_take, add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -185,35 +182,30 @@ def test_names_stay_unique_and_motions_follow(
     assert len(bpy.data.actions) == 2
 
 
-def test_keyframes_become_a_motion(
-    take: bpy.types.PropertyGroup, wave_motion: Motion, body: Body
-) -> None:
+def test_keyframes_become_a_motion(take: bpy.types.PropertyGroup, wave_motion: Motion, body: Body) -> None:
     """Postures at their times, the first straight ahead above the origin, the soles on the floor."""
-    action = take.keyframe_action = new_keyframe_action(take.armature)
-    assign_action(take.armature, action)
     bpy.context.scene.render.fps = 25
     for index in wave_motion.keyframe_indices:
+        bpy.context.scene.frame_set(index + 1)
         write_posture(take.armature, wave_motion.posture[index])
-        store_pose(take.armature, action, HUMAN, float(index + 1))
+        bpy.ops.keymark.store_keyframe()
     bpy.ops.keymark.add_motion(source="KEYFRAMES", motion="Wave")
     library = library_of(group())
     assert [posture.name for posture in library.postures] == ["Wave 1", "Wave 2", "Wave 3"]
     assert [step.time_s for step in library.motions[0].steps] == pytest.approx([0.0, 0.24, 0.48])
     postures = Posture.stack([posture.posture for posture in library.postures])
     assert sole_heights_m(body, body.pose(postures)).min() == pytest.approx(0.0, abs=1e-5)
-    moved = wave_motion.posture[6].translation - wave_motion.posture[0].translation
-    assert postures.translation[1] - postures.translation[0] == pytest.approx(moved, abs=1e-5)
+    risen = postures.translation[:, 2] - wave_motion.posture.translation[[0, 6, 12], 2]
+    assert risen == pytest.approx(risen[:1].repeat(3), abs=1e-5)
 
 
-def test_mirrored_postures_are_added(
-    take: bpy.types.PropertyGroup, random_posture: RandomPosture
-) -> None:
+def test_mirrored_postures_are_added(take: bpy.types.PropertyGroup, random_posture: RandomPosture) -> None:
     """At the end of the list, under names of their own."""
     pose(2, random_posture)
     bpy.ops.keymark.add_posture(posture="Kick")
     bpy.ops.keymark.mirror_library(what="POSTURE")
     kick, other = library_of(group()).postures
-    assert other.name == "Kick Mirrored"
+    assert other.name == "Kick (mirrored)"
     assert np.abs(other.posture.minus(mirrored(kick.posture))).max() < 1e-6
 
 
