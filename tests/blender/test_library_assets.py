@@ -157,9 +157,7 @@ def test_assets_are_seen_as_such(library: Library) -> None:
         (POSTURE, "[" * 100_000, "nested too deeply"),
     ],
 )
-def test_nonsense_in_an_asset_is_one_sentence(
-    library: Library, name: str, value: str, sentence: str
-) -> None:
+def test_nonsense_in_an_asset_is_one_sentence(library: Library, name: str, value: str, sentence: str) -> None:
     """Whatever a stranger writes into the custom properties."""
     action = add_assets(library)[0]
     action[name] = value
