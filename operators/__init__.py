@@ -54,6 +54,7 @@ MODULES = (
     "bake_motion",
     "mark_asset",
     "export_motion",
+    "learn_library",
     "set_up_turntable",
     "remove_turntable",
     "show_view",

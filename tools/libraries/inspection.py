@@ -62,7 +62,7 @@ def ranges_left(library: Library) -> list[str]:
 def soles(body: Body, pose: Pose) -> Array:
     """(..., 2) heights of the soles [m], left first; a foot is as flat as its ankle's place allows.
 
-    The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is turned.
+    The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is flat.
     """
     lengths = body.actor.segments_m
     heights = []

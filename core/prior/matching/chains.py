@@ -45,7 +45,7 @@ class Chain:
     """Time from each to the next; 0 for a single posture."""
     cyclic: bool
     track: Array
-    """(3 N, 2) the hips' place [m] in the cycle before, this one and the next; (N, 2) where it is no cycle."""
+    """(3 N, 2) the hips' place [m] in the cycle before, this one and the next; (N, 2) without cycles."""
     turn_rad: float
     """What a cycle adds to the heading."""
     motion: str

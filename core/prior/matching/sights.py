@@ -2,8 +2,9 @@
 
 A marker whose middle lies at r from the hips is seen at the normalised image place (x, y) where
 (a + x k) (T + r) = 0 and (b + y k) (T + r) = 0, with T the hips relative to the camera, a and b the camera's
-axes to the right and up and k its backward axis in the world. Weighted least squares gives T, and what is left
-over, as fixed matrices of a frame times what is known of a posture: every posture and heading in one product.
+axes to the right and up and k its backward axis in the world. Weighted least squares gives T, and what is
+left over, as fixed matrices of a frame times what is known of a posture: every posture and heading in one
+product.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How one state may follow another: on in its motion at a usual speed, turning a little, travelling as it does."""
+"""How one state may follow another: on in its motion at a usual speed, turning a little, travelling along."""
 
 from dataclasses import dataclass, field
 
