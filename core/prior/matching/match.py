@@ -1,4 +1,4 @@
-"""A library found in footage: which of its postures is seen when, where and in which heading, and how surely."""
+"""A library found in footage: which of its postures is seen when and where, in which heading, how surely."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,12 +12,16 @@ from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
 from ...library.library import Library
 from ...progress import Part
+from ..interpolation import interpolate
+from ..keyframes import Keyframe
 from .alternatives import alternatives
 from .candidate import MatchedFrame
 from .chains import library_chains
+from .course_table import CourseTable
 from .floor import FLOOR_STD_M, floor_height
 from .lattice import Lattice
-from .path import Path, path_postures
+from .path import Path
+from .refine import Course, Refinement
 from .sights import sights
 from .solids import marker_solids
 from .sweep import DEGREES, sweep, turned
@@ -29,7 +33,7 @@ HEADINGS = 24
 SAMPLES_PER_S = 15.0
 """Frames looked at: a motion's posture is known well between two that are this near."""
 CORRELATION_S = 0.25
-"""So long a performer is off the library's posture in the same way: frames nearer than that tell less each."""
+"""So long a performer is off the library's posture in the same way: frames nearer tell less each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,20 +97,21 @@ def match_library(sought: Sought, library: Library, floor_m: float | None) -> Pa
         yield 0.1 + 0.3 * index / len(seen)
     time_s = tracks.time_s[sampled]
     usual_s = float(np.median(np.diff(time_s)))
-    lattice = Lattice(chains, states, seen, fits, min(1.0, usual_s / CORRELATION_S), time_s)
+    tempering = min(1.0, usual_s / CORRELATION_S)
+    lattice = Lattice(chains, states, seen, fits, tempering, time_s)
     best = lattice.best_path()
     yield 0.7
     share, evidence = lattice.posterior()
     yield 0.95
-    path = Path(chains, states, seen, fits, best)
-    course = path_postures(path, sampled, tracks.frame_count)
+    path = Path(chains, states, seen, fits, best, time_s)
+    table = CourseTable(chains, solids)
+    refined = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M).refined(path.course())
+    course = _every_frame(table, refined, sampled, tracks.frame_count)
     frames = tuple(
         alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
-    return LibraryMatch(
-        library, frames, _fit(path), floor, course, evidence, int(len(sampled))
-    )
+    return LibraryMatch(library, frames, _fit(path), floor, course, evidence, int(len(sampled)))
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
@@ -115,6 +120,14 @@ def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Wh
     duration = float(tracks.time_s[-1] - tracks.time_s[0]) / max(count - 1, 1)
     stride = max(1, round(1.0 / SAMPLES_PER_S / duration)) if duration > 0.0 else 1
     return np.unique(np.concatenate([np.arange(0, count, stride), [count - 1], keyframes])).astype(np.intp)
+
+
+def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count: int) -> Posture:
+    """(F,) postures of the whole clip."""
+    time, heading, hips = course.values[:, 0], course.values[:, 1], course.values[:, 2:]
+    found = table.posture(course.chain, time, heading, hips)
+    keyframes = [Keyframe(int(frame), found[row]) for row, frame in enumerate(frames)]
+    return interpolate(tuple(keyframes), frame_count)
 
 
 def _fit(path: Path) -> float:

@@ -2,8 +2,9 @@
 
 A marker whose middle lies at r from the hips is seen at the normalised image place (x, y) where
 (a + x k) (T + r) = 0 and (b + y k) (T + r) = 0, with T the hips relative to the camera, a and b the camera's
-axes to the right and up and k its backward axis in the world. Weighted least squares gives T, and what is left
-over, as fixed matrices of a frame times what is known of a posture: every posture and heading in one product.
+axes to the right and up and k its backward axis in the world. Weighted least squares gives T, and what is
+left over, as fixed matrices of a frame times what is known of a posture: every posture and heading in one
+product.
 """
 
 from dataclasses import dataclass
@@ -40,6 +41,8 @@ class Sight:
     """(V, 3, 3 M + 2) the hips' place in the world [m], with all markers trusted, then with each doubted."""
     left: Array
     """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
+    weight: Array
+    """(M,) of each marker's middle, one over its standard deviation [1/m]; 0 where it is not seen."""
     information: Array
     """(3, 3) of the hips' place [1/m²]."""
     backward: Array
@@ -126,6 +129,7 @@ def _sight(
     return Sight(
         place,
         left,
+        weight,
         by_place.T @ by_place + np.eye(3) / FAR_M**2,
         back,
         location,

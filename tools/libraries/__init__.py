@@ -1,0 +1,1 @@
+"""Keyframe libraries composed from what literature says of joints and feet, for make_libraries.py."""

@@ -1,0 +1,136 @@
+"""What can be wrong with a composed library, in numbers, for tests and for whoever composes.
+
+Joints beyond their range, feet that slide or sink, arms in the trunk.
+"""
+
+import numpy as np
+from keymark.core.body.kinematics import Body, Pose
+from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import hinge
+from keymark.core.library.library import Library, LibraryMotion
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+from numpy.typing import NDArray
+
+from .solving import BALL, HEEL
+
+Array = NDArray[np.float64]
+
+SHARES_OF_MASS = {
+    "hand": (0.006, 0.5),
+    "forearm": (0.016, 0.43),
+    "upper_arm": (0.028, 0.436),
+    "thigh": (0.100, 0.433),
+    "shin": (0.0465, 0.433),
+    "foot": (0.0145, 0.5),
+    "pelvis": (0.217, 0.5),
+    "chest": (0.280, 0.5),
+    "head": (0.081, 0.8),
+}
+"""Of a part in the body's mass, and where along it its centre lies: Winter (2009), table 4.1; the trunk's is
+divided at the waist."""
+TRUNK_RADIUS_M = (0.15, 0.105)
+"""Half the trunk's width and depth between waist and chest."""
+
+
+def over_time(library: Library, motion: LibraryMotion, rate_hz: float = 60.0) -> tuple[Posture, Array]:
+    """Postures along a motion, through a cycle and to its first posture again, and their times (T,) [s]."""
+    steps = [(library.by_name[step.posture].posture, step.time_s) for step in motion.steps]
+    if motion.cyclic:
+        steps.append((_advanced(steps[0][0], motion), motion.duration_s))
+    frames = [int(round(time_s * 1000.0)) for _, time_s in steps]
+    keys = tuple(Keyframe(frame, posture) for frame, (posture, _) in zip(frames, steps, strict=True))
+    times = np.arange(0.0, steps[-1][1] + 1e-9, 1.0 / rate_hz)
+    at = np.minimum(np.rint(times * 1000.0).astype(int), frames[-1])
+    return interpolate(keys, frames[-1] + 1)[at], times
+
+
+def ranges_left(library: Library) -> list[str]:
+    """Every posture's degrees of freedom beyond their range."""
+    found = []
+    for name, posture in library.by_name.items():
+        skeleton = posture.posture.skeleton
+        values, limits = posture.posture.to_vector(), skeleton.limits
+        beyond = np.maximum(limits[:, 0] - values, values - limits[:, 1])
+        found += [
+            f"{name}: {skeleton.dof_names[i]} by {np.degrees(beyond[i]):.0f} degrees"
+            for i in np.flatnonzero(beyond > 0.0)
+        ]
+    return found
+
+
+def soles(body: Body, pose: Pose) -> Array:
+    """(..., 2) heights of the soles [m], left first; a foot is as flat as its ankle's place allows.
+
+    The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is flat.
+    """
+    lengths = body.actor.segments_m
+    heights = []
+    for side in ("L", "R"):
+        joint = body.skeleton.joint_index(f"shin.{side}")
+        ankle = pose.place(joint, np.array([0.0, 0.0, -lengths[f"shin.{side}"]]))
+        turns = pose.rotation[..., joint, :, :]
+        places = [turns @ (lengths[f"foot.{side}"] * np.array(place)) for place in (HEEL, BALL)]
+        rigid = np.min([place[..., 2] for place in places], axis=0)
+        flat = lengths[f"foot.{side}"] * HEEL[2]
+        heights.append(ankle[..., 2] + np.maximum(rigid, flat))
+    return np.stack(heights, axis=-1)
+
+
+def centre_of_mass(body: Body, pose: Pose) -> Array:
+    """(..., 3) [m]."""
+    total, weight = np.zeros((*pose.posture.batch, 3)), 0.0
+    for segment in body.skeleton.segments:
+        mass, share = SHARES_OF_MASS.get(segment.name.partition(".")[0], (0.0, 0.0))
+        start, end = body.segment_ends(pose, segment.name)
+        total, weight = total + mass * (start + share * (end - start)), weight + mass
+    return np.asarray(total / weight)
+
+
+def slides(body: Body, posture: Posture, times: Array, low_m: float = 0.02) -> float:
+    """The farthest that an ankle low over the floor and slow strays while it rests [m]."""
+    pose = body.pose(posture)
+    heights = soles(body, pose)
+    worst = 0.0
+    for column, side in enumerate(("L", "R")):
+        point = body.skeleton.point_names.index(f"ankle.{side}")
+        place = body.points(pose)[..., point, :2]
+        speed = np.linalg.norm(np.gradient(place, times, axis=0), axis=-1)
+        rests = (heights[:, column] < low_m) & (speed < 0.25)
+        for run in np.split(np.flatnonzero(rests), np.flatnonzero(np.diff(np.flatnonzero(rests)) > 1) + 1):
+            if len(run) >= 6:
+                middle = place[run[len(run) // 4 : -len(run) // 4 or None]]
+                worst = max(worst, float(np.linalg.norm(middle - middle.mean(axis=0), axis=-1).max()))
+    return worst
+
+
+def arms_in_trunk(body: Body, posture: Posture, limb_radius_m: float = 0.03) -> Array:
+    """(...,) how deep an elbow, a wrist or a hand is in the trunk, as a share of its radius; 0 is outside."""
+    pose = body.pose(posture)
+    deepest = np.zeros(posture.batch)
+    chest, pelvis = (body.skeleton.joint_index(name) for name in ("waist", "pelvis"))
+    for side in ("L", "R"):
+        places = [*body.segment_ends(pose, f"forearm.{side}"), body.segment_ends(pose, f"hand.{side}")[1]]
+        for joint in (chest, pelvis):
+            top = body.actor.segments_m["trunk"] * (0.6 if joint == chest else 0.4)
+            for place in places:
+                away = (place - pose.origin[..., joint, :])[..., None]
+                x, y, z = np.moveaxis((_transposed(pose.rotation[..., joint, :, :]) @ away)[..., 0], -1, 0)
+                wide, deep = (radius + limb_radius_m for radius in TRUNK_RADIUS_M)
+                beside = np.hypot(x / wide, y / deep)
+                inside = np.where((z > 0.0) & (z < top), 1.0 - beside, 0.0)
+                deepest = np.maximum(deepest, inside)
+    return np.asarray(deepest)
+
+
+def _transposed(matrices: Array) -> Array:
+    return np.swapaxes(matrices, -1, -2)
+
+
+def _advanced(posture: Posture, motion: LibraryMotion) -> Posture:
+    """A cycle's first posture as it comes again."""
+    turn = hinge(np.array([0.0, 0.0, 1.0]), np.asarray(motion.travel[2]))
+    rotations = posture.rotations.copy()
+    rotations[0] = turn @ rotations[0]
+    place = turn @ posture.translation + np.array([motion.travel[0], motion.travel[1], 0.0])
+    return Posture(posture.skeleton, place, rotations, posture.angles)
