@@ -67,11 +67,19 @@ def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:
     )
     facing = np.radians(moment.pelvis.turn)
     wanted = wanted + ahead_m * np.array([np.sin(facing), -np.cos(facing)])
-    moved = replace(moment, x=float(wanted[0]), y=float(wanted[1]))
+    return balanced_over(replace(moment, x=float(wanted[0]), y=float(wanted[1])), *wanted.tolist())
+
+
+def balanced_over(moment: Moment, x: float = 0.0, y: float = -BEFORE_ANKLE_M) -> Moment:
+    """A moment with its hips moved until its mass is over a place on the floor [m].
+
+    Its hands and feet stay where they are; by default the place is before ankles at the world's origin.
+    """
+    wanted = np.array([x, y])
     for _ in range(STEPS):
-        away = wanted - mass_of(moved)[:2]
-        moved = replace(moved, x=moved.x + float(away[0]), y=moved.y + float(away[1]))
-    return moved
+        away = wanted - mass_of(moment)[:2]
+        moment = replace(moment, x=moment.x + float(away[0]), y=moment.y + float(away[1]))
+    return moment
 
 
 def thrown(moment: Moment, mass: Array) -> Moment:

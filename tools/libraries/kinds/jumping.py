@@ -12,8 +12,8 @@ from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 SOURCES = (
     "Bobbert, M. F. & van Ingen Schenau, G. J. (1988). Coordination in vertical jumping. Journal of"
     " Biomechanics 21.",
-    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances performance in"
-    " the vertical jump. Journal of Biomechanics 37.",
+    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances performance"
+    " in the vertical jump. Journal of Biomechanics 37.",
     "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human Movement"
     " Science 24.",
     "Hay, J. G. (1993). The Biomechanics of Sports Techniques, 4th ed.",
