@@ -24,7 +24,7 @@ class KEYMARK_OT_add_posture(bpy.types.Operator):
     )
     on_floor: bpy.props.BoolProperty(
         name="Stands on the Floor",
-        description="Let the lower sole touch the floor; off: the floor is at z = 0 of the world, as in a jump",
+        description="Let the lower sole touch the floor; off: as high as it is above z = 0, as in a jump",
         default=True,
     )
     replace: bpy.props.BoolProperty(

@@ -8,12 +8,11 @@ import bpy
 from .running.failures import reported
 from .running.requirements import all_met, idle
 from .running.say import say
-from .scene.library_exchange import CHOICES, conflicts, keep_on_shelf, on_shelf, settled
+from .scene.library_exchange import CHOICES, Conflict, conflicts, keep_on_shelf, on_shelf, settled
 from .ui.choose_existing import WIDTH, draw_question
 
 if TYPE_CHECKING:
     from ..core.library.library import Library
-    from .scene.library_exchange import Conflict
 
 
 class KEYMARK_OT_import_library(bpy.types.Operator):
@@ -38,7 +37,7 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    _found: "list[Conflict]" = []
+    _found: list[Conflict] = []
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

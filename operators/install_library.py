@@ -10,12 +10,11 @@ from .running.redraw import refresh_asset_browsers
 from .running.requirements import all_met, idle
 from .running.say import say
 from .scene.library_choice import chosen_library
-from .scene.library_exchange import CHOICES, asset_libraries, conflicts, settled
+from .scene.library_exchange import CHOICES, Conflict, asset_libraries, conflicts, settled
 from .ui.choose_existing import WIDTH, draw_question
 
 if TYPE_CHECKING:
     from ..core.library.library import Library
-    from .scene.library_exchange import Conflict
 
 FOLDER = "keymark"
 """In the asset library."""
@@ -38,7 +37,7 @@ class InstallOperator:
     bl_options = {"REGISTER"}
     existing: str
     asset_library: str
-    _found: "list[Conflict]" = []
+    _found: list[Conflict] = []
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

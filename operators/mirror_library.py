@@ -40,7 +40,6 @@ class KEYMARK_OT_mirror_library(bpy.types.Operator):
 
             from ..core.body.mirror import mirrored
             from ..core.errors import InputError
-            from ..core.library.mirroring import mirrored_library
             from ..core.library.texts import identifier_from
             from .scene.libraries import add_library, library_of
             from .scene.library_postures import add_named
@@ -48,6 +47,8 @@ class KEYMARK_OT_mirror_library(bpy.types.Operator):
             group = library_here(context.scene)
             library = library_of(group)
             if self.what == "LIBRARY":
+                from ..core.library.mirroring import mirrored_library
+
                 taken = [other.identifier for other in context.scene.keymark.libraries]
                 title = _with_word(library.title)
                 made = replace(

@@ -13,7 +13,7 @@ class KEYMARK_OT_open_dropped(bpy.types.Operator):
 
     bl_idname = "keymark.open_dropped"
     bl_label = "Open Take or Library"
-    bl_options = {"INTERNAL"}
+    bl_options = {"REGISTER", "INTERNAL"}
 
     filepath: bpy.props.StringProperty(name="File Path", subtype="FILE_PATH", options={"SKIP_SAVE"})
 
