@@ -58,8 +58,10 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         """Draw the dialog."""
         layout = self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
-        for name in ("title", "author", "license", "count", "for_matching"):
+        for name in ("title", "author", "license"):
             layout.prop(self, name)
+        layout.prop(self, "count", text="Postures (0: Automatic)")
+        layout.prop(self, "for_matching")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Learn it, keep it in the scene as pose assets, and on the shelf where that is wanted."""
