@@ -164,7 +164,10 @@ def _place_arm(
     girdle = hips + rotations["pelvis"] @ offsets["waist"] + chest @ offsets[f"girdle.{side}"]
     shoulder = girdle + lifted @ offsets[f"shoulder.{side}"]
     reach = np.array([arm.x, arm.y, arm.z]) - shoulder
-    distance, stretched = np.linalg.norm(reach), STRETCHED * (lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"])
+    distance, stretched = (
+        np.linalg.norm(reach),
+        STRETCHED * (lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"]),
+    )
     if stretched < distance < stretched + arm.short:
         reach *= stretched / distance
     turn, elbow = _reach(

@@ -4,13 +4,22 @@ The pace is a class's of 128 beats a minute; an exercise takes one, two or four 
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from keymark.core.library.library import Library
 
-from ..placing import balanced
+from ..balance import balanced_over
 from ..composing import Composer
 from ..moment import Arm, Foot, Leg, Moment, Turn, mirrored, moment
 
+SOURCES = (
+    "Costa, M. J. et al. (2011). The influence of musical cadence into aquatic jumping jacks kinematics."
+    " Journal of Sports Science and Medicine 10.",
+    "Bishop, J. G. (2013). Fitness through Aerobics, 9th ed.",
+    "Inman, V. T., Saunders, J. B. & Abbott, L. C. (1944). Observations on the function of the shoulder"
+    " joint. Journal of Bone and Joint Surgery 26.",
+    "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
+)
 BEAT_S = 60.0 / 128.0
 HIP_WIDE = Foot(0.10, 0.0, turn=8.0)
 CARRYING = Foot(-0.09, 0.0, turn=-8.0)
@@ -23,17 +32,9 @@ def library() -> Library:
     work = Composer(
         "aerobic",
         "Aerobic Exercise",
-        "Side steps, step touches, knee lifts, marching, raises of the arms, jumping jacks and curls, at 128 beats "
-        "a minute.",
-        (
-            "Costa et al. (2011), The influence of musical cadence into aquatic jumping jacks kinematics, Journal "
-            "of Sports Science and Medicine 10: cadences of 120 to 180 beats a minute, two a jump.",
-            "American College of Sports Medicine (2021), Guidelines for Exercise Testing and Prescription, 11th "
-            "ed.: the exercises of a class.",
-            "Inman, Saunders & Abbott (1944), Observations on the function of the shoulder joint, Journal of Bone "
-            "and Joint Surgery 26: the shoulder's own lift beside the arm's.",
-            "Winter (2009), Biomechanics and Motor Control of Human Movement, 4th ed.: centres of mass.",
-        ),
+        "Side steps, step touches, knee lifts, marching, raises of the arms, jumping jacks and curls, at a"
+        " music of 128 beats a minute.",
+        SOURCES,
         ("exercise",),
     )
     work.pose("standing", _standing(HANGING), "standing")
@@ -46,7 +47,7 @@ def library() -> Library:
 
 
 def _standing(arms: Arm, bend: float = 8.0, trunk: float = 2.0) -> Moment:
-    return balanced(
+    return balanced_over(
         moment(arms=arms, legs=HIP_WIDE, bend=bend, pelvis=Turn(bow=trunk), waist=Turn(bow=1.0 + trunk))
     )
 
@@ -69,10 +70,13 @@ def _side_steps(work: Composer) -> None:
     here, there = HIP_WIDE, Foot(HIP_WIDE.x + far, 0.0, turn=8.0)
     behind = Foot(-HIP_WIDE.x, 0.0, turn=-8.0)
     names = ["standing"]
+    leaving, landing = Foot(here.x + 0.20, -0.02, 8.0, 18.0, 0.06), replace(there, pitch=14.0)
+    pushing, closing = replace(behind, pitch=6.0), Foot(0.14, -0.01, -8.0, 20.0, 0.05)
     for name, left, right, centre, arms, bend, lean in (
-        ("side step: leaving", Foot(here.x + 0.20, -0.02, 8.0, 18.0, 0.06), behind, 0.03, _raised(46, 12, 24), 18, -2),
-        ("side step: apart", there, Foot(-HIP_WIDE.x, 0.0, -8.0, 6.0), 0.26, _raised(90, 6, 12), 16, 0),
-        ("side step: closing", there, Foot(0.14, -0.01, -8.0, 20.0, 0.05), 0.45, _raised(44, 30, 48), 16, 2),
+        ("leaving", leaving, behind, 0.03, _raised(46, 12, 24), 18, -2),
+        ("landing", landing, behind, 0.13, _raised(74, 8, 18), 18, -1),
+        ("apart", there, pushing, 0.26, _raised(90, 6, 12), 16, 0),
+        ("closing", there, closing, 0.45, _raised(44, 30, 48), 16, 2),
     ):
         posed = moment(
             left_leg=left,
@@ -82,8 +86,8 @@ def _side_steps(work: Composer) -> None:
             pelvis=Turn(bow=4, lean=-lean),
             waist=Turn(bow=3, lean=lean),
         )
-        names.append(work.pose(name, balanced(posed, centre), "side step"))
-    steps = [(name, beat * BEAT_S) for name, beat in zip(names, (0.0, 0.5, 1.0, 1.55), strict=True)]
+        names.append(work.pose(f"side step: {name}", balanced_over(posed, centre), "side step"))
+    steps = [(name, beat * BEAT_S) for name, beat in zip(names, (0.0, 0.5, 0.78, 1.0, 1.55), strict=True)]
     work.motion("side step", steps, 2.0 * BEAT_S, cyclic=True, travel=(far, 0.0, 0.0))
 
 
@@ -117,13 +121,13 @@ def _step_touches(work: Composer) -> None:
     stride = moment(
         legs=Foot(0.32, 0.0, 10.0), arms=Arm(14, 35, 10, 34), bend=20, pelvis=Turn(bow=5), waist=Turn(bow=4)
     )
-    work.pose("step touch: apart", balanced(stride), "step touch")
+    work.pose("step touch: apart", balanced_over(stride), "step touch")
     for name, posed, centre in (
         ("step touch: touching", touch, 0.29),
         ("step touch: passing", passing, 0.25),
         ("leg curl", curl, 0.31),
     ):
-        posed = balanced(posed, centre)
+        posed = balanced_over(posed, centre)
         work.pose(f"{name} left", posed, "step touch")
         work.pose(f"{name} right", mirrored(posed), "step touch")
     passing_left, passing_right = (f"step touch: passing {side}" for side in ("left", "right"))
@@ -137,7 +141,7 @@ def _knee_lifts(work: Composer) -> None:
     """High knees with the opposite arm, with the arms wide, and marching on the spot."""
 
     def lifted(hip: float, knee: float, left: Arm, right: Arm, turn: float) -> Moment:
-        return balanced(
+        return balanced_over(
             moment(
                 left_leg=Leg(flexion=hip, abduction=4, knee=knee, ankle=25),
                 right_leg=CARRYING,
@@ -179,7 +183,7 @@ def _knee_lifts(work: Composer) -> None:
         waist=Turn(bow=2),
     )
     work.pose("march: left", march, "march")
-    work.pose("march: changing", balanced(change), "march")
+    work.pose("march: changing", balanced_over(change), "march")
     work.pose("march: right", mirrored(march), "march")
     names = ["march: left", "march: changing", "march: right", "march: changing"]
     _counted(work, "march", names, (0.0, 0.5, 1.0, 1.5, 2.0))
@@ -224,11 +228,17 @@ def _jumping_jacks(work: Composer) -> None:
         ("crouched", moment(legs=Foot(0.09, 0.0, 8.0), arms=HANGING, bend=38, **trunk)),
         ("leaving", moment(legs=Foot(0.09, 0.0, 8.0, 38.0), arms=_raised(38, 12, 24), bend=14, **trunk)),
         ("opening", moment(legs=flying, arms=_raised(92, 12, 26), lift=0.05, **trunk)),
-        ("landing apart", moment(legs=Foot(apart, 0.0, 12.0, 22.0), arms=_raised(142, 14, 22), bend=24, **trunk)),
+        (
+            "landing apart",
+            moment(legs=Foot(apart, 0.0, 12.0, 22.0), arms=_raised(142, 14, 22), bend=24, **trunk),
+        ),
         ("apart", moment(legs=Foot(apart, 0.0, 12.0), arms=_raised(166, 22, 22), bend=36, **trunk)),
-        ("leaving apart", moment(legs=Foot(apart, 0.0, 12.0, 34.0), arms=_raised(142, 14, 30), bend=14, **trunk)),
+        (
+            "leaving apart",
+            moment(legs=Foot(apart, 0.0, 12.0, 34.0), arms=_raised(142, 14, 30), bend=14, **trunk),
+        ),
         ("closing", moment(legs=flying, arms=_raised(76, 12, 40), lift=0.04, **trunk)),
     ):
         ahead = -0.08 if "leaving" in name else -0.05
-        names.append(work.pose(f"jumping jack: {name}", balanced(posed, y=ahead), "jumping jack"))
+        names.append(work.pose(f"jumping jack: {name}", balanced_over(posed, y=ahead), "jumping jack"))
     _counted(work, "jumping jack", names, (0.0, 0.28, 0.54, 0.80, 1.06, 1.30, 1.56, 2.0))

@@ -1,20 +1,22 @@
-"""Boxing: a guard, straight punches, hooks and uppercuts with either hand, slips, a duck, a block and footwork;
-and punches of a wide stance with fists that start at the hips. Left leads; mirrored it is a southpaw's.
+"""Boxing from a guard that the left hand leads, and straight punches from a wide stance.
+
+Mirrored, the right hand leads.
 """
 
 from dataclasses import replace
 
 from keymark.core.library.library import Library
 
+from ..balance import balanced_over
 from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Hand, Moment, Turn, mirrored, moment
-from ..placing import balanced, pivoted
+from ..placing import pivoted
 
 SOURCES = (
-    "Stanley, E. et al. (2018). An analysis of the three-dimensional kinetics and kinematics of maximal effort"
-    " punches among amateur boxers. International Journal of Performance Analysis in Sport 18.",
-    "Piorkowski, B. A., Lees, A. & Barton, G. J. (2011). Single maximal versus combination punch kinematics. Sports"
-    " Biomechanics 10.",
+    "Stanley, E. et al. (2018). An analysis of the three-dimensional kinetics and kinematics of maximal"
+    " effort punches among amateur boxers. International Journal of Performance Analysis in Sport 18.",
+    "Piorkowski, B. A., Lees, A. & Barton, G. J. (2011). Single maximal versus combination punch"
+    " kinematics. Sports Biomechanics 10.",
     "Dinu, D. & Louis, J. (2020). Biomechanical analysis of the cross, hook, and uppercut in junior vs. elite"
     " boxers. Frontiers in Sports and Active Living 2.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
@@ -32,13 +34,13 @@ def library() -> Library:
     work = Composer(
         "punching",
         "Punching",
-        "Jab, cross, hooks and uppercuts from a boxer's guard, slips, ducking, blocking and footwork; straight "
-        "punches from a wide stance.",
+        "Jab, cross, hooks and uppercuts from a boxer's guard, slips, ducking, blocking and footwork;"
+        " straight punches from a wide stance.",
         SOURCES,
         ("sport", "fight"),
     )
     standing = moment(legs=Foot(0.11, 0.0, 9.0), bend=8, pelvis=Turn(bow=1), waist=Turn(bow=2))
-    work.pose("standing", balanced(standing), "standing")
+    work.pose("standing", balanced_over(standing), "standing")
     work.pose("guard", _boxing(), "guard")
     _straight_punches(work)
     _bent_punches(work)
@@ -64,16 +66,19 @@ def _boxing(
     """A boxer.
 
     Args:
-        left, right: The arms.
+        left: The lead arm.
+        right: The rear arm.
         turn: Of the hips from those of the guard, to the left [degrees].
         chest: Of the chest on the hips, likewise.
-        bow, lean: Of the trunk beyond the guard's, forward and to the left.
+        bow: Of the trunk beyond the guard's, forward.
+        lean: Of the trunk, to the left.
         bend: Least flexion of the knees.
-        forward, aside: Of the weight, from the middle of the feet and to the left [m].
+        forward: How far the weight is before the middle of the feet [m].
+        aside: How far it is to the left [m].
         feet: The lead foot and the rear one.
     """
     weight = 0.5 * (feet[0].y + feet[1].y) - 0.05 - forward
-    return balanced(
+    return balanced_over(
         moment(
             y=weight,
             left_leg=feet[0],
@@ -90,7 +95,9 @@ def _boxing(
     )
 
 
-def _fist(x: float, ahead: float, height: float, swivel: float, pronation: float, girdle: float = 10.0) -> Hand:
+def _fist(
+    x: float, ahead: float, height: float, swivel: float, pronation: float, girdle: float = 10.0
+) -> Hand:
     """A wrist at a place or as near as it gets."""
     return Hand(x, -ahead, height, swivel, pronation, girdle, short=0.3)
 
@@ -109,14 +116,18 @@ def _lead_pivot(turn: float, pitch: float) -> tuple[Foot, Foot]:
 
 
 def _straight_punches(work: Composer) -> None:
-    """Jab with the lead hand, cross with the rear, and a jab to the body; a third of a second to the target."""
+    """Jab with the lead hand, cross with the rear, a jab to the body; a third of a second to the target."""
     for name, posed in (
         ("jab: halfway", _boxing(_fist(0.05, 0.58, 1.42, 24, 50, 8), turn=-4, chest=-8, forward=0.02)),
         ("jab", _boxing(_fist(0.02, 1.0, 1.43, 42, 75, 14), turn=-8, chest=-20, bow=2, forward=0.06)),
         (
             "cross: halfway",
             _boxing(
-                right=_fist(-0.06, 0.44, 1.40, 30, 40, 6), turn=16, chest=8, forward=0.03, feet=_rear_pivot(18, 26)
+                right=_fist(-0.06, 0.44, 1.40, 30, 40, 6),
+                turn=16,
+                chest=8,
+                forward=0.03,
+                feet=_rear_pivot(18, 26),
             ),
         ),
         (
@@ -138,7 +149,9 @@ def _straight_punches(work: Composer) -> None:
         work.pose(name, posed, "straight")
     _from_guard(work, "jab", (("jab: halfway", 0.14), ("jab", 0.26), ("jab: halfway", 0.42), ("guard", 0.62)))
     _from_guard(work, "jab to the body", (("jab to the body", 0.34), ("guard", 0.80)))
-    _from_guard(work, "cross", (("cross: halfway", 0.17), ("cross", 0.32), ("cross: halfway", 0.52), ("guard", 0.78)))
+    _from_guard(
+        work, "cross", (("cross: halfway", 0.17), ("cross", 0.32), ("cross: halfway", 0.52), ("guard", 0.78))
+    )
     _from_guard(
         work,
         "jab and cross",
@@ -156,7 +169,7 @@ def _straight_punches(work: Composer) -> None:
 
 def _bent_punches(work: Composer) -> None:
     """Hooks swing level around the body, uppercuts rise from below the chest; both with the elbow bent."""
-    hooking, swinging = Arm(80, 48, 76, 88, 40, 10), Arm(72, 8, 50, 92, 30, 8)
+    hooking, swinging = Arm(92, 52, 36, 86, 40, 10), Arm(72, 12, 14, 88, 30, 8)
     loaded, rising = Arm(14, 18, 6, 104, -20), Arm(58, 84, 8, 98, -60, 8)
     for name, posed in (
         ("lead hook: swinging", _boxing(swinging, turn=6, chest=12, lean=4)),
@@ -172,10 +185,22 @@ def _bent_punches(work: Composer) -> None:
         ),
         (
             "rear uppercut",
-            _boxing(right=rising, turn=34, chest=18, bow=-6, lean=4, bend=14, forward=0.04, feet=_rear_pivot(40, 40)),
+            _boxing(
+                right=rising,
+                turn=34,
+                chest=18,
+                bow=-6,
+                lean=4,
+                bend=14,
+                forward=0.04,
+                feet=_rear_pivot(40, 40),
+            ),
         ),
         ("lead uppercut: loaded", _boxing(loaded, turn=12, chest=14, bow=10, lean=14, bend=44, aside=0.03)),
-        ("lead uppercut", _boxing(rising, turn=-16, chest=-14, bow=-6, lean=-4, bend=14, feet=_lead_pivot(-20, 14))),
+        (
+            "lead uppercut",
+            _boxing(rising, turn=-16, chest=-14, bow=-6, lean=-4, bend=14, feet=_lead_pivot(-20, 14)),
+        ),
     ):
         work.pose(name, posed, "hook" if "hook" in name else "uppercut")
     for name, first in (
@@ -193,11 +218,13 @@ def _defence(work: Composer) -> None:
     for name, posed in (
         ("slip to the left", _boxing(turn=8, chest=10, bow=14, lean=24, bend=40, aside=0.05)),
         ("slip to the right", _boxing(turn=-10, chest=-10, bow=14, lean=-24, bend=42, aside=-0.05)),
-        ("duck", _boxing(bow=26, bend=76, forward=0.02)),
         ("block", _boxing(high, high, bow=12, bend=30)),
     ):
         work.pose(name, posed, "defence")
         _from_guard(work, name, ((name, 0.32), ("guard", 0.72)))
+    work.pose("duck: half", _boxing(bow=13, bend=50, forward=0.01), "defence")
+    work.pose("duck", _boxing(bow=26, bend=76, forward=0.02), "defence")
+    _from_guard(work, "duck", (("duck: half", 0.18), ("duck", 0.36), ("duck: half", 0.56), ("guard", 0.76)))
 
 
 def _footwork(work: Composer) -> None:
@@ -230,7 +257,7 @@ def _from_a_wide_stance(work: Composer) -> None:
     passing = Arm(26, 76, 20, 88, 20, 4)
 
     def square(left: AnyArm, right: AnyArm, turn: float) -> Moment:
-        return balanced(
+        return balanced_over(
             moment(
                 legs=stance,
                 left_arm=left,

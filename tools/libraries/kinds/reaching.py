@@ -1,20 +1,21 @@
-"""Reaching from standing: to the front, far to the front, up, across, to the side and to the floor, with one
-hand or both, and with a step. The right hand reaches; mirrored it is the left.
+"""Reaching to the front, up, across, aside and to the floor, with one hand or both, standing or with a step.
+
+Where one hand reaches it is the right; mirrored it is the left.
 """
 
 from dataclasses import replace
 
 from keymark.core.library.library import Library
 
+from ..balance import BEFORE_ANKLE_M, balanced_over
 from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Hand, Moment, Turn, moment
-from ..placing import AT_EASE_M, balanced
 
 SOURCES = (
-    "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed mathematical"
-    " model. Journal of Neuroscience 5.",
-    "Vandenberghe, A. et al. (2010). Three-dimensional reaching tasks: effect of reaching height and width on upper"
-    " limb kinematics and muscle activity. Gait & Posture 32.",
+    "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed"
+    " mathematical model. Journal of Neuroscience 5.",
+    "Vandenberghe, A. et al. (2010). Three-dimensional reaching tasks: effect of reaching height and width"
+    " on upper limb kinematics and muscle activity. Gait & Posture 32.",
     "Kaminski, T. R., Bock, C. & Gentile, A. M. (1995). The coordination between trunk and arm motion during"
     " pointing movements. Experimental Brain Research 106.",
     "Braman, J. P. et al. (2009). In vivo assessment of scapulohumeral rhythm during unconstrained overhead"
@@ -33,8 +34,8 @@ def library() -> Library:
     work = Composer(
         "reaching",
         "Reaching",
-        "One hand or both reach to the front, up to a shelf, across, to the side or to the floor, standing or with "
-        "a step.",
+        "One hand or both reach to the front, up to a shelf, across, to the side or to the floor, standing"
+        " or with a step.",
         SOURCES,
         ("work", "everyday"),
     )
@@ -60,13 +61,13 @@ def _reaching(
     bend: float = 8.0,
     head: tuple[float, float] = (0.0, 0.0),
     feet: tuple[Foot, Foot] = (LEFT_FOOT, RIGHT_FOOT),
-    over: tuple[float, float] = (0.0, AT_EASE_M),
+    over: tuple[float, float] = (0.0, -BEFORE_ANKLE_M),
 ) -> Moment:
-    """The trunk helps by bowing, leaning to the left and turning to the left; a third of the turn is the hips'.
+    """A trunk that helps by bowing, leaning and turning to the left; a third of the turn is the hips'.
 
     `head` nods down and turns to the left; `over` is where the weight is.
     """
-    return balanced(
+    return balanced_over(
         moment(
             x=over[0],
             y=over[1],
@@ -159,10 +160,17 @@ def _aside(work: Composer) -> None:
         ("across", _reaching(_at(0.26, 0.42, 1.24, 60, 6), bow=3, waist=4, turn=38, head=(0, 10))),
         (
             "low across",
-            _reaching(_at(0.36, 0.30, 0.66, 40, 2), bow=16, waist=22, lean=8, turn=34, bend=18, head=(14, 10)),
+            _reaching(
+                _at(0.36, 0.30, 0.66, 40, 2), bow=16, waist=22, lean=8, turn=34, bend=18, head=(14, 10)
+            ),
         ),
         ("side: half", _reaching(Arm(46, 24, 10, 56), turn=-6, head=(0, -20))),
-        ("side", _reaching(Arm(86, 8, 6, 10, 10, 8), lean=-5, turn=-16, head=(2, -34), over=(-0.02, AT_EASE_M))),
+        (
+            "side",
+            _reaching(
+                Arm(86, 8, 6, 10, 10, 8), lean=-5, turn=-16, head=(2, -34), over=(-0.02, -BEFORE_ANKLE_M)
+            ),
+        ),
         (
             "down beside",
             _reaching(
@@ -189,22 +197,41 @@ def _to_the_floor(work: Composer) -> None:
     balancing = Arm(72, 76, 10, 26)
     for name, posed in (
         ("floor: bowing", _reaching(Arm(30, 80, 14, 26), HANGING, bow=18, waist=14, bend=26, head=(4, 0))),
-        ("floor: low", _reaching(Arm(54, 84, 10, 16), Arm(48, 76, 10, 22), bow=36, waist=28, bend=60, head=(-6, 0))),
+        (
+            "floor: low",
+            _reaching(Arm(54, 84, 10, 16), Arm(48, 76, 10, 22), bow=36, waist=28, bend=60, head=(-6, 0)),
+        ),
         (
             "floor",
             _reaching(
-                _at(-0.10, 0.42, 0.20), balancing, bow=48, waist=38, turn=12, bend=88, head=(-12, 0), over=(0, -0.08)
+                _at(-0.10, 0.42, 0.20),
+                balancing,
+                bow=48,
+                waist=38,
+                turn=12,
+                bend=88,
+                head=(-12, 0),
+                over=(0, -0.08),
             ),
         ),
         (
             "floor, to the right",
             _reaching(
-                _at(-0.42, 0.20, 0.20), balancing, bow=44, waist=36, lean=-10, turn=-26, bend=88, head=(-4, -10)
+                _at(-0.42, 0.20, 0.20),
+                balancing,
+                bow=44,
+                waist=36,
+                lean=-10,
+                turn=-26,
+                bend=88,
+                head=(-4, -10),
             ),
         ),
         (
             "floor, to the left",
-            _reaching(_at(0.28, 0.34, 0.20), balancing, bow=46, waist=40, lean=4, turn=34, bend=84, head=(-4, 10)),
+            _reaching(
+                _at(0.28, 0.34, 0.20), balancing, bow=46, waist=40, lean=4, turn=34, bend=84, head=(-4, 10)
+            ),
         ),
     ):
         work.pose(name, posed, "one hand", "floor")
@@ -225,13 +252,15 @@ def _with_both_hands(work: Composer) -> None:
         ("both hands: front", _both(front, 5, 6, 8)),
         ("both hands: shelf", _both(overhead, 0, -4, 8, -18)),
         ("both hands: bowing", _both(Arm(38, 82, 12, 22), 22, 18, 30, 4)),
+        ("both hands: low", _both(Arm(58, 84, 10, 18), 38, 30, 58, -4)),
         ("both hands: floor", _both(floor, 48, 40, 84, -8)),
     ):
         work.pose(name, posed, "both hands")
     first = "both hands: half"
     _there_and_back(work, "both hands to the front", (first, "both hands: front"))
     _there_and_back(work, "both hands to a shelf", (first, "both hands: shelf"), 0.9)
-    _there_and_back(work, "both hands to the floor", ("both hands: bowing", "both hands: floor"), FLOOR_S)
+    low = ("both hands: bowing", "both hands: low", "both hands: floor")
+    _there_and_back(work, "both hands to the floor", low, FLOOR_S)
 
 
 def _both(arms: Arm | Hand, bow: float, waist: float, bend: float, head: float = 0.0) -> Moment:

@@ -1,26 +1,27 @@
-"""Squats and lunges, and boxes lifted with the legs, with the back, or in between; turned with, put on a shelf."""
+"""Squats and lunges, and boxes lifted with the legs, the back or both, turned with and put on a shelf."""
 
 from dataclasses import replace
 
 from keymark.core.library.library import Library
 
+from ..balance import balanced_over
 from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Hand, Moment, Turn, moment
-from ..placing import balanced, pivoted
+from ..placing import pivoted
 
 SOURCES = (
-    "Hwang, S., Kim, Y. & Kim, Y. (2009). Lower extremity joint kinetics and lumbar curvature during squat and"
-    " stoop lifting. BMC Musculoskeletal Disorders 10.",
-    "von Arx, M. et al. (2021). From stoop to squat: a comprehensive analysis of lumbar loading among different"
-    " lifting styles. Frontiers in Bioengineering and Biotechnology 9.",
-    "Davis, K. G., Splittstoesser, R. E. & Marras, W. S. (2002). Kinematic contribution and synchronization of the"
-    " trunk, hip, and knee during free-dynamic lifting. Occupational Ergonomics 3.",
-    "Zawadka, M. et al. (2020). How are squat timing and kinematics in the sagittal plane related to squat depth?"
-    " Journal of Sports Science and Medicine 19.",
-    "Schoenfeld, B. J. (2010). Squatting kinematics and kinetics and their application to exercise performance."
-    " Journal of Strength and Conditioning Research 24.",
-    "Riemann, B. L. et al. (2012). Biomechanical analysis of the anterior lunge during 4 external-load conditions."
-    " Journal of Athletic Training 47.",
+    "Hwang, S., Kim, Y. & Kim, Y. (2009). Lower extremity joint kinetics and lumbar curvature during squat"
+    " and stoop lifting. BMC Musculoskeletal Disorders 10.",
+    "von Arx, M. et al. (2021). From stoop to squat: a comprehensive analysis of lumbar loading among"
+    " different lifting styles. Frontiers in Bioengineering and Biotechnology 9.",
+    "Davis, K. G., Splittstoesser, R. E. & Marras, W. S. (2002). Kinematic contribution and"
+    " synchronization of the trunk, hip, and knee during free-dynamic lifting. Occupational Ergonomics 3.",
+    "Zawadka, M. et al. (2020). How are squat timing and kinematics in the sagittal plane related to squat"
+    " depth? Journal of Sports Science and Medicine 19.",
+    "Schoenfeld, B. J. (2010). Squatting kinematics and kinetics and their application to exercise"
+    " performance. Journal of Strength and Conditioning Research 24.",
+    "Riemann, B. L. et al. (2012). Biomechanical analysis of the anterior lunge during 4 external-load"
+    " conditions. Journal of Athletic Training 47.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 FEET = Foot(0.15, 0.0, turn=12.0)
@@ -35,8 +36,8 @@ def library() -> Library:
     work = Composer(
         "squatting_lifting",
         "Squatting and Lifting",
-        "Squats, lunges and kneeling; a box lifted from the floor with bent knees, with a bent back or freely, "
-        "carried to the side or put on a shelf.",
+        "Squats, lunges and kneeling; a box lifted from the floor with bent knees, with a bent back or"
+        " freely, carried to the side or put on a shelf.",
         SOURCES,
         ("exercise", "work"),
     )
@@ -49,9 +50,11 @@ def library() -> Library:
     return work.library()
 
 
-def _bent(bend: float, pelvis: float, waist: float, arms: AnyArm, feet: Foot = FEET, heels: float = 0.0) -> Moment:
+def _bent(
+    bend: float, pelvis: float, waist: float, arms: AnyArm, feet: Foot = FEET, heels: float = 0.0
+) -> Moment:
     """Knees bent, the trunk bowed in two parts; the head looks ahead as far as it can."""
-    return balanced(
+    return balanced_over(
         moment(
             legs=replace(feet, pitch=heels),
             arms=arms,
@@ -111,7 +114,10 @@ def _stoop_lifts(work: Composer) -> None:
     down = [("standing", 0.0), ("stoop: quarter", 0.45), ("stoop: half", 0.8), ("stoop: grasping", 1.3)]
     up = [("stoop: grasping", 1.6), ("stoop: half", 2.0), ("stoop: quarter", 2.3), ("box at the waist", 2.8)]
     work.motion("stoop lift", [*down, *up])
-    work.motion("touching the floor with straight knees", [*down, *((name, t) for name, t in up[:3]), ("standing", 2.8)])
+    work.motion(
+        "touching the floor with straight knees",
+        [*down, *((name, t) for name, t in up[:3]), ("standing", 2.8)],
+    )
     work.motion(
         "free lift",
         [
@@ -154,7 +160,10 @@ def _squat_lifts(work: Composer) -> None:
             ("box at the waist", 2.8),
         ],
     )
-    for name, top, seconds in (("to a shelf", "box on a shelf", 0.5), ("to a high shelf", "box on a high shelf", 0.75)):
+    for name, top, seconds in (
+        ("to a shelf", "box on a shelf", 0.5),
+        ("to a high shelf", "box on a high shelf", 0.75),
+    ):
         steps = [("box at the waist", 0.0), ("box at the chest", 0.5), (top, 0.5 + seconds)]
         steps += [("letting go of a box", 1.1 + seconds), ("standing", 1.7 + seconds)]
         work.motion(name, steps)
@@ -165,7 +174,7 @@ def _turns_with_a_box(work: Composer) -> None:
     carried = Arm(22, 62, 14, 86, -30)
 
     def holding(left: Foot, right: Foot, pelvis: float, waist: float, x: float, y: float) -> Moment:
-        return balanced(
+        return balanced_over(
             moment(
                 left_leg=left,
                 right_leg=right,
@@ -184,7 +193,10 @@ def _turns_with_a_box(work: Composer) -> None:
     for name, posed in (
         ("turn with a box: first foot", holding(lifted, stays, 18, 14, -0.12, -0.03)),
         ("turn with a box: between", holding(there, pivoting, 44, 12, 0.03, 0.05)),
-        ("turn with a box: second foot", holding(there, Foot(0.0, -0.07, 46.0, 18.0, 0.06), 64, 8, 0.15, 0.12)),
+        (
+            "turn with a box: second foot",
+            holding(there, Foot(0.0, -0.07, 46.0, 18.0, 0.06), 64, 8, 0.15, 0.12),
+        ),
         ("turn with a box: turned", holding(there, Foot(0.12, -0.14, 72.0), 80, 0, 0.17, 0.0)),
     ):
         work.pose(name, posed, "turn", "box")
@@ -192,16 +204,19 @@ def _turns_with_a_box(work: Composer) -> None:
     times = (0.35, 0.65, 1.0, 1.4)
     work.motion(
         "turn with a box",
-        [("box at the waist", 0.0), *((f"turn with a box: {name}", t) for name, t in zip(names, times, strict=True))],
+        [
+            ("box at the waist", 0.0),
+            *((f"turn with a box: {name}", t) for name, t in zip(names, times, strict=True)),
+        ],
     )
 
 
 def _lunges(work: Composer) -> None:
-    """Forward with the left leg, down until the right knee is just over the floor; and kneeling to pick up."""
+    """Forward with the left leg until the right knee is just over the floor; and kneeling to pick up."""
     behind, ahead = Foot(-0.10, 0.0, -6.0), Foot(0.11, -0.74, 4.0)
 
     def lunging(height: float, heel: float, y: float, bow: float, arms: AnyArm) -> Moment:
-        return balanced(
+        return balanced_over(
             moment(
                 y=y,
                 left_leg=ahead,
@@ -224,16 +239,17 @@ def _lunges(work: Composer) -> None:
         waist=Turn(bow=2),
     )
     for name, posed in (
-        ("lunge: stepping", balanced(stepping, -0.04, -0.12)),
+        ("lunge: stepping", balanced_over(stepping, -0.04, -0.12)),
         ("lunge: landed", lunging(0.80, 34, -0.40, 5, HANGING)),
+        ("lunge: sinking", lunging(0.72, 41, -0.41, 6, HANGING)),
         ("lunge: half", lunging(0.64, 46, -0.42, 6, HANGING)),
         ("lunge: down", lunging(0.50, 58, -0.43, 7, HANGING)),
         ("kneeling to pick up", lunging(0.48, 60, -0.46, 34, Hand(0.15, -0.82, 0.36, 25, short=0.2))),
     ):
         work.pose(name, posed, "lunge")
-    path = ["standing", *(f"lunge: {name}" for name in ("stepping", "landed", "half", "down", "half", "landed", "stepping"))]
-    times = (0.0, 0.5, 0.95, 1.35, 1.8, 2.25, 2.6, 3.05)
+    down = ["stepping", "landed", "sinking", "half"]
+    path = ["standing", *(f"lunge: {name}" for name in (*down, "down", *reversed(down)))]
+    times = (0.0, 0.5, 0.95, 1.15, 1.35, 1.8, 2.25, 2.42, 2.6, 3.05)
     work.motion("lunge", list(zip(path, times, strict=True)), 3.5, cyclic=True)
-    path[4] = "kneeling to pick up"
+    path[5] = "kneeling to pick up"
     work.motion("kneeling to pick up", list(zip([*path, "standing"], (*times, 3.5), strict=True)))
-

@@ -1,20 +1,22 @@
-"""Waving: a hand beside the head, above it or low, both arms, beckoning, hailing, with the body turned away. The
-right hand waves; mirrored it is the left.
+"""Waving with one hand or both, beckoning, hailing and halting, turned to somebody or away.
+
+Where one hand waves it is the right; mirrored it is the left.
 """
 
 from keymark.core.library.library import Library
 
+from ..balance import BEFORE_ANKLE_M, balanced_over
 from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Moment, Turn, moment
-from ..placing import AT_EASE_M, balanced
 
 SOURCES = (
-    "Nishihara, K. et al. (2004). Study on recognition of hand waving. Journal of Robotics and Mechatronics 16.",
+    "Nishihara, K. et al. (2004). Study on recognition of hand waving. Journal of Robotics and"
+    " Mechatronics 16.",
     "Armstrong, N. & Wagner, M. (2003). Field Guide to Gestures.",
-    "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed mathematical"
-    " model. Journal of Neuroscience 5.",
-    "Inman, V. T., Saunders, J. B. & Abbott, L. C. (1944). Observations on the function of the shoulder joint."
-    " Journal of Bone and Joint Surgery 26.",
+    "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed"
+    " mathematical model. Journal of Neuroscience 5.",
+    "Inman, V. T., Saunders, J. B. & Abbott, L. C. (1944). Observations on the function of the shoulder"
+    " joint. Journal of Bone and Joint Surgery 26.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 FEET = (Foot(0.11, 0.0, 9.0), Foot(-0.11, 0.0, -9.0))
@@ -50,10 +52,11 @@ def _standing(
     head: float = 0.0,
     ease: float = 0.0,
 ) -> Moment:
-    """Standing with `ease` between weight on both legs (0) and on the left alone (1); the trunk leans and turns to
-    the left, the head turns to the left of the trunk.
+    """Standing with the trunk leaning and turned to the left, and the head too.
+
+    `ease` is 0 with weight on both legs and 1 with weight on the left alone.
     """
-    return balanced(
+    return balanced_over(
         moment(
             left_leg=FEET[0],
             right_leg=Foot(-0.11 - 0.04 * ease, -0.06 * ease, -9.0 - 8.0 * ease, 0.0),
@@ -65,11 +68,13 @@ def _standing(
             neck=Turn(bow=-1.0, lean=-0.4 * lean, turn=head - turn),
         ),
         0.07 * ease,
-        AT_EASE_M - 0.01 * ease,
+        -BEFORE_ANKLE_M - 0.01 * ease,
     )
 
 
-def _wave(work: Composer, name: str, raised: str, waves: Waves, period_s: float, at_rest: str = "standing") -> None:
+def _wave(
+    work: Composer, name: str, raised: str, waves: Waves, period_s: float, at_rest: str = "standing"
+) -> None:
     """A motion of waving alone, endless, and one that raises the hand, waves twice and lets it sink."""
     there, back = waves
     half = 0.5 * period_s
