@@ -99,7 +99,7 @@ def planted(
 
 def _on_the_spot(made: Composer) -> None:
     falls = []
-    for step in range(-4, 6):
+    for step in range(-4, 5):
         strike = 0.5 * step * SPOT_S
         heading = (0.5 * step + LEADS) * SPOT_DEG
         side = "L" if step % 2 == 0 else "R"
@@ -147,7 +147,7 @@ def _along_a_bend(made: Composer) -> None:
     """Walking around a place on the left."""
     radius = BEND_M / np.radians(BEND_DEG)
     falls = []
-    for step in range(-4, 6):
+    for step in range(-4, 5):
         strike = 0.5 * step * BEND_S
         heading = (0.5 * step + LEADS) * BEND_DEG
         angle = np.radians(heading)
