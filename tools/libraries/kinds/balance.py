@@ -244,7 +244,7 @@ def _swaying_step(work: Composer) -> None:
 
     thrown = Leg(4, 32, 6, 12, 20)
     for name, posed in (
-        ("leg thrown out", on_left(thrown, (_out(22, 24), _out(118, 30, 74, -40)), 24, 22, 30)),
+        ("leg thrown out", on_left(thrown, (_out(22, 24), _out(118, 30, 74, -40)), 32, 20, 30)),
         (
             "leg across",
             on_left(
