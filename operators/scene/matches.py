@@ -135,7 +135,8 @@ def _keep_matches(
         if matched is not None:
             match = add_match(take, float(clip_frames[keyframe.index]), matched.library)
             add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
-            for other in known.get(keyframe.index, ())[1:]:
+            others = known.get(keyframe.index, ())[1:]
+            for other in sorted(others, key=lambda other: -other.confidence):
                 add_candidate(match, other.posture, other.name, other.mirrored, other.confidence)
     if keyframes:
         frames = clip_frames[[keyframe.index for keyframe in keyframes]]

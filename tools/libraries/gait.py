@@ -67,6 +67,8 @@ class Style:
     """Half the distance between the feet, side by side [m]."""
     aside: float = 6.0
     """How far the arms are held off the trunk [degrees]."""
+    lean: float = 0.0
+    """Of the whole body to the left, as in a bend [degrees]."""
     elbow: float = 17.0
     """Least flexion [degrees]."""
     bend: float = 6.6
@@ -115,7 +117,7 @@ class Walk:
         return (
             x + aside * float(np.cos(facing)),
             y + aside * float(np.sin(facing)),
-            Turn(3.0 + sway * np.cos(2.0 * cycle), -drop, heading - twist),
+            Turn(3.0 + sway * np.cos(2.0 * cycle), self.style.lean - drop, heading - twist),
             Turn(bow - 1.5 * sway * np.cos(2.0 * cycle - 0.4), 1.3 * drop, 2.0 * twist),
             Turn(-bow, -0.3 * drop, -0.9 * twist),
         )
@@ -208,7 +210,12 @@ class Walk:
         length = float(np.linalg.norm(end[:2] - start[:2]))
         place = start[:2] + gone * (end[:2] - start[:2])
         floor = 0.36 * self.body.actor.segments_m["foot.L"]
-        height = floor + high * (start[2] - floor) + low * (end[2] - floor) + extra * min(length / 1.2, 1.0)
+        height = (
+            floor
+            + high * (start[2] - floor)
+            + low * (end[2] - floor)
+            + extra * min(max(length / 1.2, 0.45), 1.0)
+        )
         turn = before.turn + gone * (after.turn - before.turn)
         return Ankle(float(place[0]), float(place[1]), float(height), turn)
 

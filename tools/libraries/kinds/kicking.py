@@ -11,8 +11,8 @@ from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 SOURCES = (
     "Robertson, D. G. E. & Mosher, R. E. (1985). Work and power of the leg muscles in soccer kicking."
     " Biomechanics IX-B.",
-    "Sorensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the martial"
-    " arts high front kick. Journal of Sports Sciences 14.",
+    "Sorensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the"
+    " martial arts high front kick. Journal of Sports Sciences 14.",
     "Wasik, J. (2011). Kinematics and kinetics of taekwon-do side kick. Journal of Human Kinetics 30.",
     "Kim, Y. K., Kim, Y. H. & Im, S. J. (2011). Inter-joint coordination in producing kicking velocity of"
     " taekwondo kicks. Journal of Sports Science and Medicine 10.",
@@ -23,6 +23,7 @@ SOURCES = (
 GUARD = Arm(elevation=34.0, plane=58.0, rotation=26.0, elbow=120.0, pronation=30.0, girdle=3.0)
 LOW_GUARD = Arm(elevation=26.0, plane=40.0, rotation=20.0, elbow=84.0, pronation=20.0)
 HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=16.0)
+LEVEL = Turn()
 STAND = Foot(-0.10, -0.08, -18.0)
 """Of the right foot, which bears; behind it the left one kicks from."""
 BEHIND = Foot(0.12, 0.24, 28.0)
@@ -33,8 +34,8 @@ def library() -> Library:
     made = Composer(
         "kicking",
         "Kicking",
-        "Kicks with the left leg: front, side and roundhouse kick from a guard, a kick of a ball with its step,"
-        " and a straight swing of the leg.",
+        "Kicks with the left leg: front, side and roundhouse kick from a guard, a kick of a ball with its"
+        " step, and a straight swing of the leg.",
         SOURCES,
         ("kicking", "martial arts", "football"),
     )
@@ -62,8 +63,8 @@ def library() -> Library:
 def on_right(
     leg: Leg,
     pelvis: Turn,
-    waist: Turn = Turn(),
-    neck: Turn = Turn(),
+    waist: Turn = LEVEL,
+    neck: Turn = LEVEL,
     stand: Foot = STAND,
     bend: float = 21.0,
     left_arm: Arm = GUARD,
