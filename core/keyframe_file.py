@@ -19,9 +19,13 @@ from .prior.keyframes import Keyframe, Matched
 Array = NDArray[np.float64]
 
 NAMES_LONGEST = 200
+FEWEST_KEYFRAMES = 2
+"""Between which there is something to interpolate."""
 
 
-def read_keyframes(path: Path, body: Body, frame_start: int, frame_count: int | None) -> tuple[Keyframe, ...]:
+def read_keyframes(
+    path: Path, body: Body, frame_start: int, frame_count: int | None, fewest: int = FEWEST_KEYFRAMES
+) -> tuple[Keyframe, ...]:
     """Read keyframes, in the order of their frames.
 
     A keyframe holds `frame` and `posture` (every degree of freedom by name, metres and radians), or `frame`
@@ -33,18 +37,20 @@ def read_keyframes(path: Path, body: Body, frame_start: int, frame_count: int | 
         body: The actor's body.
         frame_start: Scene frame of the clip's first frame.
         frame_count: Frames of the clip; None where it is not known yet.
+        fewest: So many keyframes there must be.
 
     Raises:
         InputError: The file or a field is unusable, a frame is outside the clip or given twice, or there
-            are fewer than two keyframes.
+            are too few keyframes.
     """
     fields = Fields(read_json(path), str(path))
     rows = fields.required("keyframes", "a list of keyframes")
     if not isinstance(rows, list):
         raise InputError(f"{path}: keyframes is {shown(rows)}; it must be a list of keyframes")
-    if len(rows) < 2:
+    if len(rows) < fewest:
         raise InputError(
-            f"{path}: keyframes has {len(rows)} of them; at least 2 are needed, better 10 per 100 frames"
+            f"{path}: keyframes has {len(rows)} of them; at least {fewest} are needed, "
+            "better 10 per 100 frames"
         )
     posed = [Fields.of(row, f"{path}: keyframes[{place}]") for place, row in enumerate(rows)]
     indices = [_index(row, frame_start, frame_count) for row in posed]

@@ -26,7 +26,8 @@ class LibraryChoice:
     """Which library fits footage, and how."""
 
     ranking: tuple[tuple[Library, float], ...]
-    """Every library with the probability that it is the one, the likeliest first; the rest to 1 is that none is."""
+    """Every library with the probability that it is the one, the likeliest first; what is missing to 1 is the
+    probability that none is."""
     match: LibraryMatch | None
     """The likeliest library's match; None where none fits."""
     reason: str

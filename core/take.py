@@ -15,7 +15,7 @@ from .files.json_file import read_json, shown, write_json, write_whole
 from .footage.camera import Camera
 from .footage.clips.clip import Clip
 from .footage.marker_style import MarkerStyle
-from .keyframe_file import read_keyframes, write_keyframes
+from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
 from .prior.keyframes import Keyframe
 
 TRUNK = "trunk"
@@ -65,13 +65,20 @@ class Take:
         )
 
 
-def read_take(folder: Path, keyframes: Path | None = None, *, keyframes_required: bool = True) -> Take:
+def read_take(
+    folder: Path,
+    keyframes: Path | None = None,
+    *,
+    keyframes_required: bool = True,
+    fewest_keyframes: int = FEWEST_KEYFRAMES,
+) -> Take:
     """Read a take folder; the clip is not opened (see `open_clip`).
 
     Args:
         folder: The folder that holds `take.json`.
         keyframes: The keyframe file; by default `keyframes.json` in the folder.
         keyframes_required: Whether a take without a keyframe file is refused.
+        fewest_keyframes: So many the keyframe file must hold; with 0 the folder's own is not even opened.
 
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
@@ -85,7 +92,8 @@ def read_take(folder: Path, keyframes: Path | None = None, *, keyframes_required
     body = _body(fields)
     camera = _camera(fields, frame_count)
     posed = keyframes or folder / "keyframes.json"
-    missing = keyframes is None and not keyframes_required and not posed.exists()
+    optional = keyframes is None and not keyframes_required
+    missing = optional and (fewest_keyframes == 0 or not posed.exists())
     return Take(
         folder=folder,
         clip=_clip(fields, folder),
@@ -95,7 +103,7 @@ def read_take(folder: Path, keyframes: Path | None = None, *, keyframes_required
         camera=camera,
         body=body,
         markers=_markers(fields),
-        keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count),
+        keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count, fewest_keyframes),
     )
 
 

@@ -15,7 +15,8 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
-from .command_line.arguments import UsageError, build_parser, program_name
+from .command_line.arguments import build_parser
+from .command_line.line_parser import UsageError, program_name
 
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")

@@ -7,6 +7,7 @@ from .running.failures import reported
 from .running.requirements import actor, all_met, camera, footage, idle, markers
 from .running.say import say
 from .scene.marker_styles import marker_styles
+from .scene.matches import known_matches
 from .scene.takes import active_take, footage_of
 
 
@@ -57,7 +58,8 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
-            fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start)
+            matches = known_matches(take)
+            fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
             show_keyframes(take)
             write_posture(take.armature, fit.posture)
             if fit.misplaced:

@@ -10,6 +10,7 @@ from .running.live_preview import LivePreview
 from .running.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
 from .running.say import say
 from .scene.marker_styles import marker_styles
+from .scene.matches import known_matches
 from .scene.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
 from .scene.reviewing import show_review
 from .scene.takes import active_take, actor_of, footage_of, take_called
@@ -61,10 +62,14 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         identifier, method, armature = settings.identifier, settings.method, settings.armature
         watched, kept, earlier = settings.live_preview, reading_of(settings), solved_before(settings)
         reading_scene = read_scene_take(
-            footage_of(scene, settings), armature, settings.keyframe_action, marker_styles(settings)
+            footage_of(scene, settings),
+            armature,
+            settings.keyframe_action,
+            marker_styles(settings),
+            known_matches(settings),
         )
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
-        _check_posed(len(take.keyframes), notes)
+        _check_enough(len(take.keyframes), notes)
         check_reconstructible(take, method)
         reading = yield from stretch(read_footage(take, kept), TIMES, READ)
         frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
@@ -113,7 +118,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         )
 
 
-def _check_posed(count: int, notes: tuple[str, ...]) -> None:
+def _check_enough(count: int, notes: tuple[str, ...]) -> None:
     """Refuse a take with too few keyframes, with what the animator should know of those that do not count.
 
     Raises:
@@ -123,7 +128,7 @@ def _check_posed(count: int, notes: tuple[str, ...]) -> None:
 
     if count < 2:
         posed = "one keyframe lies" if count else "no keyframe lies"
-        asked = f"{posed} in the footage; at least 2 are needed, so pose the actor and store more"
+        asked = f"{posed} in the footage; at least 2 are needed, so match a library or pose the actor"
         raise InputError(". ".join((asked, *notes)))
 
 

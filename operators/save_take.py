@@ -8,6 +8,7 @@ from .running.failures import reported
 from .running.requirements import actor, all_met, footage, idle, markers
 from .running.say import say
 from .scene.marker_styles import marker_styles
+from .scene.matches import known_matches
 from .scene.takes import active_take, footage_of
 
 
@@ -52,6 +53,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
                     scene_take.armature,
                     scene_take.keyframe_action,
                     marker_styles(scene_take),
+                    known_matches(scene_take),
                 )
             )
             folder = Path(bpy.path.abspath(self.directory))

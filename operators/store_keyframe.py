@@ -5,6 +5,7 @@ import bpy
 from .running.failures import reported
 from .running.requirements import actor, all_met, idle
 from .running.say import say
+from .scene.matches import known_matches
 from .scene.posed_frames import forget
 from .scene.takes import active_take
 
@@ -40,6 +41,7 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
                 take.keyframe_action = new_keyframe_action(armature_object)
             frame = scene.frame_current_final
             switched = not shows_keyframes(take)
+            was_matched = frame in known_matches(take)
             store_pose(armature_object, take.keyframe_action, HUMAN, frame)
             assign_action(armature_object, take.keyframe_action)
             forget()
@@ -51,6 +53,13 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
                     "can do, and its nearest posture will be used",
                     frame=frame,
                     beyond=1000.0 * reading.furthest_m,
+                )
+            elif was_matched:
+                say(
+                    self,
+                    "INFO",
+                    "Stored a keyframe at frame {frame:g}; it was matched, and counts as posed now",
+                    frame=frame,
                 )
             elif switched:
                 say(

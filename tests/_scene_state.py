@@ -88,10 +88,13 @@ def _add_action(state: State, action: bpy.types.Action) -> None:
 
 
 def _curve(curve: bpy.types.FCurve) -> tuple[int, str]:
-    """Number of keys, and a digest of where they are."""
+    """Number of keys, and a digest of where they are and of what kind."""
     keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
+    kinds = np.empty(len(curve.keyframe_points), dtype=np.int32)
     curve.keyframe_points.foreach_get("co", keys)
-    return len(curve.keyframe_points), hashlib.sha256(np.round(keys, DIGITS).tobytes()).hexdigest()[:12]
+    curve.keyframe_points.foreach_get("type", kinds)
+    said = np.round(keys, DIGITS).tobytes() + kinds.tobytes()
+    return len(curve.keyframe_points), hashlib.sha256(said).hexdigest()[:12]
 
 
 def _name(item: Any) -> str | None:

@@ -30,9 +30,22 @@ def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
         InputError: The file is missing, too large, not UTF-8, no JSON object, names a field
             twice or holds a number that is not finite.
     """
+    return parse_json(_read_text(path, largest_bytes), str(path))
+
+
+def parse_json(text: str, where: str) -> dict[str, Any]:
+    """The JSON object in a text, with finite numbers only.
+
+    Args:
+        text: The JSON.
+        where: What sentences about it begin with.
+
+    Raises:
+        InputError: It is no JSON object, names a field twice or holds a number that is not finite.
+    """
     try:
         value = json.loads(
-            _read_text(path, largest_bytes),
+            text,
             object_pairs_hook=_object,
             parse_constant=_refuse_constant,
             parse_float=_float,
@@ -40,15 +53,15 @@ def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
         )
     except json.JSONDecodeError as error:
         raise InputError(
-            f"{path}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
+            f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
             "the file may be cut off or edited by mistake"
         ) from error
     except RecursionError as error:
-        raise InputError(f"{path}: its lists and objects are nested too deeply to be read") from error
+        raise InputError(f"{where}: its lists and objects are nested too deeply to be read") from error
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{where}: {error}") from error
     if not isinstance(value, dict):
-        raise InputError(f"{path}: holds {shown(value)}; it must hold an object, {{...}}")
+        raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
     return value
 
 

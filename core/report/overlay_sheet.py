@@ -50,7 +50,7 @@ def overlay_sheet(take: Take, motion: Motion, tracks: RegionTracks, images: Mapp
 def _tile(take: Take, figure: StickFigure, tracks: RegionTracks, image: Image, cell: Cell) -> Image:
     """One frame; a canvas of its own cuts off what leaves the picture."""
     tile = Canvas(cell.width, cell.height)
-    tile.paste(_paler(image), 0, 0, cell.width, cell.height)
+    tile.paste(paler(image), 0, 0, cell.width, cell.height)
     scale = cell.width / take.camera.resolution[0]
 
     def project(points: Array) -> tuple[Array, Array]:
@@ -64,7 +64,7 @@ def _tile(take: Take, figure: StickFigure, tracks: RegionTracks, image: Image, c
     return tile.image()
 
 
-def _paler(image: Image) -> Image:
+def paler(image: Image) -> Image:
     """The footage a little paler and greyer, so that what is drawn over it stands out."""
     grey = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
     mixed = 0.7 * image.astype(np.float64) + 0.12 * grey + 0.18 * 255.0

@@ -11,6 +11,7 @@ from ..motion import Motion
 from ..take import Take
 from .canvas import write_png
 from .contact_sheet import chosen_frames
+from .match_sheet import match_sheet, shown_keyframes
 from .overlay_sheet import overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
@@ -18,12 +19,14 @@ from .view_sheet import view_sheet
 VIEWS = ("front", "side", "top")
 PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS))
 """Names of the pictures."""
+MATCHES = "matches.png"
+"""Another, where keyframes were matched with a library."""
 
 
 def write_pictures(
     folder: Path, take: Take, motion: Motion, tracks: RegionTracks, speed: NDArray[np.float64]
 ) -> tuple[Path, ...]:
-    """Write `speed.png`, `overlay.png` and the views; one more pass over the clip fetches the frames shown.
+    """Write all pictures; one more pass over the clip fetches the frames shown.
 
     Args:
         folder: Where to; made if missing.
@@ -33,7 +36,7 @@ def write_pictures(
         speed: (F,) V_sum [px/frame].
 
     Returns:
-        The files, in the order of `PICTURES`.
+        The files, in the order of `PICTURES`, and that of the matches where there are some.
 
     Raises:
         OSError: A picture cannot be written.
@@ -41,12 +44,17 @@ def write_pictures(
     """
     folder.mkdir(parents=True, exist_ok=True)
     frames = chosen_frames(len(motion.time_s))
-    shown = dict(Clip.open(take.clip, fps=take.fps).source.at(frames))
+    matched = any(keyframe.matched is not None for keyframe in take.keyframes)
+    keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
+    wanted = sorted({*frames, *keyed})
+    shown = dict(Clip.open(take.clip, fps=take.fps).source.at(wanted))
     pictures = {
         "speed.png": speed_plot(speed, motion.keyframe_indices, motion.frame_start),
-        "overlay.png": overlay_sheet(take, motion, tracks, shown),
+        "overlay.png": overlay_sheet(take, motion, tracks, {frame: shown[frame] for frame in frames}),
         **{f"{view}.png": view_sheet(view, motion, take.camera, frames) for view in VIEWS},
     }
-    for name in PICTURES:
-        write_png(str(folder / name), pictures[name])
-    return tuple(folder / name for name in PICTURES)
+    if matched:
+        pictures[MATCHES] = match_sheet(take, shown)
+    for name, picture in pictures.items():
+        write_png(str(folder / name), picture)
+    return tuple(folder / name for name in pictures)

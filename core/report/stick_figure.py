@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.kinematics import Body, Pose
+from ..body.posture import Posture
 from ..motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
 
@@ -40,9 +41,17 @@ class StickFigure:
 
 def stick_figure(motion: Motion) -> StickFigure:
     """The lines of a motion's performer: arms and legs with hands and feet, hips, shoulders and spine."""
-    body = motion.body
-    pose = body.pose(motion.posture)
-    place = dict(zip(body.skeleton.point_names, np.swapaxes(motion.points, 0, 1), strict=True))
+    return _figure(motion.body, motion.body.pose(motion.posture), motion.points)
+
+
+def posed_figure(body: Body, posture: Posture) -> StickFigure:
+    """The same of a batch of F postures, each of which counts as a frame."""
+    pose = body.pose(posture)
+    return _figure(body, pose, body.points(pose))
+
+
+def _figure(body: Body, pose: Pose, points: Array) -> StickFigure:
+    place = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
     limbs = []
     for side in ("L", "R"):
         for joints, end in ((("shoulder", "elbow", "wrist"), "hand"), (("hip", "knee", "ankle"), "foot")):

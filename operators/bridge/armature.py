@@ -16,11 +16,9 @@ from mathutils import Vector
 from numpy.typing import ArrayLike
 
 from ...core.body.kinematics import Body
-from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
-from .bones import BoneModel, bone_models
+from .bones import BoneModel, bone_models, rest_matrices, usual_mode
 
-HINGE_ORDER = "YZX"
 COLLECTIONS = {"L": ("Left", "THEME01"), "R": ("Right", "THEME04"), "": ("Middle", "THEME09")}
 """Bone collection and colour of each side."""
 CONNECTED_M = 1e-6
@@ -56,9 +54,7 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
 def _add_bones(
     scene: bpy.types.Scene, armature_object: bpy.types.Object, body: Body, models: tuple[BoneModel, ...]
 ) -> None:
-    origins = body.pose(Posture.rest(body.skeleton)).origin
-    floor = min(float((origins[model.joint] + model.end)[2]) for model in models)
-    standing = origins - np.array([0.0, 0.0, floor])
+    rest = rest_matrices(body)
     layer = scene.view_layers[0]
     layer.objects.active = armature_object
     # Edit bones exist in edit mode only, which Blender enters for the active object of the context's layer.
@@ -69,8 +65,9 @@ def _add_bones(
         edit_bones = armature_object.data.edit_bones
         for model in models:
             bone = edit_bones.new(model.name)
-            bone.head = standing[model.joint] + model.start
-            bone.tail = standing[model.joint] + model.end
+            head = rest[model.name][:3, 3]
+            bone.head = head
+            bone.tail = head + model.end - model.start
             bone.align_roll(Vector(model.axes[:, 2]))
             if model.parent:
                 bone.parent = edit_bones[model.parent]
@@ -80,17 +77,16 @@ def _add_bones(
 
 def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: BoneModel) -> None:
     hinges = [skeleton.joints[i] for i in model.chain if skeleton.joints[i].kind is JointKind.HINGE]
+    pose_bone.rotation_mode = usual_mode(skeleton, model)
     pose_bone.lock_scale = (True, True, True)
     pose_bone.lock_location = (not model.is_root,) * 3
     if hinges:
-        pose_bone.rotation_mode = HINGE_ORDER
         free = [any(abs(model.axes[:, axis] @ joint.axis) > 0.5 for joint in hinges) for axis in range(3)]
         pose_bone.lock_rotation = [not axis for axis in free]
         pose_bone.lock_ik_x, pose_bone.lock_ik_y, pose_bone.lock_ik_z = (not axis for axis in free)
         for joint in hinges:
             _limit_ik(pose_bone, model, joint.axis, joint.limits_deg[0])
         return
-    pose_bone.rotation_mode = "QUATERNION"
     for index in model.chain:
         joint = skeleton.joints[index]
         for axis, limits in zip(np.eye(3), joint.limits_deg, strict=False):

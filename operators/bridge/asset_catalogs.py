@@ -43,6 +43,11 @@ def catalog_file() -> Path:
     return folder / NAME
 
 
+def catalog_identifier(catalog: str) -> str:
+    """The UUID that a catalog gets in a file that does not have it yet."""
+    return str(uuid.uuid5(NAMESPACE, _clean(catalog)))
+
+
 def ensure_catalog(file: Path, catalog: str) -> str:
     """The identifier of a catalog; it is added to the file where it is missing, all else there is kept.
 
@@ -64,7 +69,7 @@ def ensure_catalog(file: Path, catalog: str) -> str:
     if paths[-1] not in known:
         # Parents get lines of their own: without them Blender calls the file changed as soon as it is read.
         missing = [path for path in paths if path not in known]
-        known |= {path: str(uuid.uuid5(NAMESPACE, path)) for path in missing}
+        known |= {path: catalog_identifier(path) for path in missing}
         start = content.rstrip("\n") + "\n" if content.strip() else HEADER
         lines = [f"{known[path]}:{path}:{path.replace('/', '-')}\n" for path in missing]
         text = start + "".join(lines)

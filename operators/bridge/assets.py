@@ -32,13 +32,13 @@ class AssetDetails:
     description: str
 
 
-def mark_action(action: bpy.types.Action, details: AssetDetails, picture: Image) -> None:
+def mark_action(action: bpy.types.Action, details: AssetDetails, picture: Image | None) -> None:
     """Make an Action an asset, or change what is said of one.
 
     Args:
         action: The Action.
         details: What to say of it; its tags replace those it has.
-        picture: (S, S, 3) blue, green, red: its preview.
+        picture: (S, S, 3) blue, green, red: its preview; None keeps the one it has.
     """
     action.asset_mark()
     data = action.asset_data
@@ -50,7 +50,8 @@ def mark_action(action: bpy.types.Action, details: AssetDetails, picture: Image)
         data.tags.remove(tag)
     for name in details.tags:
         data.tags.new(name, skip_if_exists=True)
-    _set_preview(action, picture)
+    if picture is not None:
+        _set_preview(action, picture)
 
 
 def _set_preview(action: bpy.types.Action, picture: Image) -> None:

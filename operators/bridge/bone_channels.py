@@ -1,5 +1,6 @@
 """Postures over time as what each bone stores: a rotation, and the root's location, relative to its rest."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -11,7 +12,7 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
 from .actor_lengths import skeleton_bones
 from .bones import BoneModel
-from .object_space import object_space
+from .object_space import ObjectSpace, object_space
 
 Array = NDArray[np.float64]
 
@@ -38,9 +39,22 @@ def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple
         InputError: A bone is missing, or the object is scaled unevenly.
     """
     models = skeleton_bones(armature_object, postures.skeleton)
-    space = object_space(armature_object)
     bones = armature_object.data.bones
     rest = {model.name: np.array(bones[model.name].matrix_local, dtype=np.float64) for model in models}
+    return channels_at_rest(models, rest, object_space(armature_object), postures)
+
+
+def channels_at_rest(
+    models: tuple[BoneModel, ...], rest: Mapping[str, Array], space: ObjectSpace, postures: Posture
+) -> tuple[BoneChannels, ...]:
+    """The same for any bones.
+
+    Args:
+        models: The skeleton's bones, parents first.
+        rest: (4, 4) each bone's place and axes at rest, in the object's space.
+        space: Where the object stands.
+        postures: A batch of F.
+    """
     frames: dict[str, Array] = {}
     channels = []
     for model in models:

@@ -17,12 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Segment, Skeleton
 
 Array = NDArray[np.float64]
 
 STRAIGHT = 1.0 - 1e-6
 """Cosine above which a segment continues another."""
+HINGE_ORDER = "YZX"
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +75,26 @@ def bone_models(body: Body) -> tuple[BoneModel, ...]:
             )
         )
     return tuple(models)
+
+
+def usual_mode(skeleton: Skeleton, model: BoneModel) -> str:
+    """The rotation mode that a bone is built with: Euler angles for hinges, quaternions for balls."""
+    hinged = any(skeleton.joints[index].kind is JointKind.HINGE for index in model.chain)
+    return HINGE_ORDER if hinged else "QUATERNION"
+
+
+def rest_matrices(body: Body) -> dict[str, Array]:
+    """(4, 4) place and axes of each bone at rest, as `build_armature` builds them: a T pose on z = 0 [m]."""
+    models = bone_models(body)
+    origins = body.pose(Posture.rest(body.skeleton)).origin
+    floor = min(float((origins[model.joint] + model.end)[2]) for model in models)
+    rest = {}
+    for model in models:
+        matrix = np.eye(4)
+        matrix[:3, :3] = model.axes
+        matrix[:3, 3] = origins[model.joint] + model.start - [0.0, 0.0, floor]
+        rest[model.name] = matrix
+    return rest
 
 
 def _direction(body: Body, segment: Segment) -> Array:

@@ -19,6 +19,7 @@ from .fcurves import bone_path, moved_paths, posture_columns
 from .joint_frames import posture_from_frames
 from .keyframes import keyed_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
+from .matched_keyframes import untouched_frames
 from .review_curves import is_review_curve
 from .rotation_modes import rotation_path
 
@@ -153,7 +154,9 @@ def posed_positions(
     """Positions among the frames of those that the animator posed."""
     if keyframe_action is None:
         return np.zeros(0, dtype=np.intp)
-    posed = np.array(keyed_frames(armature_object, keyframe_action, skeleton))
+    keyed = keyed_frames(armature_object, keyframe_action, skeleton)
+    matched = untouched_frames(armature_object, keyframe_action, skeleton)
+    posed = np.array(sorted(set(keyed) - set(matched)))
     return np.flatnonzero(np.isin(frames, np.round(posed)))
 
 

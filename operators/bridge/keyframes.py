@@ -1,7 +1,8 @@
 """The animator's keyframes: frames keyed on the armature's own Action, and postures keyed there."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import bpy
 import numpy as np
@@ -10,17 +11,21 @@ from numpy.typing import NDArray
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
-from ...core.prior.keyframes import Keyframe
+from ...core.prior.keyframes import Keyframe, Matched
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import bone_path, moved_paths, posture_columns
 from .keys import animator_frames, set_posed_keys
+from .matched_keyframes import DIGITS, write_matched
 from .pose import read_posture
 from .rotation_modes import rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 Array = NDArray[np.float64]
+Matches = Mapping[float, Matched]
+"""By scene frame, as `untouched_frames` gives them: what keyframes were matched with that nobody posed."""
 
+NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5
 """A key farther than this [frames] from every frame of the clip belongs to none."""
 NOTICEABLE_M = 0.005
@@ -40,9 +45,9 @@ class PosedKeyframes:
 def keyed_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
-    """Scene frames at which the animator has keyed any bone that has degrees of freedom, in order.
+    """Scene frames at which any bone that has degrees of freedom is keyed, in order.
 
-    Keys that Keymark generated do not count.
+    Keys that a motion left do not count; those of matched keyframes do.
     """
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is None:
@@ -51,7 +56,7 @@ def keyed_frames(
     frames = [animator_frames(fcurve) for fcurve in channelbag.fcurves if fcurve.data_path in wanted]
     if not frames:
         return ()
-    return tuple(np.unique(np.round(np.concatenate(frames), 3)).tolist())
+    return tuple(np.unique(np.round(np.concatenate(frames), DIGITS)).tolist())
 
 
 def read_keyframes(
@@ -60,6 +65,7 @@ def read_keyframes(
     action: bpy.types.Action,
     body: Body,
     clip_frames: Array,
+    matches: Matches = NOT_MATCHED,
 ) -> PosedKeyframes:
     """The postures that the armature shows at the frames keyed in `action`.
 
@@ -72,6 +78,7 @@ def read_keyframes(
         action: The animator's Action.
         body: Skeleton, with the sizes that `read_body` finds.
         clip_frames: (F,) scene frame of every frame of the clip; keys elsewhere are left out with a note.
+        matches: Which keyframes nobody posed, and what they were matched with.
 
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
@@ -95,7 +102,7 @@ def read_keyframes(
                 )
             if index not in found or apart < found[index][0]:
                 residual = float(np.mean(reading.distance_m))
-                found[index] = (apart, Keyframe(index, reading.posture, residual))
+                found[index] = (apart, Keyframe(index, reading.posture, residual, matches.get(frame)))
     if outside:
         notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
     return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
@@ -125,7 +132,7 @@ def write_keyframes(
     keyframes: Sequence[Keyframe],
     clip_frames: Array,
 ) -> None:
-    """Key postures in `action`, as if the animator had posed them.
+    """Key postures in `action`, as if the animator had posed them; matched ones as `write_matched` does.
 
     Args:
         armature_object: The actor.
@@ -139,5 +146,10 @@ def write_keyframes(
     frames = clip_frames[[keyframe.index for keyframe in keyframes]]
     channelbag = channelbag_for(action, armature_object)
     postures = Posture.stack([keyframe.posture for keyframe in keyframes])
+    posed = np.array([keyframe.matched is None for keyframe in keyframes])
     for path, index, bone, column in posture_columns(armature_object, postures):
-        set_posed_keys(channelbag, path, index, bone, frames, column)
+        if posed.any():
+            set_posed_keys(channelbag, path, index, bone, frames[posed], column[posed])
+    if not posed.all():
+        matched = [keyframe.posture for keyframe in keyframes if keyframe.matched is not None]
+        write_matched(armature_object, action, frames[~posed], matched)

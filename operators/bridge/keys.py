@@ -3,9 +3,10 @@
 Only keys of the type GENERATED are ever replaced or removed, and of these not the ones that the animator has
 given another value: Blender leaves their type as it was. That a key has its first value is seen by `back`,
 a number which only the interpolation of that name uses; it holds the value that the key was made with.
+Those of a matched keyframe, which stands beside the animator's own, say so by `amplitude`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import bpy
 import numpy as np
@@ -18,6 +19,8 @@ Keys = dict[str, NDArray[np.generic]]
 UNMARKED = 0.0
 """`back` of a key that says nothing of its first value; earlier versions made all so."""
 MARK_OF_ZERO = 1e-30
+OF_MATCH = -1.0
+"""`amplitude` of the keys of a matched keyframe; Blender allows people none below zero."""
 SAME_FRAME = 1e-3
 """Keys nearer than this [frames] lie on the same frame."""
 FLOATS = ("back", "amplitude", "period")
@@ -113,13 +116,26 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
 
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys that are not GENERATED."""
+    """Frames (N,) of the keys that are not GENERATED, and of those of matched keyframes."""
     # Only what is needed: this is asked for all of an armature's curves while the timeline is drawn.
     points = fcurve.keyframe_points
     places, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
     points.foreach_get("co", places.ravel())
     points.foreach_get("type", types)
-    return np.asarray(places[types != _enum_value("type", "GENERATED"), 0], dtype=np.float64)
+    counted = types != _enum_value("type", "GENERATED")
+    if not counted.all():
+        amplitudes = np.empty(len(points), np.float32)
+        points.foreach_get("amplitude", amplitudes)
+        counted |= amplitudes == OF_MATCH
+    return np.asarray(places[counted, 0], dtype=np.float64)
+
+
+def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
+    """Frames (N,) of the keys of matched keyframes that have the values matching gave them."""
+    if not len(fcurve.keyframe_points):
+        return np.zeros(0)
+    keys = _read_keys(fcurve)
+    return np.asarray(keys["co"][_generated(keys) & (keys["amplitude"] == OF_MATCH), 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
@@ -178,13 +194,63 @@ def set_posed_keys(
         frames: (K,) scene frames.
         values: (K,) values of the property.
     """
-    fcurve = ensure_fcurve(channelbag, path, index, group)
-    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    _set_keys(ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, "KEYFRAME", "BEZIER"))
+
+
+def set_matched_keys(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+) -> None:
+    """Set keys like those of `set_posed_keys`, but marked as a matched keyframe's."""
+    keys = _as_generated(_new_keys(frames, values, "GENERATED", "BEZIER"))
+    keys["amplitude"] = np.full(len(frames), OF_MATCH, np.float32)
+    _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
+
+
+def _set_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
+    """Set keys on a curve; those on the same frames are replaced, all others stay."""
     if len(fcurve.keyframe_points):
         kept = _read_keys(fcurve)
-        free = _distances(kept["co"][:, 0], frames) > SAME_FRAME
+        free = _distances(kept["co"][:, 0], keys["co"][:, 0]) > SAME_FRAME
         keys = _merged({name: column[free] for name, column in kept.items()}, keys)
     _write_keys(fcurve, keys)
+
+
+def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+    """Remove whatever keys the curves with these data paths have on frames (K,), and curves left without."""
+    for fcurve, keys, there in _keys_on(channelbag, paths, frames):
+        if there.all():
+            channelbag.fcurves.remove(fcurve)
+        else:
+            _write_keys(fcurve, {name: column[~there] for name, column in keys.items()})
+
+
+def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+    """Make keys of matched keyframes on frames (K,) the animator's own; values and curves stay."""
+    for fcurve, keys, there in _keys_on(channelbag, paths, frames):
+        there = there & (keys["amplitude"] == OF_MATCH)
+        if there.any():
+            given = _as_animators(keys)
+            usual = bpy.types.Keyframe.bl_rna.properties["amplitude"].default
+            given["amplitude"] = np.full(len(there), usual, np.float32)
+            changed = {
+                name: np.where(there if column.ndim == 1 else there[:, None], given[name], column)
+                for name, column in keys.items()
+            }
+            _write_keys(fcurve, changed)
+
+
+def _keys_on(
+    channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array
+) -> Iterator[tuple[bpy.types.FCurve, Keys, NDArray[np.bool_]]]:
+    """The curves of these paths that have keys on any of the frames, their keys, and which those are."""
+    wanted = set(paths)
+    for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
+        if not len(fcurve.keyframe_points) or not len(frames):
+            continue
+        keys = _read_keys(fcurve)
+        there = _distances(keys["co"][:, 0], frames) <= SAME_FRAME
+        if there.any():
+            yield fcurve, keys, there
 
 
 def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:

@@ -28,7 +28,7 @@ from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .footage import Footage
 from .frame_times import scene_frames
-from .keyframes import NEAREST, read_keyframes
+from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
 from .scene_camera import read_camera
 
@@ -115,6 +115,7 @@ def fit_to_frame(
     armature_object: bpy.types.Object,
     action: bpy.types.Action | None,
     start: str,
+    matches: Matches = NOT_MATCHED,
 ) -> FrameFit:
     """The actor's posture by what the frame shows; scene, Action and pose are as before.
 
@@ -124,19 +125,21 @@ def fit_to_frame(
         action: Where the animator keyed; None for no keyframes.
         start: KEYFRAMES for the nearest ones (standing where there are none), POSE for the actor's pose as it
             is, STANDING for a body that stands where the performer is.
+        matches: Which keyframes nobody posed; markers' places are not calibrated on these.
 
     Raises:
         InputError: No marker is seen in the frame, or what is needed to see them is missing.
     """
     body = read_body(armature_object, HUMAN)
-    posed = _keyframes(frame, armature_object, action, body)
+    keyframes = _keyframes(frame, armature_object, action, body, matches)
+    posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
     model = RegionModel(body, camera, tuple(MarkerPlacement(segment) for segment in frame.segments))
     if start == "POSE":
         belief = belief_from_pose(read_posture(armature_object, body).posture)
-    elif start == "KEYFRAMES" and posed:
-        belief = belief_from_keyframes(posed, frame.index, frame.footage.rate)
+    elif start == "KEYFRAMES" and keyframes:
+        belief = belief_from_keyframes(keyframes, frame.index, frame.footage.rate)
     else:
         belief = _standing_belief(frame, model, read_posture(armature_object, body).posture)
     regions = frame.regions(expected_in_frame(model, belief, len(posed)))
@@ -170,12 +173,16 @@ def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) 
 
 
 def _keyframes(
-    frame: FrameInFootage, armature_object: bpy.types.Object, action: bpy.types.Action | None, body: Body
+    frame: FrameInFootage,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action | None,
+    body: Body,
+    matches: Matches,
 ) -> tuple[Keyframe, ...]:
-    """The animator's keyframes at other frames."""
+    """The keyframes at other frames."""
     if action is None:
         return ()
-    found = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames)
+    found = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
     return tuple(keyframe for keyframe in found.keyframes if keyframe.index != frame.index)
 
 

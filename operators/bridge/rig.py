@@ -1,5 +1,7 @@
 """The actor's armature as core's `Rig`: what its channels show in the world."""
 
+from collections.abc import Mapping
+
 import bpy
 import numpy as np
 
@@ -7,7 +9,7 @@ from ...core.body.kinematics import Body
 from ...core.finish.rig import Rig, RigBone
 from .actor_lengths import skeleton_bones
 from .bones import BoneModel, bone_models
-from .object_space import object_space
+from .object_space import ObjectSpace, object_space
 
 
 def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
@@ -23,12 +25,30 @@ def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
         InputError: A bone is missing, or the object is scaled unevenly.
     """
     axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
+    names = list(axes)
+    bones = armature_object.data.bones
+    rest = {name: np.array(bones[name].matrix_local, dtype=np.float64) for name in names}
+    modes = {name: armature_object.pose.bones[name].rotation_mode for name in names}
+    return rig_at_rest(body, axes, rest, modes, object_space(armature_object))
+
+
+def rig_at_rest(
+    body: Body,
+    axes: Mapping[str, np.ndarray],
+    rest: Mapping[str, np.ndarray],
+    modes: Mapping[str, str],
+    space: ObjectSpace,
+) -> Rig:
+    """The same for any bones.
+
+    Args:
+        body: Skeleton and sizes.
+        axes: (3, 3) each bone's axes in its joint's frame.
+        rest: (4, 4) each bone's place and axes at rest, in the object's space.
+        modes: Rotation mode of each bone.
+        space: Where the object stands.
+    """
     models = bone_models(body)
-    space = object_space(armature_object)
-    rest = {
-        model.name: np.array(armature_object.data.bones[model.name].matrix_local, dtype=np.float64)
-        for model in models
-    }
     turning = [model for model in models if model.chain]
     names = [model.name for model in turning]
     bones = []
@@ -42,7 +62,7 @@ def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
             RigBone(
                 name=model.name,
                 parent=-1 if model.parent is None else names.index(model.parent),
-                mode=armature_object.pose.bones[model.name].rotation_mode,
+                mode=modes[model.name],
                 left=left,
                 right=axes[model.name].T,
                 origin=body.offsets[model.chain[0]],

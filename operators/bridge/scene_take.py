@@ -15,7 +15,7 @@ from ...core.take import Take
 from .actor_lengths import read_body
 from .footage import Footage
 from .frame_times import scene_frames
-from .keyframes import read_keyframes
+from .keyframes import NOT_MATCHED, Matches, read_keyframes
 from .scene_camera import read_camera
 
 Array = NDArray[np.float64]
@@ -48,6 +48,7 @@ def read_scene_take(
     armature_object: bpy.types.Object,
     keyframe_action: bpy.types.Action | None,
     markers: Sequence[MarkerStyle],
+    matches: Matches = NOT_MATCHED,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
     """What `core.reconstruct` needs, from a scene; the scene is as before afterwards.
 
@@ -56,6 +57,7 @@ def read_scene_take(
         armature_object: The actor.
         keyframe_action: Where the animator keyed; None for no keyframes.
         markers: What the performer wears.
+        matches: Which keyframes nobody posed, and what they were matched with.
 
     Yields:
         Progress.
@@ -84,5 +86,5 @@ def read_scene_take(
     )
     if keyframe_action is None:
         return take, ()
-    posed = read_keyframes(footage.scene, armature_object, keyframe_action, body, frames)
+    posed = read_keyframes(footage.scene, armature_object, keyframe_action, body, frames, matches)
     return replace(take, keyframes=posed.keyframes), posed.notes

@@ -1,11 +1,11 @@
 """Words of the command line: commands, options, and their help."""
 
 import argparse
-import sys
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
+
+from .library_arguments import add_library
+from .line_parser import Commands, LineParser, UsageError, add_command, program_name
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 METHODS = ("map", "ekf", "interpolation")
@@ -16,28 +16,12 @@ examples:
   {program} demo
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
+  {program} convert takes/walk --output out/walk --library walking --floor 0
   {program} propose takes/walk --count 12
+  {program} library list
 
-A take is a folder with take.json, the clip and keyframes.json.
+A take is a folder with take.json, the clip and keyframes.json; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
-
-
-class UsageError(Exception):
-    """The command line is unusable; the text is one sentence."""
-
-
-class LineParser(argparse.ArgumentParser):
-    """A parser that says what is wrong in one line and leaves the exit to its caller."""
-
-    def error(self, message: str) -> NoReturn:
-        """Raise instead of writing several lines and leaving the process."""
-        raise UsageError(f"{message}; see {self.prog} --help")
-
-
-def program_name() -> str:
-    """How the user calls this program: by its own name, or as a command of Blender."""
-    blender = sys.modules.get("bpy")
-    return "blender --command keymark" if blender is not None and blender.app.binary_path else "keymark"
 
 
 def version() -> str:
@@ -60,20 +44,19 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", title="commands")
     _add_convert(commands)
     _add_propose(commands)
+    add_library(commands)
     _add_demo(commands)
     return parser
 
 
-Commands = argparse._SubParsersAction  # the only name the library gives it
-
-
 def _add_convert(commands: "Commands[LineParser]") -> None:
-    convert = _command(
+    convert = add_command(
         commands,
         "convert",
         "convert a take to motion.json, motion.blend, motion.bvh and pictures",
         "Reconstructs a take's motion. OUT then holds motion.json, motion.blend, motion.bvh and, in report/, "
-        "pictures of the result; it changes only once all of them are complete.",
+        "pictures of the result; it changes only once all of them are complete. With --library nothing needs "
+        "to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were matched.",
         _convert,
     )
     convert.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
@@ -81,7 +64,23 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
         "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
     )
     convert.add_argument(
-        "--keyframes", metavar="FILE", type=Path, help="keyframe file; by default TAKE/keyframes.json"
+        "--keyframes",
+        metavar="FILE",
+        type=Path,
+        help="keyframe file; by default TAKE/keyframes.json, with --library none",
+    )
+    convert.add_argument(
+        "--library",
+        metavar="NAME|FILE|auto",
+        help="match the footage with this keyframe library; auto chooses among all there are and says how "
+        "sure it is, or that none fits",
+    )
+    convert.add_argument(
+        "--floor",
+        metavar="HEIGHT",
+        type=float,
+        help="height of the floor in metres where it is known, which says best how far away the performer "
+        "is; with --library",
     )
     convert.add_argument(
         "--method",
@@ -94,7 +93,7 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
 
 
 def _add_propose(commands: "Commands[LineParser]") -> None:
-    propose = _command(
+    propose = add_command(
         commands,
         "propose",
         "propose the frames to pose",
@@ -111,7 +110,7 @@ def _add_propose(commands: "Commands[LineParser]") -> None:
 
 
 def _add_demo(commands: "Commands[LineParser]") -> None:
-    demo = _command(
+    demo = add_command(
         commands,
         "demo",
         "convert the demonstration take and score the result",
@@ -129,26 +128,13 @@ def _add_demo(commands: "Commands[LineParser]") -> None:
     )
 
 
-def _command(
-    commands: "Commands[LineParser]",
-    name: str,
-    summary: str,
-    description: str,
-    run: Callable[[argparse.Namespace], None],
-) -> LineParser:
-    parser = commands.add_parser(name, help=summary, description=description)
-    parser.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
-    parser.add_argument("--json", action="store_true", help="write one JSON object instead of text")
-    parser.add_argument("--debug", action="store_true", help="on errors, show where in the program")
-    parser.set_defaults(run=run)
-    return parser
-
-
 # Commands are imported when they run: --help and mistakes shall not wait for scipy, OpenCV and Blender.
 
 
 def _no_command(_arguments: argparse.Namespace) -> None:
-    raise UsageError(f"no command is given; convert, propose and demo are valid, see {program_name()} --help")
+    raise UsageError(
+        f"no command is given; convert, propose, library and demo are valid, see {program_name()} --help"
+    )
 
 
 def _convert(arguments: argparse.Namespace) -> None:

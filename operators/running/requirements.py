@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ..scene.posed_frames import forget, posed_frames
+from ..scene.posed_frames import forget, keyframes_of
 from ..scene.takes import find_take
 from .job_operator import job_is_running
 
@@ -65,11 +65,17 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
     take = find_take(context.scene)
     if take is None or take.keyframe_action is None:
         return keyframes(context)
-    if len(posed_frames(take)) == 1:
+    if len(keyframes_of(take)) == 1:
         forget()  # a script may have set a key that Blender has not told of yet
-    if len(posed_frames(take)) == 1:
+    if len(keyframes_of(take)) == 1:
         return "Store a keyframe at another frame first; there is only one"
     return None
+
+
+def matches(context: bpy.types.Context) -> str | None:
+    """There are frames that a library gave postures."""
+    take = find_take(context.scene)
+    return None if take and len(take.matching.matches) else "Match a library first"
 
 
 def motion(context: bpy.types.Context) -> str | None:
@@ -90,6 +96,16 @@ def weak_frames(context: bpy.types.Context) -> str | None:
     if take is None or take.review.frame_count == 0:
         return "Reconstruct the motion first"
     return None if len(take.review.weak_frames) else "No frame needs another keyframe"
+
+
+def a_library_here(context: bpy.types.Context) -> str | None:
+    """A keyframe library is made in this file."""
+    return None if len(context.scene.keymark.libraries) else "Begin a keyframe library first"
+
+
+def a_shelved_library(context: bpy.types.Context) -> str | None:
+    """There is a keyframe library at hand."""
+    return None if len(context.window_manager.keymark_shelf.libraries) else "Import a keyframe library first"
 
 
 def object_mode_possible(context: bpy.types.Context) -> str | None:

@@ -14,6 +14,7 @@ from ..bridge.frame_times import scene_frames
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_footage import load_footage, show_footage
 from .marker_styles import set_marker_color
+from .matches import add_candidate, add_match
 from .new_actor import add_actor, new_keyframe_action
 from .takes import add_take
 
@@ -70,5 +71,10 @@ def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Objec
         action = settings.keyframe_action = new_keyframe_action(armature_object)
         write_keyframes(armature_object, action, take.keyframes, frames)
         assign_action(armature_object, action)
+    for keyframe in take.keyframes:
+        if keyframe.matched is not None:
+            known = keyframe.matched
+            match = add_match(settings, float(frames[keyframe.index]), known.library)
+            add_candidate(match, keyframe.posture, known.posture, known.mirrored, known.confidence)
     scene.frame_set(scene.frame_start)
     return armature_object

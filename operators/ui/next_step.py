@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..scene.posed_frames import posed_frames, unposed
+from ..scene.posed_frames import keyframes_of, matched_frames, unposed
 
 FEWEST_KEYFRAMES = 2
 
@@ -19,12 +19,12 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: pick the markers' colors"
     if take.armature is None or take.armature.name not in take.id_data.objects:
         return "Next: build the actor"
-    if not len(take.proposals) and not posed_frames(take):
-        return "Next: propose keyframes"
+    if not len(take.proposals) and not keyframes_of(take):
+        return "Next: match a library, or pose"
     if take.motion_action is None:
-        if unposed(take):
+        if unposed(take) and not matched_frames(take):
             return "Next: pose the proposed frames"
-        if len(posed_frames(take)) < FEWEST_KEYFRAMES:
+        if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"
         return "Next: reconstruct the motion"
     if take.finish.action is None:

@@ -25,7 +25,7 @@ def take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         for name in (conversion.BLEND, conversion.BVH):
             (place / name).touch()
 
-    monkeypatch.setattr(conversion, "_require_blender", lambda: None)
+    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
     monkeypatch.setattr(conversion, "_write_scene", write)
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")

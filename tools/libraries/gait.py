@@ -15,14 +15,16 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
-from .moment import SIDES, Ankle, Arm, Foot, Moment, Turn
+from .moment import SIDES, Ankle, Arm, Foot, Moment, Turn, swung_arm
 from .solving import BODY, ankle_of, hips_height
 
 Array = NDArray[np.float64]
 
 RATE_HZ = 200.0
-MIDDLE = 0.41
-"""Share of a foot's stance after which the hips pass over it."""
+STANCE = 0.61
+"""Share of a cycle for which a foot is on the floor."""
+LEADS = 0.25
+"""Share of a cycle from the strike of a foot until the hips pass over it."""
 HIPS_RISE_M = 0.065
 """The hips rise and fall by 4 to 5 cm at a usual speed, by 7 at a brisk one."""
 PUSH_SHAPE, PUSH_DEG = 2.6, 64.0
@@ -61,7 +63,13 @@ class Style:
     """Of pelvis and chest."""
     bow: float = 2.0
     """The trunk's, forward [degrees]."""
-    elbow: float = 14.0
+    apart_m: float = 0.045
+    """Half the distance between the feet, side by side [m]."""
+    aside: float = 6.0
+    """How far the arms are held off the trunk [degrees]."""
+    lean: float = 0.0
+    """Of the whole body to the left, as in a bend [degrees]."""
+    elbow: float = 17.0
     """Least flexion [degrees]."""
     bend: float = 6.6
     """Least flexion of a supporting knee [degrees]."""
@@ -74,6 +82,8 @@ class Walk:
     """A walk over footfalls in order of time, of which neighbours are of different feet."""
 
     footfalls: Sequence[Footfall]
+    step_s: float
+    """Of a usual step, from strike to strike of the other foot."""
     style: Style = Style()
     body: Body = BODY
 
@@ -100,14 +110,14 @@ class Walk:
     def _trunk(self, time_s: float) -> tuple[float, float, Turn, Turn, Turn]:
         """The hips' place over the floor [m], and how pelvis, chest and head are turned."""
         cycle, vigour = self._cycle(time_s)
-        x, y, heading = (float(value) for value in self._hips(time_s))
+        x, y, heading = (float(np.interp(time_s, self.times, values)) for values in self._hips.T)
         sway, bow, facing = vigour * self.style.sway, self.style.bow, np.radians(heading)
         aside = 0.02 * sway * np.cos(cycle - 0.6 * np.pi)
         twist, drop = 5.0 * sway * np.cos(cycle), 4.0 * sway * np.cos(cycle - 0.3 * np.pi)
         return (
             x + aside * float(np.cos(facing)),
             y + aside * float(np.sin(facing)),
-            Turn(3.0 + sway * np.cos(2.0 * cycle), -drop, heading - twist),
+            Turn(3.0 + sway * np.cos(2.0 * cycle), self.style.lean - drop, heading - twist),
             Turn(bow - 1.5 * sway * np.cos(2.0 * cycle - 0.4), 1.3 * drop, 2.0 * twist),
             Turn(-bow, -0.3 * drop, -0.9 * twist),
         )
@@ -123,28 +133,33 @@ class Walk:
     def _phases(self) -> PchipInterpolator:
         """Cycles, whole where the left heel strikes and half where the right one does."""
         strikes = np.array([fall.strike_s for fall in self.footfalls])
+        for i in range(1, len(strikes)):  # feet that stand side by side from the beginning
+            strikes[i] = max(strikes[i], strikes[i - 1] + 0.5 * self.step_s)
         halves = np.arange(len(strikes)) * 0.5 + (0.0 if self.footfalls[0].side == "L" else 0.5)
         return PchipInterpolator(strikes, halves, extrapolate=True)
 
     @cached_property
-    def _hips(self) -> PchipInterpolator:
-        """The hips' midpoint x, y [m] and heading [degrees]: between feet, and over each in its middle."""
-        knots, places = [], []
+    def _hips(self) -> Array:
+        """(T, 3) the hips' midpoint x, y [m] and heading [degrees]: between the feet as they bear it."""
+        weights, places = [], []
         for fall in self.footfalls:
-            out = 0.5 * self.body.actor.segments_m["hip_width"] * (1.0 if fall.side == "L" else -1.0)
-            toes = self.style.toes_out * (1.0 if fall.side == "L" else -1.0)
-            heading = fall.turn - toes
-            facing = np.radians(heading)
-            aside = min(abs(out), STEP_ASIDE_M) * np.sign(out)
-            knots.append(fall.strike_s + MIDDLE * (fall.lift_s - fall.strike_s))
+            sign = 1.0 if fall.side == "L" else -1.0
+            heading = fall.turn - sign * self.style.toes_out
+            facing, aside = np.radians(heading), sign * self.style.apart_m
             places.append((fall.x - aside * np.cos(facing), fall.y - aside * np.sin(facing), heading))
-        return _held(np.array(knots), np.array(places))
+            full = fall.strike_s + LEADS * 2.0 * self.step_s
+            since = fall.lift_s - (STANCE - LEADS) * 2.0 * self.step_s
+            rises = np.clip((self.times - full) / self.step_s + 1.0, 0.0, 1.0)
+            weights.append(rises * np.clip((since - self.times) / self.step_s + 1.0, 0.0, 1.0))
+        share = np.array(weights) / np.sum(weights, axis=0)
+        return gaussian_filter1d(share.T @ np.array(places), 0.05 * RATE_HZ, axis=0, mode="nearest")
 
     @cached_property
     def _vigour(self) -> Array:
         """(T,) how fast the walk is against 1.3 m/s, at most 1.3."""
-        speed = np.linalg.norm(np.gradient(self._hips(self.times)[:, :2], self.times, axis=0), axis=-1)
-        return gaussian_filter1d(np.clip(speed / 1.3, 0.0, 1.3), 0.1 * RATE_HZ, mode="nearest")
+        speed = np.linalg.norm(np.gradient(self._hips[:, :2], self.times, axis=0), axis=-1)
+        vigour = gaussian_filter1d(np.clip(speed / 1.3, 0.0, 1.3), 0.1 * RATE_HZ, mode="nearest")
+        return np.asarray(vigour)
 
     @cached_property
     def _heights(self) -> Array:
@@ -195,7 +210,12 @@ class Walk:
         length = float(np.linalg.norm(end[:2] - start[:2]))
         place = start[:2] + gone * (end[:2] - start[:2])
         floor = 0.36 * self.body.actor.segments_m["foot.L"]
-        height = floor + high * (start[2] - floor) + low * (end[2] - floor) + extra * min(length / 1.2, 1.0)
+        height = (
+            floor
+            + high * (start[2] - floor)
+            + low * (end[2] - floor)
+            + extra * min(max(length / 1.2, 0.45), 1.0)
+        )
         turn = before.turn + gone * (after.turn - before.turn)
         return Ankle(float(place[0]), float(place[1]), float(height), turn)
 
@@ -203,39 +223,24 @@ class Walk:
         """The arm of the side whose heel strikes at 0: it is back then."""
         much = self.style.arms * vigour
         forward = -np.cos(cycle - 0.25)
-        return Arm(
-            elevation=float(-5.0 + 19.0 * much * forward) if much > 0.0 else 0.0,
-            plane=84.0,
-            rotation=14.0,
+        return swung_arm(
+            float((-4.0 + 19.0 * forward) * much),
+            self.style.aside,
+            rotation=10.0,
             elbow=float(self.style.elbow + 13.0 * much * (1.0 + np.cos(cycle - 0.5 - np.pi))),
             pronation=20.0,
         )
 
 
-STEP_ASIDE_M = 0.055
-"""Half the distance between the heels of a walker, side by side."""
-
-
-def steady(
-    stride_m: float, stride_s: float, style: Style = Style(), cycles: int = 3, stance: float = 0.61
-) -> Walk:
-    """Walking straight ahead along -Y; the left heel strikes at time 0 with the hips near y = 0."""
+def steady(stride_m: float, stride_s: float, style: Style = Style(), cycles: int = 3) -> Walk:
+    """Walking straight ahead along -Y; the left heel strikes at time 0 with the hips at y = 0."""
     falls = []
     for step in range(-4, 2 * cycles + 2):
         side, sign = ("L", 1.0) if step % 2 == 0 else ("R", -1.0)
-        strike = 0.5 * step * stride_s
-        ahead = 0.5 * step * stride_m + stance * MIDDLE * stride_m
-        falls.append(
-            Footfall(
-                side, strike, strike + stance * stride_s, sign * STEP_ASIDE_M, -ahead, sign * style.toes_out
-            )
-        )
-    return Walk(falls, style)
-
-
-def _held(knots: Array, values: Array) -> PchipInterpolator:
-    """A smooth curve through values (K, N) that keeps its pace beyond the outermost knots."""
-    return PchipInterpolator(knots, values, axis=0, extrapolate=True)
+        strike, ahead = 0.5 * step * stride_s, (0.5 * step + LEADS) * stride_m
+        turn = sign * style.toes_out
+        falls.append(Footfall(side, strike, strike + STANCE * stride_s, sign * style.apart_m, -ahead, turn))
+    return Walk(falls, 0.5 * stride_s, style)
 
 
 def _curve(keys: dict) -> PchipInterpolator:  # type: ignore[type-arg]

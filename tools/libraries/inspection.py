@@ -16,19 +16,6 @@ from .solving import BALL, HEEL
 
 Array = NDArray[np.float64]
 
-SHARES_OF_MASS = {
-    "hand": (0.006, 0.5),
-    "forearm": (0.016, 0.43),
-    "upper_arm": (0.028, 0.436),
-    "thigh": (0.100, 0.433),
-    "shin": (0.0465, 0.433),
-    "foot": (0.0145, 0.5),
-    "pelvis": (0.217, 0.5),
-    "chest": (0.280, 0.5),
-    "head": (0.081, 0.8),
-}
-"""Of a part in the body's mass, and where along it its centre lies: Winter (2009), table 4.1; the trunk's is
-divided at the waist."""
 TRUNK_RADIUS_M = (0.15, 0.105)
 """Half the trunk's width and depth between waist and chest."""
 
@@ -62,7 +49,7 @@ def ranges_left(library: Library) -> list[str]:
 def soles(body: Body, pose: Pose) -> Array:
     """(..., 2) heights of the soles [m], left first; a foot is as flat as its ankle's place allows.
 
-    The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is turned.
+    The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is flat.
     """
     lengths = body.actor.segments_m
     heights = []
@@ -75,16 +62,6 @@ def soles(body: Body, pose: Pose) -> Array:
         flat = lengths[f"foot.{side}"] * HEEL[2]
         heights.append(ankle[..., 2] + np.maximum(rigid, flat))
     return np.stack(heights, axis=-1)
-
-
-def centre_of_mass(body: Body, pose: Pose) -> Array:
-    """(..., 3) [m]."""
-    total, weight = np.zeros((*pose.posture.batch, 3)), 0.0
-    for segment in body.skeleton.segments:
-        mass, share = SHARES_OF_MASS.get(segment.name.partition(".")[0], (0.0, 0.0))
-        start, end = body.segment_ends(pose, segment.name)
-        total, weight = total + mass * (start + share * (end - start)), weight + mass
-    return np.asarray(total / weight)
 
 
 def slides(body: Body, posture: Posture, times: Array, low_m: float = 0.02) -> float:

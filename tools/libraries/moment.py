@@ -4,6 +4,7 @@ A moment is posed facing -Y on the floor z = 0; left is +X. Every angle is zero 
 upright with hanging arms and straight legs.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
@@ -33,11 +34,17 @@ class Arm:
     plane: float = 30.0
     """Where to: 0 sideways, 90 straight ahead, beyond that across the chest."""
     rotation: float = 12.0
-    """Inward, about the upper arm; at 0 a hanging arm's elbow bends forward, that of one raised ahead upward."""
+    """Inward, about the upper arm; at 0 a hanging arm bends its elbow forward, one raised ahead upward."""
     elbow: float = 18.0
     pronation: float = 15.0
     girdle: float = 0.0
     """The shoulder's own lift."""
+
+
+def swung_arm(forward: float, aside: float = 7.0, **others: float) -> Arm:
+    """An arm that hangs, swung forward or (negative) back, and held a little off the trunk [degrees]."""
+    elevation = math.hypot(forward, aside)
+    return Arm(elevation, math.degrees(math.atan2(forward, aside)), **others)
 
 
 @dataclass(frozen=True)
@@ -52,6 +59,8 @@ class Hand:
     """Turns the elbow from hanging below the line to the hand outward [degrees]."""
     pronation: float = 15.0
     girdle: float = 0.0
+    short: float = 0.0
+    """How far the wrist may stay short of the place where the arm is too short for it [m]."""
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 BODY = Body(Actor.from_stature(1.75))
 """Whom the libraries are posed on."""
+STRETCHED = 0.98
+"""Share of its length that an arm reaches without effort."""
 HEEL, BALL = (0.0, 0.29, -0.36), (0.0, -0.66, -0.36)
 """Of the sole, from the ankle, in lengths of the foot; the skeleton's own foot ends at (0, -0.93, -0.36)."""
 
@@ -74,7 +76,7 @@ def hips_height(moment: Moment, body: Body = BODY) -> float:
     return float(min(heights))
 
 
-def ankle_of(foot: Foot | Ankle, body: Body) -> Array:
+def ankle_of(foot: Foot | Ankle, body: Body = BODY) -> Array:
     """(3,) where the ankle of a foot with a place is [m]: it rolls about the heel or the ball."""
     if isinstance(foot, Ankle):
         return np.array([foot.x, foot.y, foot.z])
@@ -161,8 +163,15 @@ def _place_arm(
     offsets = {joint.name: body.offsets[i] for i, joint in enumerate(body.skeleton.joints)}
     girdle = hips + rotations["pelvis"] @ offsets["waist"] + chest @ offsets[f"girdle.{side}"]
     shoulder = girdle + lifted @ offsets[f"shoulder.{side}"]
+    reach = np.array([arm.x, arm.y, arm.z]) - shoulder
+    distance, stretched = (
+        np.linalg.norm(reach),
+        STRETCHED * (lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"]),
+    )
+    if stretched < distance < stretched + arm.short:
+        reach *= stretched / distance
     turn, elbow = _reach(
-        np.array([arm.x, arm.y, arm.z]) - shoulder,
+        reach,
         lengths[f"upper_arm.{side}"],
         lengths[f"forearm.{side}"],
         chest,

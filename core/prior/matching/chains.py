@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from ...body.kinematics import Body
 from ...body.mirror import mirrored
 from ...body.posture import Posture
-from ...body.rotations import exponential
 from ...library.applying import applied
 from ...library.library import Library, LibraryMotion
 from ...library.motion_course import course
@@ -46,7 +45,7 @@ class Chain:
     """Time from each to the next; 0 for a single posture."""
     cyclic: bool
     track: Array
-    """(3 N, 2) the hips' place [m] in the cycle before, this one and the next; (N, 2) where it is no cycle."""
+    """(3 N, 2) the hips' place [m] in the cycle before, this one and the next; (N, 2) without cycles."""
     turn_rad: float
     """What a cycle adds to the heading."""
     motion: str

@@ -6,19 +6,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...body.rotations import exponential
+from ...body.posture import Posture
 from .chains import Chains
+from .placing import about_up, placed
 from .solids import Solids
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
-
-UP = np.array([0.0, 0.0, 1.0])
-
-
-def about_up(angle: Array) -> Array:
-    """(..., 3, 3) rotations about the vertical."""
-    return exponential(np.asarray(angle)[..., None] * UP)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +63,9 @@ class CourseTable:
                 spread[own.stop - 1] = turn @ spread[own.stop - 1] @ turn.T
         return middle, spread, way
 
-    def read(self, chain: Whole, time_s: Array) -> Reading:
-        """What the chains hold at some times; before a chain's beginning and after its end it rests."""
-        rows, start = self._rows
-        middles, spreads, ways = self._turned
+    def _between(self, chain: Whole, time_s: Array) -> tuple[Whole, Whole, Array, Whole]:
+        """(T,) the rows before and after some times, how far between them, and in which cycle."""
+        _, start = self._rows
         step = np.array([entry.step_s for entry in self.chains.chains])[chain]
         place = np.where(step > 0.0, time_s / np.where(step > 0.0, step, 1.0), 0.0)
         last = (np.diff(start) - 1)[chain]
@@ -80,19 +73,44 @@ class CourseTable:
         cycle = np.where(cyclic, np.floor(place / np.maximum(last, 1)), 0.0)
         local = np.clip(place - cycle * last, 0.0, last)
         low = np.minimum(local.astype(np.intp), np.maximum(last - 1, 0))
-        share = local - low
         first = start[:-1][chain] + low
         second = np.minimum(first + 1, start[1:][chain] - 1)
+        return first, second, local - low, cycle.astype(np.intp)
+
+    def read(self, chain: Whole, time_s: Array) -> Reading:
+        """What the chains hold at some times; before a chain's beginning and after its end it rests."""
+        rows, _ = self._rows
+        middles, spreads, ways = self._turned
+        first, second, share, cycle = self._between(chain, time_s)
 
         def between(values: Array) -> Array:
             weight = share.reshape(-1, *[1] * (values.ndim - 1))
             return np.asarray((1.0 - weight) * values[first] + weight * values[second])
 
-        turn = about_up(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
+        turn = self._turn(chain, cycle)
         middle = between(middles) @ np.swapaxes(turn, -1, -2)
         spread = turn[:, None] @ between(spreads) @ np.swapaxes(turn, -1, -2)[:, None]
-        way = self._carried(between(ways), chain, cycle.astype(np.intp))
+        way = self._carried(between(ways), chain, cycle)
         return Reading(middle, spread, between(self.solids.height[rows]), way)
+
+    def posture(self, chain: Whole, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
+        """(T,) postures at some times, with headings of the motion's beginning and places of the hips [m]."""
+        rows, start = self._rows
+        first, second, share, cycle = self._between(chain, time_s)
+        ends = np.zeros(len(rows))
+        ends[start[1:] - 1] = [entry.turn_rad for entry in self.chains.chains]
+        postures = placed(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
+        led = postures[first].plus(share[:, None] * postures[second].minus(postures[first]))
+        turned = np.array([entry.turn_rad for entry in self.chains.chains])[chain]
+        return placed(led, heading_rad + cycle * turned, hips)
+
+    def nearest(self, chain: Whole, time_s: Array) -> Whole:
+        """(T,) which of the N postures of the chains is nearest in time."""
+        first, second, share, _ = self._between(chain, time_s)
+        return self._rows[0][np.where(share < 0.5, first, second)]
+
+    def _turn(self, chain: Whole, cycle: Whole) -> Array:
+        return about_up(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
 
     def _carried(self, way: Array, chain: Whole, cycle: Whole) -> Array:
         """Places (T, 3) that come again some cycles later."""

@@ -1,8 +1,8 @@
 """A plausible order over time: the best way through postures and headings, and how probable each is.
 
-A *state* is one posture of the chains in one heading; at a price it may be followed by any other, as when one
-movement ends and another begins. The likelihoods are tempered: a performer who is off the library's posture is
-off in the same way for a while.
+A *state* is one posture of the chains in one heading; at a price it may be followed by any other, as when
+one movement ends and another begins. The likelihoods are tempered: a performer who is off the library's
+posture is off in the same way for a while.
 """
 
 from collections.abc import Iterator
@@ -68,7 +68,7 @@ class Lattice:
         return np.array(path[::-1], dtype=np.intp)
 
     def posterior(self) -> tuple[Single, float]:
-        """(T, N H) probability of each state in each frame, and the logarithm of the evidence for them all."""
+        """(T, N H) probability of each state in each frame, and the logarithm of all their evidence."""
         steps = list(self._steps()) if len(self.sights) < 400 else None
         forward = np.empty_like(self.log_likelihood)
         total = len(forward[0])

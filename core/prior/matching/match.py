@@ -1,4 +1,4 @@
-"""A library found in footage: which of its postures is seen when, where and in which heading, and how surely."""
+"""A library found in footage: which of its postures is seen when and where, in which heading, how surely."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,15 +12,20 @@ from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
 from ...library.library import Library
 from ...progress import Part
+from ..interpolation import interpolate
+from ..keyframes import Keyframe
 from .alternatives import alternatives
 from .candidate import MatchedFrame
 from .chains import library_chains
+from .course_table import CourseTable
 from .floor import FLOOR_STD_M, floor_height
 from .lattice import Lattice
-from .path import Path, path_postures
+from .path import Path
+from .refine import Course, Refinement
 from .sights import sights
 from .solids import marker_solids
-from .sweep import DEGREES, sweep, turned
+from .habits import DEGREES, Habits
+from .sweep import sweep, turned
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -29,7 +34,7 @@ HEADINGS = 24
 SAMPLES_PER_S = 15.0
 """Frames looked at: a motion's posture is known well between two that are this near."""
 CORRELATION_S = 0.25
-"""So long a performer is off the library's posture in the same way: frames nearer than that tell less each."""
+"""So long a performer is off the library's posture in the same way: frames nearer tell less each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,26 +91,30 @@ def match_library(sought: Sought, library: Library, floor_m: float | None) -> Pa
     if floor is None:
         floor = floor_height(sought.camera, tracks, sought.segments, sampled, states)
     yield 0.1
-    seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M)
-    fits = []
-    for index, sight in enumerate(seen):
-        fits.append(sweep(sight, states))
-        yield 0.1 + 0.3 * index / len(seen)
     time_s = tracks.time_s[sampled]
-    usual_s = float(np.median(np.diff(time_s)))
-    lattice = Lattice(chains, states, seen, fits, min(1.0, usual_s / CORRELATION_S), time_s)
-    best = lattice.best_path()
-    yield 0.7
+    tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+    table = CourseTable(chains, solids)
+    habits = Habits.unknown(len(sought.segments))
+    for look in (0, 1):  # the second look knows how the performer differs from the library
+        seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M, habits)
+        fits = [sweep(sight, states) for sight in seen]
+        yield 0.2 + 0.4 * look
+        lattice = Lattice(chains, states, seen, fits, tempering, time_s)
+        path = Path(chains, states, seen, fits, lattice.best_path(), time_s)
+        yield 0.4 + 0.4 * look
+        refinement = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M)
+        refined = refinement.refined(path.course())
+        if look == 0:
+            habits = refinement.habits(refined)
     share, evidence = lattice.posterior()
     yield 0.95
-    path = Path(chains, states, seen, fits, best)
-    course = path_postures(path, sampled, tracks.frame_count)
+    course = _every_frame(table, refined, sampled, tracks.frame_count)
     frames = tuple(
         alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
     return LibraryMatch(
-        library, frames, _fit(path), floor, course, evidence, int(len(sampled))
+        library, frames, _fit(path, habits.middle), floor, course, evidence, int(len(sampled))
     )
 
 
@@ -117,12 +126,20 @@ def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Wh
     return np.unique(np.concatenate([np.arange(0, count, stride), [count - 1], keyframes])).astype(np.intp)
 
 
-def _fit(path: Path) -> float:
+def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count: int) -> Posture:
+    """(F,) postures of the whole clip."""
+    time, heading, hips = course.values[:, 0], course.values[:, 1], course.values[:, 2:]
+    found = table.posture(course.chain, time, heading, hips)
+    keyframes = [Keyframe(int(frame), found[row]) for row, frame in enumerate(frames)]
+    return interpolate(tuple(keyframes), frame_count)
+
+
+def _fit(path: Path, usual: Array) -> float:
     """Mean weight of the markers' middles, of which one weighs less the farther it is off."""
     weights = []
     for sight, fit, state in zip(path.sights, path.fits, path.best, strict=True):
         left = sight.left[fit.doubted[state]] @ path.states.numbers[:, state]
-        squared = (left[:-1].reshape(-1, 2) ** 2).sum(axis=1)[sight.seen]
+        squared = ((left[:-1].reshape(-1, 2) * usual[:, None]) ** 2).sum(axis=1)[sight.seen]
         weights.append(1.0 / (1.0 + squared / DEGREES))
     known = np.concatenate(weights)
     return float(known.mean()) if len(known) else 0.0

@@ -1,4 +1,4 @@
-"""The way that was found through a library, as postures in the world."""
+"""The way that was found through a library's states, and what it is in times, headings and places."""
 
 from dataclasses import dataclass
 
@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...body.posture import Posture
-from ...body.rotations import exponential
-from ..interpolation import interpolate
-from ..keyframes import Keyframe
 from .chains import Chains
+from .placing import placed
+from .refine import Course
 from .sights import Sight
+from .steps import FASTEST
 from .sweep import Fit, Turned, places
 
 Array = NDArray[np.float64]
@@ -27,26 +27,41 @@ class Path:
     fits: list[Fit]
     best: Whole
     """(T,) state."""
+    clock_s: Array
+    """(T,) times of the frames."""
 
     def postures(self, row: int, states: Whole) -> Posture:
         """The postures of some states in one of the T frames, in the world."""
         posture, heading = np.divmod(states, len(self.states.heading_rad))
-        place = places(self.sights[row], self.states, self.fits[row])[:, states].T
-        return placed(self.chains.posture[posture], self.states.heading_rad[heading], place)
+        return placed(self.chains.posture[posture], self.states.heading_rad[heading], self.hips(row, states))
 
+    def hips(self, row: int, states: Whole) -> Array:
+        """(N, 3) places of the hips in some states of one of the T frames [m]."""
+        return np.asarray(places(self.sights[row], self.states, self.fits[row])[:, states].T, dtype=float)
 
-def placed(posture: Posture, heading_rad: Array, hips: Array) -> Posture:
-    """Postures (N,) turned about the vertical by angles (N,) and put with their hips to places (N, 3) [m]."""
-    turn = exponential(np.asarray(heading_rad)[:, None] * np.array([0.0, 0.0, 1.0]))
-    rotations = np.array(posture.rotations)
-    rotations[:, 0] = turn @ rotations[:, 0]
-    return Posture(posture.skeleton, hips, rotations, posture.angles)
-
-
-def path_postures(path: Path, frames: Whole, frame_count: int) -> Posture:
-    """(F,) postures of the whole clip, from the path at its T frames."""
-    keyframes = [
-        Keyframe(int(frame), path.postures(row, path.best[row : row + 1])[0])
-        for row, frame in enumerate(frames)
-    ]
-    return interpolate(keyframes, frame_count)
+    def course(self) -> Course:
+        """The path in times that go on over cycles, and headings that turn on."""
+        posture, heading = np.divmod(self.best, len(self.states.heading_rad))
+        chain = self.chains.chain_of[posture]
+        own = posture - self.chains.start[chain]
+        count = np.diff(self.chains.start)[chain]
+        entries = [self.chains.chains[index] for index in chain]
+        step = np.array([entry.step_s for entry in entries])
+        cyclic = np.array([entry.cyclic for entry in entries])
+        turn = np.array([entry.turn_rad for entry in entries])
+        further = np.diff(own)
+        further = np.where(cyclic[1:], further % count[1:], further)
+        # Stochastic rounding may take one posture more than the fastest speed allows.
+        most = np.ceil(FASTEST * np.diff(self.clock_s) / np.where(step > 0.0, step, np.inf)[1:]) + 1
+        joined = (chain[1:] == chain[:-1]) & (further >= 0) & (further <= most)
+        # A whole cycle before the first frame's is kept free, so that times may still go back a little.
+        cycle = np.ones(len(own))
+        for row in range(1, len(own)):
+            cycle[row] = cycle[row - 1] + (own[row] < own[row - 1]) if joined[row - 1] else 1.0
+        cycle = np.where(cyclic, cycle, 0.0)
+        angle = self.states.heading_rad[heading] - cycle * turn
+        for row in range(1, len(own)):
+            angle[row] -= 2.0 * np.pi * np.round((angle[row] - angle[row - 1]) / (2.0 * np.pi))
+        hips = np.stack([self.hips(row, self.best[row : row + 1])[0] for row in range(len(own))])
+        time = (own + cycle * count) * step
+        return Course(chain, joined, np.column_stack([time, angle, hips]))

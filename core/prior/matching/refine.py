@@ -1,7 +1,7 @@
 """From the best states to values between them: time within the motion, heading and place of every frame.
 
-Gauss-Newton over all frames looked at, at once. What the footage says is weighed against a motion that goes on,
-turns and travels evenly; markers that are far off count less, as performers hold a limb otherwise.
+Gauss-Newton over all frames looked at, at once. What the footage says is weighed against a motion that goes
+on, turns and travels evenly; markers that are far off count less, as performers hold a limb otherwise.
 """
 
 from dataclasses import dataclass
@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from .course_table import CourseTable, Reading, about_up
+from .course_table import CourseTable, Reading
+from .habits import DEGREES, Habits, scale
+from .placing import about_up
 from .sights import Sight, square_root
-from .sweep import DEGREES, ROOT_STD_M
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -29,6 +30,8 @@ EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 0.35])
 """Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's."""
 CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 0.5])
 """Of what these change by in a second, as the square root of time."""
+MOST_SIZE = 1.5
+"""No marker is larger or smaller than on an average body by more."""
 HELD = 1e-2
 """Least information on each unknown, so that all stay where nothing is known of them."""
 
@@ -62,7 +65,8 @@ class Refinement:
         """The course that explains the footage best, nearby."""
         values = np.array(course.values)
         for _ in range(ITERATIONS):
-            matrix, gradient = self._footage(course.chain, values)
+            size = self._sizes(course.chain, values)
+            matrix, gradient = self._footage(course.chain, values, size)
             self._evenness(course, values, matrix, gradient)
             step = solveh_banded(_banded(matrix), -gradient.ravel()).reshape(values.shape)
             values = values + np.clip(step, -LARGEST, LARGEST)
@@ -70,36 +74,69 @@ class Refinement:
 
     @cached_property
     def _seen(self) -> tuple[Array, ...]:
-        names = ("weight", "axes", "root", "whole", "location", "backward", "pixel")
+        names = ("weight", "axes", "root", "whole", "location", "backward", "pixel", "root_std_m")
         return tuple(np.array([getattr(sight, name) for sight in self.sights]) for name in names)
 
-    def residuals(self, chain: Whole, values: Array) -> tuple[Array, Array, Array]:
+    def _sizes(self, chain: Whole, values: Array) -> Array:
+        """(M,) how much larger each marker is than on an average body, over the clip.
+
+        Clothes and where a colour ends are the same in all frames: taken as news in each they would say more
+        of the distance than the floor does.
+        """
+        _, _, root, whole, *_ = self._seen
+        shown, depth = self._shown(chain, values)
+        seen = root * depth[..., None]
+        known = whole & (np.abs(seen).sum(axis=-1) > 0.0)
+        ratio = np.sum(seen * shown, axis=-1) / np.maximum(np.sum(shown * shown, axis=-1), 1e-12)
+        sizes = np.ones(whole.shape[1])
+        for marker in range(len(sizes)):
+            if known[:, marker].any():
+                sizes[marker] = np.exp(np.median(np.log(np.maximum(ratio[known[:, marker], marker], 0.1))))
+        return np.clip(sizes, 1.0 / MOST_SIZE, MOST_SIZE)
+
+    def _shown(self, chain: Whole, values: Array) -> tuple[Array, Array]:
+        """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
+        _, axes, _, _, location, backward, *_ = self._seen
+        read: Reading = self.table.read(chain, values[:, 0])
+        turn = about_up(values[:, 1])
+        middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        depth = np.maximum(-np.einsum("tmi,ti->tm", middle, backward), 0.1)
+        spread = turn[:, None] @ read.spread @ np.swapaxes(turn, -1, -2)[:, None]
+        image = np.einsum("tmki,tmij,tmlj->tmkl", axes, spread, axes, optimize=True)
+        return np.stack(square_root(image[..., 0, 0], image[..., 0, 1], image[..., 1, 1]), axis=-1), depth
+
+    def habits(self, course: Course) -> Habits:
+        """What the whole clip says of the performer."""
+        weight, _, _, whole, *_ = self._seen
+        size = self._sizes(course.chain, course.values)
+        off, extent, _ = self.residuals(course.chain, course.values, size)
+        return Habits(scale(off, weight > 0.0, self.tempering), scale(extent, whole, self.tempering), size)
+
+    def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
         """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T,) of the floor."""
-        weight, axes, root, whole, location, backward, pixel = self._seen
+        weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
         turn = about_up(values[:, 1])
         middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         off = np.einsum("tmki,tmi->tmk", axes, middle) * weight[..., None]
-        depth = np.maximum(-np.einsum("tmi,ti->tm", middle, backward), 0.1)
-        spread = turn[:, None] @ read.spread @ np.swapaxes(turn, -1, -2)[:, None]
-        image = np.einsum("tmki,tmij,tmlj->tmkl", axes, spread, axes, optimize=True)
-        shown = np.stack(square_root(image[..., 0, 0], image[..., 0, 1], image[..., 1, 1]), axis=-1)
-        deviation = np.hypot(ROOT_STD_M, pixel[:, None] * depth)
+        shown, depth = self._shown(chain, values)
+        shown = shown * size[:, None]
+        deviation = np.hypot(root_std, pixel[:, None] * depth)
         extent = (shown - root * depth[..., None]) / deviation[..., None] * np.array([1.0, np.sqrt(2.0), 1.0])
         extent = np.where(whole[..., None], extent, 0.0)
         if self.floor_m is None:
             return off, extent, np.zeros(len(values))
         return off, extent, (values[:, 4] - read.height - self.floor_m) / self.floor_std_m
 
-    def _footage(self, chain: Whole, values: Array) -> tuple[Array, Array]:
+    def _footage(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
-        now = self.residuals(chain, values)
+        now = self.residuals(chain, values, size)
         rows = self._weighted(now, now)
         jacobian = np.empty((*rows.shape, UNKNOWNS))
         for unknown in range(UNKNOWNS):
             probe = np.array(values)
             probe[:, unknown] += PROBE
-            jacobian[..., unknown] = (self._weighted(self.residuals(chain, probe), now) - rows) / PROBE
+            jacobian[..., unknown] = (self._weighted(self.residuals(chain, probe, size), now) - rows) / PROBE
         matrix = np.zeros((3, len(values), UNKNOWNS, UNKNOWNS))
         matrix[0] = np.swapaxes(jacobian, -1, -2) @ jacobian + HELD * np.eye(UNKNOWNS)
         return matrix, np.einsum("tri,tr->ti", jacobian, rows)

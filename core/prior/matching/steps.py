@@ -1,4 +1,4 @@
-"""How one state may follow another: on in its motion at a usual speed, turning a little, travelling as it does."""
+"""How one state may follow another: on in its motion at a usual speed, turning a little, travelling along."""
 
 from dataclasses import dataclass, field
 
@@ -105,9 +105,7 @@ class Step:
     moves: list[tuple[Road, Single]]
 
 
-def step(
-    roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single
-) -> Step:
+def step(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single) -> Step:
     """The moves between two frames.
 
     Args:

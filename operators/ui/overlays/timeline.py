@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...running.say import label
-from ...scene.posed_frames import is_posed
+from ...scene.posed_frames import has_frame, is_posed, matched_frames
 from ...scene.results import Remembered, reading_of, review_of
 from ...scene.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
 from .figures import diamonds, segments
 from .picture import Fill, Item, Label, Stroke, paint
-from .timeline_figures import graph, in_view, joined, pointers, strip
+from .timeline_figures import graph, in_view, joined, pointers, squares, strip
 
 Array = NDArray[np.float64]
 
@@ -49,6 +49,7 @@ LEAST_ROOMY = 16.0
 LEAST = 6.0
 SPEED: Color = (0.35, 0.68, 0.92, 1.0)
 PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
+MATCHED: Color = (0.55, 0.88, 0.60, 1.0)
 WEAK: Color = (0.95, 0.45, 0.15, 1.0)
 GROUND: Color = (0.0, 0.0, 0.0, 0.28)
 
@@ -138,14 +139,26 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     if weak:
         frames = np.array([frame for frame in weak if not is_posed(take, frame)], dtype=np.float64)
         items += weak_pointers(frames, timeline)
-    if proposed:
-        frames = np.array(proposed, dtype=np.float64)
-        level = np.zeros(len(frames))
-        if speed is not None and settings.show_speed:
-            level = np.interp(frames, speed.frames, relative(speed.values))
-        done = np.array([is_posed(take, frame) for frame in proposed])
-        items += proposals(frames, level, done, timeline)
+    shown_speed = speed if settings.show_speed else None
+    matched = matched_frames(take) if settings.show_matches else ()
+    still = [frame for frame in proposed if not has_frame(matched, frame)]
+    if still:
+        frames = np.array(still, dtype=np.float64)
+        done = np.array([is_posed(take, frame) for frame in still])
+        items += proposals(frames, _level(frames, shown_speed), done, timeline)
+    if matched:
+        frames = np.array(matched, dtype=np.float64)
+        doubtful = {round(match.frame, 3) for match in take.matching.matches if match.is_doubtful}
+        sure = np.array([frame not in doubtful for frame in matched])
+        items += matches(frames, _level(frames, shown_speed), sure, timeline)
     return items
+
+
+def _level(frames: Array, speed: "Speed | None") -> Array:
+    """How high marks at frames (K,) lie on the graph, 0 to 1; at its foot where there is none."""
+    if speed is None:
+        return np.zeros(len(frames))
+    return np.asarray(np.interp(frames, speed.frames, relative(speed.values)))
 
 
 def relative(speed: Array) -> Array:
@@ -209,6 +222,17 @@ def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Ti
     return [
         Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
         Fill(marks[done], PROPOSED),
+    ]
+
+
+def matches(frames: Array, level: Array, sure: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
+    """Squares on the graph at keyframes from a library: hollow where in doubt, filled where sure."""
+    x = timeline.places(frames)
+    centres = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
+    marks = squares(centres, timeline.fitting(x, timeline.sizes.diamond))
+    return [
+        Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8),
+        Fill(marks[sure], MATCHED),
     ]
 
 

@@ -96,6 +96,13 @@ def believed_color(confidence: Array) -> Array:
     return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
 
 
+def squares(centres: Array, size: float) -> Array:
+    """(N, 4, 2) upright squares about places (N, 2), as large as a diamond of this size."""
+    half = 0.8 * size
+    corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
+    return np.asarray(centres[:, None] + corners)
+
+
 def pointers(x: Array, tip: float, size: float) -> Array:
     """(N, 3, 2) triangles that point down to a height at places (N,)."""
     half, top = 0.6 * size, np.full_like(x, tip + size)

@@ -1,5 +1,7 @@
 """What Keymark's panels share."""
 
+from textwrap import wrap
+
 import bpy
 
 from ...running.job_operator import job_is_running
@@ -7,6 +9,8 @@ from ...scene.takes import find_take
 
 ESCAPE_UNITS = 2.9
 """Width of the word Esc with an icon."""
+LETTER, MARGIN = 6.2, 80.0
+"""Pixels that a letter of a label takes on a plain screen, and those beside the words."""
 
 
 class SidebarPanel:
@@ -60,3 +64,15 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     escape.ui_units_x = ESCAPE_UNITS
     escape.label(text="Esc", icon="CANCEL")
     return True
+
+
+def draw_sentence(
+    layout: bpy.types.UILayout, context: bpy.types.Context, sentence: str, icon: str = "DOT"
+) -> None:
+    """Draw a sentence that is translated already, broken into lines as wide as the sidebar."""
+    scale = context.preferences.system.ui_scale
+    letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
+    lines = layout.column(align=True)
+    lines.scale_y = 0.8
+    for number, line in enumerate(wrap(sentence, letters)):
+        lines.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)

@@ -97,6 +97,21 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
                 column.label(text=missing, icon="INFO")
 
 
+class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
+    """The motion as a keyframe library."""
+
+    bl_label = "Keyframe Library"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the button, and what it is for."""
+        column = self.column()
+        lines = column.column(align=True)
+        lines.scale_y = 0.85
+        lines.label(text="The next take of its kind")
+        lines.label(text="then needs fewer keyframes")
+        column.operator("keymark.learn_library", icon="ASSET_MANAGER")
+
+
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_finish, KEYMARK_PT_asset, KEYMARK_PT_export)
+    (KEYMARK_PT_finish, KEYMARK_PT_asset, KEYMARK_PT_learn, KEYMARK_PT_export)
 )

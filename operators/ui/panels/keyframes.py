@@ -3,7 +3,7 @@
 import bpy
 
 from ...running.say import label
-from ...scene.posed_frames import posed_frames, proposed_frames, unposed
+from ...scene.posed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed
 from ...scene.takes import active_take
 from .base import TakePanel, draw_progress
 
@@ -40,8 +40,13 @@ def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 
 def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """How many of the proposed keyframes are posed, and how many others."""
+    """How many of the proposed keyframes are posed, and how many others; how many are matched."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
+    matched = len(matched_frames(take))
+    if matched:
+        text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)
+        layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+        return
     if not proposed:
         text = label("{posed} posed; none proposed yet", posed=posed)
         layout.label(text=text, icon="INFO", translate=False)
@@ -66,6 +71,9 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
+    elif has_frame(matched_frames(take), frame):
+        text = label("Frame {frame} is matched, not posed", frame=frame)
+        layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
         text = label("Frame {frame} is proposed, not posed yet", frame=frame)
         layout.label(text=text, icon="KEYFRAME", translate=False)
@@ -79,6 +87,7 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
     bl_label = "Proposals"
     bl_parent_id = "KEYMARK_PT_keyframes"
     bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what proposes frames, and the Action with the keyframes."""

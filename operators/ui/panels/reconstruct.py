@@ -1,14 +1,9 @@
 """From keyframes to the motion."""
 
-from textwrap import wrap
-
 import bpy
 
 from ...scene.takes import active_take, find_take
-from .base import TakePanel, draw_progress
-
-LETTER, MARGIN = 6.2, 80.0
-"""Pixels that a letter of a label takes on a plain screen, and those beside the words."""
+from .base import TakePanel, draw_progress, draw_sentence
 
 
 class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
@@ -61,14 +56,9 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw each note, broken into lines as wide as the sidebar."""
-        scale = context.preferences.system.ui_scale
-        letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
         column = self.layout.column()
         for note in active_take(context.scene).notes:
-            lines = column.column(align=True)
-            lines.scale_y = 0.8
-            for number, line in enumerate(wrap(note.text, letters)):
-                lines.label(text=line, icon="DOT" if number == 0 else "BLANK1", translate=False)
+            draw_sentence(column, context, note.text)
 
 
 register, unregister = bpy.utils.register_classes_factory(

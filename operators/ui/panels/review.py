@@ -78,6 +78,7 @@ class KEYMARK_PT_timeline(TakePanel, bpy.types.Panel):
         column.prop(timeline, "show_weak_frames")
         column.prop(timeline, "show_speed")
         column.prop(timeline, "show_proposals")
+        column.prop(timeline, "show_matches")
 
 
 register, unregister = bpy.utils.register_classes_factory(

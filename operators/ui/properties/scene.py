@@ -1,8 +1,9 @@
-"""Keymark's part of a scene: its takes, and which of them is worked on."""
+"""Keymark's part of a scene: its takes and keyframe libraries, and which of them are worked on."""
 
 import bpy
 
 from ...scene.takes import bring_forward, find_take
+from .library import KEYMARK_PG_library
 from .overlays import KEYMARK_PG_overlays
 from .take import KEYMARK_PG_take
 from .timeline import KEYMARK_PG_timeline
@@ -30,6 +31,10 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         default=0,
         min=0,
         update=_active_take_changed,
+    )
+    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_library)
+    active_library: bpy.props.IntProperty(
+        name="Active Library", description="The keyframe library that is worked on", default=0, min=0
     )
     overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
     timeline: bpy.props.PointerProperty(type=KEYMARK_PG_timeline)

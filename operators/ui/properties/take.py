@@ -9,6 +9,7 @@ from .actor import KEYMARK_PG_lengths
 from .clip_state import KEYMARK_PG_clip_state
 from .finish import KEYMARK_PG_finish
 from .marker import KEYMARK_PG_marker
+from .match import KEYMARK_PG_matching
 from .review import KEYMARK_PG_review
 from .turntable import KEYMARK_PG_turntable
 
@@ -134,6 +135,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         soft_max=100,
     )
     proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
+    matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
     method: bpy.props.EnumProperty(
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )

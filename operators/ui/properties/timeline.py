@@ -24,6 +24,12 @@ class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
+    show_matches: bpy.props.BoolProperty(
+        name="Matched Keyframes",
+        description="Squares at the keyframes matched with a library: hollow where the match is in doubt",
+        default=True,
+        update=_changed,
+    )
     show_confidence: bpy.props.BoolProperty(
         name="Confidence",
         description="A strip that is the higher and the bluer the further a frame can be believed",

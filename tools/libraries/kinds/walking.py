@@ -3,7 +3,7 @@
 from keymark.core.library.library import Library
 
 from ..composing import Composer
-from ..gait import Style, Walk, steady
+from ..gait import LEADS, STANCE, Footfall, Style, Walk, steady
 from ..moment import Moment
 
 PHASES = (
@@ -18,6 +18,16 @@ PHASES = (
     ("feet pass, right stands", 0.81),
     ("right heel off", 0.91),
 )
+FEWER_PHASES = (
+    ("left heel strike", 0.0),
+    ("right toe off", 0.12),
+    ("feet pass, left stands", 0.26),
+    ("left heel off", 0.39),
+    ("right heel strike", 0.5),
+    ("left toe off", 0.62),
+    ("feet pass, right stands", 0.76),
+    ("right heel off", 0.89),
+)
 SOURCES = (
     "Perry, J. & Burnfield, J. M. (2010). Gait Analysis: Normal and Pathological Function, 2nd ed.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
@@ -29,12 +39,15 @@ SOURCES = (
     " walking. Physical Therapy 47.",
 )
 USUAL = Style()
+WALK = (1.42, 1.08, USUAL)
 GAITS = {
-    "walk": (1.42, 1.08, USUAL),
-    "slow walk": (1.06, 1.28, Style(elbow=10.0)),
-    "brisk walk": (1.72, 0.94, Style(elbow=20.0, bow=3.0)),
+    "walk": (*WALK, PHASES),
+    "slow walk": (1.06, 1.28, Style(arms=0.4, elbow=12.0), FEWER_PHASES),
+    "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), PHASES),
 }
-"""Stride [m], its time [s], and how."""
+"""Stride [m], its time [s], how, and where in the cycle there is a posture."""
+FIRST_STEP_M = 0.5
+"""Between the ankles, from standing; the next is a usual step."""
 
 
 def library() -> Library:
@@ -42,15 +55,67 @@ def library() -> Library:
     made = Composer(
         "walking",
         "Walking",
-        "Walking straight ahead: slowly, as usual and briskly.",
+        "Walking ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest.",
         SOURCES,
         ("walking", "gait"),
     )
-    for name, (stride_m, stride_s, style) in GAITS.items():
+    for name, (stride_m, stride_s, style, phases) in GAITS.items():
         walk = steady(stride_m, stride_s, style)
 
         def at(phase: float, walk: Walk = walk, stride_s: float = stride_s) -> Moment:
             return walk.at(phase * stride_s)
 
-        made.cycle(name, at, PHASES, stride_s, (0.0, -stride_m, 0.0))
+        made.cycle(name, at, phases, stride_s, (0.0, -stride_m, 0.0))
+    _set_out(made)
+    _come_to_rest(made)
     return made.library()
+
+
+def _set_out(made: Composer) -> None:
+    """From standing to the walk's right heel strike, whose place it ends at."""
+    stride_m, stride_s, style = WALK
+    strikes = {"L": 0.0, "R": 0.5 * stride_s, "L again": stride_s}
+    ahead = {name: (strike / stride_s + LEADS) * stride_m for name, strike in strikes.items()}
+    stand_m = ahead["L"] - FIRST_STEP_M
+    aside, toes, stands_s = style.apart_m, style.toes_out, STANCE * stride_s
+    falls = [
+        Footfall("L", -3.0, -0.42, aside, -stand_m, toes, push=0.4),
+        Footfall("R", -3.0, 0.11 * stride_s, -aside, -stand_m, -toes),
+        Footfall("L", 0.0, stands_s, aside, -ahead["L"], toes, heel=0.6),
+        Footfall("R", strikes["R"], strikes["R"] + stands_s, -aside, -ahead["R"], -toes),
+        Footfall("L", stride_s, stride_s + stands_s, aside, -ahead["L again"], toes),
+    ]
+    walk = Walk(falls, 0.5 * stride_s, style)
+    moments = {
+        "set out: standing": -1.2,
+        "set out: left leg swings": -0.26,
+        "set out: left foot lands": 0.0,
+        "set out: right leg swings": 0.28,
+    }
+    steps = [(made.pose(name, walk.at(time_s)), time_s + 1.2) for name, time_s in moments.items()]
+    made.motion("set out", [*steps, ("walk: right heel strike", strikes["R"] + 1.2)])
+
+
+def _come_to_rest(made: Composer) -> None:
+    """From the walk's left heel strike, whose place it begins at, to standing."""
+    stride_m, stride_s, style = WALK
+    aside, toes = style.apart_m, style.toes_out
+    left_m = LEADS * stride_m
+    stand_m = left_m + FIRST_STEP_M
+    right_s, left_s = 0.56 * stride_s, 1.12 * stride_s
+    falls = [
+        Footfall("R", -0.5 * stride_s, 0.11 * stride_s, -aside, 0.5 * stride_m - left_m, -toes),
+        Footfall("L", 0.0, right_s + 0.16 * stride_s, aside, -left_m, toes),
+        Footfall("R", right_s, 4.0, -aside, -stand_m, -toes, heel=0.6, push=0.0),
+        Footfall("L", left_s, 4.0, aside, -stand_m, toes, heel=0.1, push=0.0),
+    ]
+    walk = Walk(falls, 0.5 * stride_s, style)
+    moments = {
+        "come to rest: right leg swings": 0.26,
+        "come to rest: right foot lands": right_s,
+        "come to rest: left leg follows": 0.5 * (right_s + left_s) + 0.1,
+        "come to rest: feet together": left_s + 0.05,
+        "come to rest: standing": left_s + 0.7,
+    }
+    steps = [(made.pose(name, walk.at(time_s)), time_s) for name, time_s in moments.items()]
+    made.motion("come to rest", [("walk: left heel strike", 0.0), *steps])

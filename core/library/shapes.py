@@ -1,0 +1,63 @@
+"""Postures as they are compared: their shape, whatever place and heading they have, and these."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body import rotations
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..body.skeleton import SIDES
+
+Array = NDArray[np.float64]
+
+UP = np.array([0.0, 0.0, 1.0])
+ANKLE_OVER_SOLE = 0.36
+"""Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
+
+
+def headings_rad(posture: Posture) -> Array:
+    """Turn (F,) about the vertical from facing -Y; that of the hips' line where the hips face up or down."""
+    hips = posture.rotations[..., 0, :, :]
+    ahead = np.arctan2(-hips[..., 0, 1], hips[..., 1, 1])
+    across = np.arctan2(hips[..., 1, 0], hips[..., 0, 0])
+    level = np.hypot(hips[..., 0, 1], hips[..., 1, 1])
+    return np.where(level > np.sqrt(0.5), ahead, across)
+
+
+def moved(posture: Posture, angle_rad: Array, shift: Array) -> Posture:
+    """Postures turned about the world's vertical axis, then shifted.
+
+    Args:
+        posture: A batch of F.
+        angle_rad: (F,) or one angle.
+        shift: (F, 3) or (3,) [m].
+    """
+    turn = rotations.hinge(UP, np.asarray(angle_rad))
+    place = (turn @ posture.translation[..., None])[..., 0] + shift
+    matrices = np.array(posture.rotations)
+    matrices[..., 0, :, :] = turn @ matrices[..., 0, :, :]
+    return Posture(posture.skeleton, place, matrices, posture.angles)
+
+
+def shapes(body: Body, posture: Posture) -> Array:
+    """The bodies' shapes (F, 3 P), as vectors whose distance is the points' mean square distance's root [m].
+
+    They are the points over the ground below the hips, the performer facing -Y.
+    """
+    points = body.points(body.pose(posture))
+    ground = posture.translation * [1.0, 1.0, 0.0]
+    turn = rotations.hinge(UP, -headings_rad(posture))
+    seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
+    return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
+
+
+def ankle_heights(body: Body, posture: Posture) -> Array:
+    """How far (F, 2) the left and the right ankle lie above where those of feet flat on z = 0 lie [m].
+
+    That tells where the floor is, as soles do not: the skeleton's feet, rigid with the shins, point into the
+    floor at the end of a step.
+    """
+    points = body.points(body.pose(posture))
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+    below = [ANKLE_OVER_SOLE * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
+    return np.asarray(points[..., ankles, 2] - below)

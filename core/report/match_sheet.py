@@ -1,0 +1,94 @@
+"""Contact sheet of the matched postures over the footage: did the library fit, and where not?"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.posture import Posture
+from ..prior.keyframes import Keyframe, Matched
+from ..take import Take
+from .canvas import ACCENT, GREY, INK, PALE, WHITE, Canvas, Image
+from .contact_sheet import MARGIN, Cell, frame_label, sheet
+from .overlay_sheet import paler
+from .stick_figure import draw_figure, legend, posed_figure
+
+Array = NDArray[np.float64]
+
+CELL_WIDTH = 300
+COLUMNS = 5
+MOST = 30
+LIMB_WIDTH = 3.0
+STRIP = 34
+"""Height of the strip above each picture that holds the posture's name and its confidence."""
+
+
+def shown_keyframes(take: Take, most: int = MOST) -> tuple[Keyframe, ...]:
+    """The keyframes that a sheet shows: all, or evenly chosen ones of many."""
+    count = len(take.keyframes)
+    chosen = np.unique(np.round(np.linspace(0, count - 1, min(most, count))).astype(np.intp))
+    return tuple(take.keyframes[place] for place in chosen)
+
+
+def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
+    """Draw a take's keyframes over its footage, each with what it was matched with and how probable that is.
+
+    Args:
+        take: A take with matched keyframes, and maybe posed ones.
+        images: Frames of the clip by position, one for each of `shown_keyframes`.
+
+    Returns:
+        (height, width, 3) picture.
+    """
+    keyframes = [keyframe for keyframe in shown_keyframes(take) if keyframe.index in images]
+    width, height = take.camera.resolution
+    picture = round(CELL_WIDTH * height / width)
+    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
+    libraries = sorted({keyframe.matched.library for keyframe in take.keyframes if keyframe.matched})
+    title = _plain(f"Matched with {', '.join(libraries)}: {matched} of {len(take.keyframes)} keyframes")
+    footer = (
+        "Bar: how probably the match is about right. Numbers in the corner: scene frames; key: posed by hand."
+    )
+    canvas, cells = sheet(
+        title, footer, [keyframe.index for keyframe in keyframes], COLUMNS, CELL_WIDTH, picture + STRIP
+    )
+    figure = posed_figure(take.body, Posture.stack([keyframe.posture for keyframe in keyframes]))
+    for place, (cell, keyframe) in enumerate(zip(cells, keyframes, strict=True)):
+        tile = Canvas(cell.width, picture)
+        tile.paste(paler(images[cell.frame]), 0, 0, cell.width, picture)
+
+        def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
+            pixels, depth = take.camera.project(points, frame)
+            return CELL_WIDTH / width * pixels, depth
+
+        draw_figure(tile, figure, place, project, LIMB_WIDTH, outlined=True)
+        canvas.paste(tile.image(), cell.left, cell.top + STRIP, cell.width, picture)
+        frame_label(canvas, cell, cell.frame + take.frame_start, keyframe.matched is None)
+        _caption(canvas, cell, keyframe.matched)
+    legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
+    return canvas.image()
+
+
+def _caption(canvas: Canvas, cell: Cell, matched: Matched | None) -> None:
+    """Name and confidence above a picture."""
+    canvas.box(cell.left, cell.top, cell.left + cell.width, cell.top + STRIP, PALE)
+    if matched is None:
+        canvas.text("posed", cell.left + 7.0, cell.top + 15.0, 9.0, ACCENT)
+        return
+    percent = f"{'mirrored, ' if matched.mirrored else ''}{100.0 * matched.confidence:.0f}%"
+    name = _plain(matched.posture)
+    room = cell.width - canvas.text_width(percent) - 24.0
+    while len(name) > 4 and canvas.text_width(name) > room:
+        name = f"{name.rstrip('.')[:-1]}..."
+    right = cell.left + cell.width - 7.0
+    canvas.text(name, cell.left + 7.0, cell.top + 15.0, 9.0, INK)
+    canvas.text(percent, right, cell.top + 15.0, 9.0, INK, "right")
+    left, y = cell.left + 7.0, cell.top + 24.0
+    canvas.box(left, y, right, y + 4.0, WHITE)
+    color = ACCENT if matched.confidence >= 0.5 else GREY
+    canvas.box(left, y, left + matched.confidence * (right - left), y + 4.0, color)
+
+
+def _plain(words: str) -> str:
+    """Words in the letters that a canvas has."""
+    return words.encode("ascii", "replace").decode()

@@ -1,0 +1,98 @@
+"""A small square picture of a posture, as an asset browser shows it, seen from where its limbs show."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..body.shapes import HEAD_OVERSHOOT
+from ..body.standing import facing_rad
+from .canvas import Image
+from .mannequin import View, draw_mannequin, view_axes
+
+Array = NDArray[np.float64]
+
+SIZE = 256
+EDGE = 8
+TILT_RAD = 0.16
+"""Looking down a little, so that one sees where on the floor the feet are."""
+WALL = np.array([250.0, 249.0, 248.0])
+FLOOR = np.array([229.0, 225.0, 222.0])
+BEHIND_M = 0.45
+"""The wall stands so far behind the figure."""
+TURNS_RAD = np.radians(np.arange(-80.0, 81.0, 10.0))
+"""Views from the front half: faces are seen."""
+USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.05
+"""People preferably look to the right of the picture: so much is lost for every radian away from there."""
+FLESH_M = 0.07
+"""How far skin reaches beyond the joints."""
+
+
+def posture_picture(body: Body, posture: Posture) -> Image:
+    """Draw a single posture; the floor is z = 0.
+
+    Returns:
+        (256, 256, 3) blue, green, red.
+    """
+    batch = Posture.stack([posture])
+    turn = showing_turn(body, batch)
+    seen = outermost(body, batch, turn)[0]
+    floor_y = float(posture.translation * [1.0, 1.0, 0.0] @ view_axes(turn, TILT_RAD)[1])
+    low = min(float(seen[:, 1].min()) - FLESH_M, floor_y - 0.1)
+    high = float(seen[:, 1].max()) + FLESH_M
+    left, right = float(seen[:, 0].min()) - FLESH_M, float(seen[:, 0].max()) + FLESH_M
+    free = SIZE - 2 * EDGE
+    scale = min(free / (high - low), free / (right - left), free / (1.08 * body.actor.stature_m))
+    centre = (0.5 * SIZE - scale * 0.5 * (left + right), 0.5 * SIZE + scale * 0.5 * (low + high))
+    view = View(turn, TILT_RAD, scale, centre)
+    return draw_mannequin(stage(SIZE, SIZE, centre[1] - scale * floor_y, scale), body, posture, view)
+
+
+def stage(height: int, width: int, floor: float, scale: float) -> Image:
+    """A floor before a wall.
+
+    Args:
+        height: Of the picture.
+        width: Of the picture.
+        floor: Where on it, downwards, the floor under the figure lies.
+        scale: Pixels a metre.
+    """
+    rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
+    share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
+    fade = np.clip(rows / (3.0 * scale * BEHIND_M * np.sin(TILT_RAD)), 0.0, 1.0)
+    ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
+    colors = WALL + share[:, None] * (ground - WALL)
+    return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
+
+
+def showing_turn(body: Body, postures: Posture) -> float:
+    """From where, around the world's Z, limbs show best over a batch of postures (K) [rad]."""
+    ahead = -postures.rotations[:, 0, :, 1]
+    heading = facing_rad(ahead.mean(axis=0))
+    turns = heading + TURNS_RAD
+    return float(turns[np.argmax([_shown(body, postures, turn, heading) for turn in turns])])
+
+
+def _shown(body: Body, postures: Posture, turn_rad: float, heading_rad: float) -> float:
+    """How far apart joints, hands and feet lie in a view, over all postures [of their distance in space]."""
+    places = _places(body, postures)
+    seen = places @ view_axes(turn_rad, TILT_RAD)[:2].T
+
+    def apart(points: Array) -> float:
+        return float(np.linalg.norm(points[:, :, None] - points[:, None], axis=-1).mean())
+
+    return apart(seen) / apart(places) - UNUSUAL * abs(turn_rad - heading_rad - USUAL_RAD)
+
+
+def outermost(body: Body, postures: Posture, turn_rad: float) -> Array:
+    """Joints, crown and tips of a batch (K) of postures in a view, (K, N, 2): metres right and up."""
+    return np.asarray(_places(body, postures) @ view_axes(turn_rad, TILT_RAD)[:2].T)
+
+
+def _places(body: Body, postures: Posture) -> Array:
+    """(K, N, 3) [m]."""
+    pose = body.pose(postures)
+    tips = [body.segment_ends(pose, f"{part}.{side}")[1] for part in ("hand", "foot") for side in ("L", "R")]
+    neck, head = body.segment_ends(pose, "head")
+    crown = neck + HEAD_OVERSHOOT * (head - neck)
+    return np.concatenate([body.points(pose), np.stack([*tips, crown], axis=1)], axis=1)

@@ -1,0 +1,198 @@
+"""A single posture as F-curves of an Action, and back, without any armature.
+
+The curves are those of an armature as Keymark builds it: T pose at rest, its object at the world's origin,
+every bone in the rotation mode it is built with. Blender's own pose library applies them to such armatures.
+"""
+
+from collections.abc import Mapping
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.actor import Actor
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
+from ...core.body.skeleton import JointKind
+from ...core.finish.rig import channel_count
+from .bone_channels import channels_at_rest
+from .bones import BoneModel, bone_models, rest_matrices, usual_mode
+from .fcurves import bone_path
+from .joint_frames import posture_from_frames
+from .keys import set_posed_keys
+from .object_space import ObjectSpace
+from .rig import rig_at_rest
+from .rotation_modes import rotation_path, rotation_values
+
+Array = NDArray[np.float64]
+Values = dict[str, Array]
+"""What each turning bone's channels hold, by bone: those of its rotation, for the root then its location."""
+
+FRAME = 1.0
+"""The only frame of a pose asset."""
+SLOT = "Actor"
+AT_ORIGIN = ObjectSpace(np.eye(3), np.zeros(3), 1.0)
+SAME = 2e-6
+"""Relative difference of channels that storing them in single precision makes, at most."""
+LARGEST_LOCATION_M = 1000.0
+
+
+def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture) -> None:
+    """Give an empty Action the curves of a posture: one key a channel.
+
+    Args:
+        action: The Action.
+        body: The body that was posed.
+        posture: A single posture, the floor at z = 0.
+    """
+    slot = action.slots.new(id_type="OBJECT", name=SLOT)
+    channelbag = action.layers.new("Layer").strips.new(type="KEYFRAME").channelbag(slot, ensure=True)
+    for bone, values in channel_values(body, posture).items():
+        for (path, index), value in zip(_channels(body, bone, len(values)), values, strict=True):
+            set_posed_keys(channelbag, path, index, bone, np.array([FRAME]), np.array([value]))
+
+
+def rewrite_posture_curves(action: bpy.types.Action, actor: Actor, posture: Posture) -> None:
+    """Give a pose asset the curves of another posture; it has no others afterwards."""
+    for slot in list(action.slots):
+        action.slots.remove(slot)
+    for layer in list(action.layers):
+        action.layers.remove(layer)
+    write_posture_curves(action, Body(actor), posture)
+
+
+def read_posture_curves(
+    action: bpy.types.Action, body: Body, stored: Posture | None = None
+) -> Posture | None:
+    """The posture that an Action's curves show; None where it has no curve of a bone of the skeleton.
+
+    Args:
+        action: A pose asset. Curves of other things than the skeleton's bones are passed over, bones without
+            curves are as in `stored`, or at rest.
+        body: The body it was posed on.
+        stored: The posture that the curves were once written from. Joints whose curves still say so are
+            taken from it, to the last digit.
+    """
+    curves = {(curve.data_path, curve.array_index): curve for curve in _fcurves(action) if not curve.is_empty}
+    known = channel_values(body, stored if stored is not None else Posture.rest(body.skeleton))
+    values: Values = {}
+    modes: dict[str, str] = {}
+    changed: list[str] = []
+    found = False
+    for model in bone_models(body):
+        modes[model.name] = usual_mode(body.skeleton, model)
+        if not model.chain:
+            continue
+        mode, there, column = _read_bone(curves, model, modes[model.name], known[model.name])
+        found |= there
+        modes[model.name] = mode
+        values[model.name] = column
+        before = known[model.name]
+        slack = SAME * np.maximum(1.0, np.abs(before))
+        if len(column) != len(before) or (np.abs(column - before) > slack).any():
+            changed.append(model.name)
+    if not found:
+        return None
+    if stored is not None and not changed:
+        return stored
+    shown = _shown(body, modes, values)
+    return shown if stored is None else _with_joints(body, stored, shown, changed)
+
+
+def channel_values(body: Body, posture: Posture) -> Values:
+    """What the curves of a single posture hold."""
+    batch = Posture.stack([posture])
+    models = bone_models(body)
+    values: Values = {}
+    modes = {model.name: usual_mode(body.skeleton, model) for model in models}
+    for channel in channels_at_rest(models, rest_matrices(body), AT_ORIGIN, batch):
+        turn = rotation_values(channel.rotation, modes[channel.bone])[0]
+        place = () if channel.location is None else channel.location[0]
+        values[channel.bone] = np.concatenate([turn, place])
+    return values
+
+
+def _channels(body: Body, bone: str, count: int) -> list[tuple[str, int]]:
+    """Data path and index of each of a bone's values."""
+    model = next(model for model in bone_models(body) if model.name == bone)
+    path = bone_path(bone, rotation_path(usual_mode(body.skeleton, model)))
+    turning = channel_count(usual_mode(body.skeleton, model))
+    places = [(bone_path(bone, "location"), index) for index in range(count - turning)]
+    return [*((path, index) for index in range(turning)), *places]
+
+
+def _fcurves(action: bpy.types.Action) -> list[bpy.types.FCurve]:
+    """The curves of an Action's first slot."""
+    if not action.slots or not action.layers or not action.layers[0].strips:
+        return []
+    channelbag = action.layers[0].strips[0].channelbag(action.slots[0])
+    return [] if channelbag is None else list(channelbag.fcurves)
+
+
+def _read_bone(
+    curves: Mapping[tuple[str, int], bpy.types.FCurve], model: BoneModel, mode: str, known: Array
+) -> tuple[str, bool, Array]:
+    """A bone's rotation mode, whether it has any curves, and its values."""
+    name = model.name
+    euler = mode if len(mode) == 3 else "XYZ"
+    modes = [mode, *(other for other in ("QUATERNION", "AXIS_ANGLE", euler) if other != mode)]
+    keyed = [m for m in modes if any((bone_path(name, rotation_path(m)), i) in curves for i in range(4))]
+    chosen = keyed[0] if keyed else mode
+    path, count = bone_path(name, rotation_path(chosen)), channel_count(chosen)
+    places = [(bone_path(name, "location"), index) for index in range(3 if model.is_root else 0)]
+    channels = [*((path, index) for index in range(count)), *places]
+    usual = known[:count] if chosen == mode else np.eye(4)[0][:count] * (chosen == "QUATERNION")
+    otherwise = np.concatenate([usual, known[channel_count(mode) :]])
+    values = [
+        _value(curves[channel], default) if channel in curves else default
+        for channel, default in zip(channels, otherwise, strict=True)
+    ]
+    there = any(channel in curves for channel in channels)
+    return chosen, there, _usable(np.array(values), otherwise, chosen)
+
+
+def _value(curve: bpy.types.FCurve, default: float) -> float:
+    """What a curve says at its first key; a file of strangers may hold anything."""
+    value = float(curve.keyframe_points[0].co[1]) if len(curve.keyframe_points) else default
+    return value if abs(value) < LARGEST_LOCATION_M else default
+
+
+def _usable(values: Array, otherwise: Array, mode: str) -> Array:
+    """Values that show a rotation."""
+    if mode == "QUATERNION":
+        length = float(np.linalg.norm(values[:4]))
+        if length < 1e-6:
+            return otherwise
+        if abs(length - 1.0) > SAME:
+            return np.concatenate([values[:4] / length, values[4:]])
+    return values
+
+
+def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
+    models = bone_models(body)
+    axes = {model.name: model.axes for model in models}
+    rig = rig_at_rest(body, axes, rest_matrices(body), modes, AT_ORIGIN)
+    shown = rig.show([values[bone.name][None] for bone in rig.bones])
+    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
+    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
+    hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
+    return posture_from_frames(body.skeleton, models, turns, hips)[0]
+
+
+def _with_joints(body: Body, stored: Posture, shown: Posture, bones: list[str]) -> Posture:
+    """A posture with the joints that some bones move as in another."""
+    skeleton = body.skeleton
+    rotations, angles = stored.rotations.copy(), stored.angles.copy()
+    translation = stored.translation
+    for model in bone_models(body):
+        if model.name not in bones:
+            continue
+        translation = shown.translation if model.is_root else translation
+        for index in model.chain:
+            if skeleton.joints[index].kind is JointKind.HINGE:
+                column = skeleton.hinge_joints.index(index)
+                angles[column] = shown.angles[column]
+            elif index in skeleton.ball_joints:
+                ball = skeleton.ball_joints.index(index)
+                rotations[ball] = shown.rotations[ball]
+    return Posture(skeleton, translation, rotations, angles)

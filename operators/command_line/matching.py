@@ -1,0 +1,112 @@
+"""Converting a take with a keyframe library in place of posed keyframes, or beside them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ...core.errors import ConversionError
+from ...core.library.library import Library
+from ...core.library.shelf import find_library, shelved
+from ...core.match_take import LibraryChoice, match_take, with_matches
+from ...core.progress import Job, stretch
+from ...core.reconstruct import Reconstruction, read_footage, reconstruct
+from ...core.take import Take, read_take
+from .libraries import library_folders
+
+AUTOMATIC = "auto"
+READING_SHARE, MATCHING_SHARE = 0.5, 0.6
+"""How far the whole job is when the footage is read, and when it is matched."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A motion and what it was reconstructed from."""
+
+    take: Take
+    """With its matched keyframes, where there are some."""
+    reconstruction: Reconstruction
+    choice: LibraryChoice | None = None
+    """Which library was matched; None where none was asked for."""
+
+
+def chosen_libraries(wanted: str) -> tuple[Library, ...]:
+    """The libraries that `--library` means: one by name or file, or all there are.
+
+    Raises:
+        InputError: There is no such library, or none at all, or a file is unusable.
+    """
+    folders = library_folders()
+    if wanted != AUTOMATIC:
+        return (find_library(wanted, folders),)
+    return tuple(found.library for found in shelved(folders) if found.library is not None)
+
+
+def take_to_match(folder: Path, keyframes: Path | None) -> Take:
+    """Read a take with the keyframes that a person posed; without a file named, with none.
+
+    What an earlier run has matched in that file is left out, since it is matched anew.
+
+    Raises:
+        InputError: The take or the keyframe file is unusable.
+    """
+    fewest = 0 if keyframes is None else 1
+    take = read_take(folder, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
+
+
+def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None) -> Job[Solved]:
+    """Reconstruct a motion, after matching its footage where there are libraries; the footage is read once.
+
+    Args:
+        take: The take, with posed keyframes or, where it is matched, without.
+        libraries: None; or one, which is taken however badly it fits; or several to choose from.
+        method: As for `reconstruct`.
+        floor_m: Height of the floor where it is known [m].
+
+    Raises:
+        InputError: The clip cannot be used.
+        ConversionError: No library fits the footage, or no motion could be computed.
+    """
+    if not libraries:
+        return Solved(take, (yield from reconstruct(take, method)))
+    reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
+    job = match_take(take, reading, libraries, floor_m)
+    choice = yield from stretch(job, READING_SHARE, MATCHING_SHARE)
+    if choice.match is None:
+        raise ConversionError(f"{take.folder}: {choice.reason}; nothing was written")
+    take = with_matches(take, choice.match)
+    job = reconstruct(take, method, reading)
+    return Solved(take, (yield from stretch(job, MATCHING_SHARE, 1.0)), choice)
+
+
+def match_summary(take: Take, choice: LibraryChoice) -> dict[str, Any]:
+    """What was matched, for `--json`."""
+    assert choice.match is not None
+    probability = {library.identifier: value for library, value in choice.ranking}
+    identifier = choice.match.library.identifier
+    return {
+        "library": identifier,
+        "probability": _rounded(probability[identifier]),
+        "ranking": [
+            {"library": library.identifier, "title": library.title, "probability": _rounded(value)}
+            for library, value in choice.ranking
+        ],
+        "fit": _rounded(choice.match.fit),
+        "reason": choice.reason,
+        "floor_m": choice.match.floor_m,
+        "matches": [
+            {
+                "frame": keyframe.index + take.frame_start,
+                "posture": keyframe.matched.posture,
+                "mirrored": keyframe.matched.mirrored,
+                "confidence": _rounded(keyframe.matched.confidence),
+            }
+            for keyframe in take.keyframes
+            if keyframe.matched is not None
+        ],
+    }
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 4)

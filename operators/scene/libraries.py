@@ -1,0 +1,309 @@
+"""The keyframe libraries that are made in a scene: their postures are pose assets, the rest properties."""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+
+if TYPE_CHECKING:
+    from ...core.body.actor import Actor
+    from ...core.library.library import Library, LibraryMotion, LibraryPosture
+
+Group = bpy.types.PropertyGroup
+SEPARATOR = ", "
+NOBODY = "Unknown"
+"""Author of a library that says none."""
+_silent: list[None] = []
+"""Not empty while many properties change, so that pose assets follow once and not at each."""
+
+
+@contextmanager
+def changing(group: Group) -> Iterator[None]:
+    """Change much of a scene's library at once; its pose assets follow at the end."""
+    _silent.append(None)
+    try:
+        yield
+    finally:
+        _silent.pop()
+    show_again(group)
+
+
+def find_library_here(scene: bpy.types.Scene) -> Group | None:
+    """The library that is worked on in a scene; None where there is none."""
+    settings = scene.keymark
+    count = len(settings.libraries)
+    return settings.libraries[min(settings.active_library, count - 1)] if count else None
+
+
+def library_here(scene: bpy.types.Scene) -> Group:
+    """The same.
+
+    Raises:
+        InputError: There is none.
+    """
+    library = find_library_here(scene)
+    if library is None:
+        raise InputError("no keyframe library is made in this file; make a new one, or edit one of the list")
+    return library
+
+
+def active_posture(library: Group) -> Group | None:
+    """The posture chosen in a library's list."""
+    chosen = library.active_posture
+    return library.postures[chosen] if chosen < len(library.postures) else None
+
+
+def active_motion(library: Group) -> Group | None:
+    """The motion chosen in a library's list."""
+    chosen = library.active_motion
+    return library.motions[chosen] if chosen < len(library.motions) else None
+
+
+def add_library(scene: bpy.types.Scene, library: "Library") -> Group:
+    """Make a library one of the scene's, its postures pose assets of the file; it becomes the active one."""
+    from ..bridge.library_assets import add_assets
+
+    settings = scene.keymark
+    group = settings.libraries.add()
+    with changing(group):
+        describe(group, library)
+        for posture, action in zip(library.postures, add_assets(library), strict=True):
+            add_posture_to(group, posture, action)
+        for motion in library.motions:
+            add_motion_to(group, motion)
+    settings.active_library = len(settings.libraries) - 1
+    return group
+
+
+def describe(group: Group, library: "Library") -> None:
+    """Let a scene's library say what a library says of itself."""
+    group.actor = json.dumps(dict(library.actor.segments_m))
+    group.identifier, group.name, group.version = library.identifier, library.title, library.version
+    group.author, group.license = library.author, library.license
+    group.description, group.tags = library.description, SEPARATOR.join(library.tags)
+    group.exact_tags = json.dumps(library.tags)
+    group.sources.clear()
+    for source in library.sources:
+        group.sources.add().text = source
+
+
+def add_posture_to(group: Group, posture: "LibraryPosture", action: bpy.types.Action) -> Group:
+    """Put a posture at the end of a library's list."""
+    entry = group.postures.add()
+    entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
+    entry.named = entry.name = posture.name
+    entry.action = action
+    return entry
+
+
+def add_motion_to(group: Group, motion: "LibraryMotion") -> Group:
+    """Put a motion at the end of a library's list."""
+    entry = group.motions.add()
+    entry.duration_exact = repr(motion.duration_s)
+    for name, value in zip(("travel_x", "travel_y", "travel_turn"), motion.travel, strict=True):
+        setattr(entry, f"{name}_exact", repr(value))
+    for step in motion.steps:
+        row = entry.steps.add()
+        row.posture, row.time_exact = step.posture, repr(step.time_s)
+    entry.cyclic = motion.cyclic
+    entry.name = motion.name
+    return entry
+
+
+def library_of(group: Group) -> "Library":
+    """A scene's library as it is now: what the pose assets show, under what the properties say.
+
+    Postures whose asset has been deleted are left out, and so are the steps that lead to them. A name or tags
+    that were given in an asset browser count.
+
+    Raises:
+        InputError: Something is missing, or not what a library may hold; the sentence says what.
+    """
+    from ...core.library.library_file import library_from_json, library_to_json
+
+    there = postures_of(group)
+    if not there:
+        raise InputError(f"library '{group.name}' has no postures yet; pose the actor and add one")
+    library = _said(group, there)
+    library_from_json(library_to_json(library), f"library '{group.name}'")  # checks it
+    return library
+
+
+def postures_of(group: Group) -> "dict[str, LibraryPosture]":
+    """The postures of a scene's library, in order, by the names in its list.
+
+    Raises:
+        InputError: An asset is not what Keymark has written.
+    """
+    from ...core.library.texts import told_apart
+    from ..bridge.library_assets import read_asset
+
+    found: dict[str, LibraryPosture] = {}
+    for entry in group.postures:
+        if entry.action is None:
+            continue
+        posture = read_asset(entry.action)
+        name = entry.name if posture.name == entry.named else posture.name
+        name = told_apart(name, [other.name for other in found.values()])
+        exact = tuple(json.loads(entry.exact_tags or "[]"))
+        tags = posture.tags if entry.tags == SEPARATOR.join(exact) else _split(entry.tags)
+        found[entry.name] = replace(posture, name=name, tags=tags)
+    return found
+
+
+def draft(group: Group) -> "Library":
+    """What a scene's library says of itself, unchecked and without postures: it may not be complete yet."""
+    return _said(group, {})
+
+
+def actor_of_library(group: Group) -> "Actor":
+    """Whom a library's postures were posed on."""
+    from ...core.body.actor import Actor
+    from ...core.files.json_file import parse_json
+
+    return Actor(parse_json(group.actor or "{}", f"library '{group.name}': actor"))
+
+
+def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
+    """Let every pose asset say its name, its tags, its place and its library as they are now.
+
+    Args:
+        group: The library.
+        drawn: Postures whose pictures are drawn again too.
+
+    Raises:
+        InputError: An asset is not what Keymark has written.
+    """
+    from ..bridge.library_assets import show_asset
+
+    postures = postures_of(group)
+    library = _said(group, postures)
+    entries = [entry for entry in group.postures if entry.action is not None]
+    with _quiet():
+        for order, (entry, posture) in enumerate(zip(entries, postures.values(), strict=True)):
+            _rename_steps(group, entry.name, posture.name)
+            entry.named = entry.name = posture.name
+            entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
+            entry.action.name = posture.name
+            draw = any(entry == other for other in drawn)
+            show_asset(entry.action, library, posture, order, draw=draw)
+
+
+def details_changed(part: Group) -> None:
+    """Let the pose assets of a library say what its properties say now, after a part of it was changed.
+
+    Raises:
+        InputError: The properties are not what a library may hold.
+    """
+    from ..bridge.library_assets import header_text, stamp_header
+
+    group = None if _silent else _library_with(part)
+    if group is None:
+        return
+    header = header_text(library_of(group))
+    for entry in group.postures:
+        if entry.action is not None:
+            stamp_header(entry.action, header)
+
+
+def posture_changed(entry: Group) -> None:
+    """Let the motions and the pose asset follow a posture's name, which stays unique, and its tags.
+
+    Raises:
+        InputError: The asset is not what Keymark has written.
+    """
+    from ...core.library.texts import told_apart
+
+    group = None if _silent else _library_with(entry)
+    if group is None or entry.action is None:
+        return
+    with _quiet():
+        others = [other.name for other in group.postures if other != entry]
+        entry.name = told_apart(entry.name.strip() or "Posture", others)
+        _rename_steps(group, entry.named, entry.name)
+    show_again(group)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    _silent.append(None)
+    try:
+        yield
+    finally:
+        _silent.pop()
+
+
+def _library_with(part: Group) -> Group | None:
+    """The scene's library that a part of one belongs to: a motion, a step, a line; None for none."""
+    for library in part.id_data.keymark.libraries:
+        if part == library or any(part == other for other in _parts(library)):
+            return library
+    return None
+
+
+def _rename_steps(group: Group, before: str, now: str) -> None:
+    if before == now:
+        return
+    for motion in group.motions:
+        for step in motion.steps:
+            if step.posture == before:
+                step.posture = now
+
+
+def _said(group: Group, postures: "Mapping[str, LibraryPosture]") -> "Library":
+    """What a scene's library says of itself, unchecked."""
+    from ...core.library.library import Library
+
+    return Library(
+        identifier=group.identifier.strip(),
+        title=group.name.strip(),
+        version=group.version,
+        author=group.author.strip() or NOBODY,
+        license=group.license.strip(),
+        actor=actor_of_library(group),
+        postures=tuple(postures.values()),
+        motions=tuple(_motions(group, {old: new.name for old, new in postures.items()})),
+        description=group.description.strip(),
+        sources=tuple(line.text.strip() for line in group.sources if line.text.strip()),
+        tags=_tags(group.tags, tuple(json.loads(group.exact_tags or "[]"))),
+    )
+
+
+def _motions(group: Group, known: Mapping[str, str]) -> "Iterable[LibraryMotion]":
+    from ...core.library.library import LibraryMotion, MotionStep
+
+    for entry in group.motions:
+        rows = sorted((step for step in entry.steps if step.posture in known), key=lambda row: row.time_s)
+        if not rows:
+            continue
+        times = [float(row.time_exact or 0.0) for row in rows]
+        steps = [
+            MotionStep(known[row.posture], time_s - times[0]) for row, time_s in zip(rows, times, strict=True)
+        ]
+        travel = tuple(float(getattr(entry, f"travel_{name}_exact") or 0.0) for name in ("x", "y", "turn"))
+        duration_s = float(entry.duration_exact or 0.0)
+        yield LibraryMotion(
+            entry.name.strip(), tuple(steps), duration_s, entry.cyclic, travel if entry.cyclic else (0.0,) * 3
+        )
+
+
+def _tags(text: str, exact: tuple[str, ...]) -> tuple[str, ...]:
+    """Tags from a field with commas between them; as they were where nobody has changed it."""
+    return exact if text == SEPARATOR.join(exact) else _split(text)
+
+
+def _split(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(tag.strip() for tag in text.split(",") if tag.strip()))
+
+
+def _parts(library: Group) -> Iterable[Group]:
+    yield from library.sources
+    yield from library.postures
+    for motion in library.motions:
+        yield motion
+        yield from motion.steps

@@ -1,0 +1,60 @@
+"""The libraries that are at hand, as lists and menus show them; no file keeps it."""
+
+import bpy
+
+from ...scene import shelf
+
+
+class KEYMARK_PG_shelved_posture(bpy.types.PropertyGroup):
+    """A posture of a library on the shelf, by its name."""
+
+
+class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
+    """A library on the shelf; `name` is its identifier."""
+
+    title: bpy.props.StringProperty(name="Title")
+    version: bpy.props.IntProperty(name="Version")
+    author: bpy.props.StringProperty(name="Author")
+    license: bpy.props.StringProperty(name="License")
+    description: bpy.props.StringProperty(name="Description")
+    motions: bpy.props.IntProperty(name="Motions")
+    path: bpy.props.StringProperty(name="File")
+    is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
+    problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
+    postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
+
+
+class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
+    """The shelf."""
+
+    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
+    active: bpy.props.IntProperty(
+        name="Active Library", description="The library that is chosen in the list", default=0, min=0
+    )
+    posture: bpy.props.StringProperty(
+        name="Posture", description="The posture of the chosen library to apply to the actor"
+    )
+    mirrored: bpy.props.BoolProperty(
+        name="Mirrored", description="Apply the posture with left and right exchanged"
+    )
+
+
+CLASSES = (KEYMARK_PG_shelved_posture, KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+
+
+def register() -> None:
+    """Add the shelf to the window manager, and fill it as soon as Blender is ready."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
+        type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
+    )
+    shelf.fill_soon()
+
+
+def unregister() -> None:
+    """Take it away."""
+    shelf.forget()
+    del bpy.types.WindowManager.keymark_shelf
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,200 @@
+"""Library files from strangers: whatever is in them, one sentence or a library."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _libraries import small_library
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from keymark.core.errors import InputError
+from keymark.core.library.library_file import (
+    LARGEST_BYTES,
+    library_from_json,
+    library_to_json,
+    read_library,
+    write_library,
+)
+
+VALID = library_to_json(small_library())
+TEXT = json.dumps(VALID, ensure_ascii=False).encode()
+
+STRANGE = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=20),
+    st.sampled_from(
+        [0, -1, 1e308, 10**14, "", " ", "x" * 5000, "a\nb", "\u202eevil", "\ud800", "\x00", "con"]
+    ),
+    st.recursive(st.integers(), lambda inner: st.lists(inner, max_size=3), max_leaves=5),
+    st.dictionaries(st.text(max_size=5), st.integers(), max_size=3),
+)
+
+
+def places(value: Any, way: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The ways to every value in a JSON value."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [way, *(deeper for key, item in inner for deeper in places(item, (*way, key)))]
+
+
+WAYS = places(VALID)[1:]
+
+
+def judged(value: Any) -> bool:
+    """Whether a value is a library: where it is none, one sentence says so; where it is, it can be kept."""
+    try:
+        library = library_from_json(value, "here")
+    except InputError as error:
+        assert len(str(error).splitlines()) == 1 and str(error).isprintable() and len(str(error)) < 1500
+        return False
+    again = library_to_json(library)
+    assert library_to_json(library_from_json(again, "here")) == again
+    json.dumps(again, allow_nan=False).encode()
+    return True
+
+
+@st.composite
+def changed(draw: st.DrawFn) -> Any:
+    """A valid library with a few values replaced, dropped, doubled or renamed."""
+    value = json.loads(TEXT)
+    for _ in range(draw(st.integers(1, 4))):
+        *way, last = draw(st.sampled_from(WAYS))
+        try:
+            holder = value
+            for key in way:
+                holder = holder[key]
+            change = draw(st.sampled_from(["replace", "drop", "double", "rename"]))
+            if change == "replace":
+                holder[last] = draw(STRANGE)
+            elif change == "drop":
+                del holder[last]
+            elif change == "double" and isinstance(holder, list):
+                holder.append(holder[last])
+            elif isinstance(holder, dict):
+                holder[draw(st.text(max_size=12))] = holder.pop(last)
+        except (KeyError, IndexError, TypeError, AttributeError):
+            continue  # an earlier change took away what this one meant
+    return value
+
+
+@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
+@given(changed())
+def test_a_changed_library_is_one_or_says_why_not(value: Any) -> None:
+    """Whatever fields hold: no other error, no second line, nothing that could not be written again."""
+    judged(value)
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.integers(0, len(TEXT)),
+    st.integers(0, 40),
+    st.binary(max_size=12) | st.sampled_from([b"NaN", b"1e999", b"9" * 400, b"\xff", b"{", b'"']),
+)
+def test_a_damaged_file_is_read_or_says_why_not(tmp_path: Path, at: int, cut: int, put: bytes) -> None:
+    """Bytes cut out, put in, or both."""
+    path = tmp_path / "damaged.json"
+    path.write_bytes(TEXT[:at] + put + TEXT[at + cut :])
+    try:
+        read_library(path)
+    except InputError as error:
+        assert len(str(error).splitlines()) == 1
+
+
+def bomb(**fields: Any) -> bytes:
+    """The valid library with some of its fields replaced, as bytes."""
+    return json.dumps(VALID | fields).encode()
+
+
+STEP = {"time_s": 0.0, "posture": "Stand on one leg"}
+BOMBS: dict[str, Callable[[], bytes]] = {
+    "deep lists": lambda: TEXT[:-1] + b', "x": ' + b"[" * 100_000,
+    "deep and closed": lambda: TEXT[:-1] + b', "x": ' + b"[" * 900 + b"]" * 900 + b"}",
+    "deep in a field": lambda: b'{"schema": ' + b"[" * 900 + b"]" * 900 + b"}",
+    "many fields": lambda: bomb(**{f"f{n}": 0 for n in range(200_000)}),
+    "many fields, one missing": lambda: json.dumps(
+        {"schema": VALID["schema"]} | {f"schema_versio{n}": 0 for n in range(100_000)}
+    ).encode(),
+    "a long name": lambda: bomb(**{"t" * 3_000_000: 0}),
+    "a long title": lambda: bomb(title="t" * 3_000_000),
+    "a long identifier": lambda: bomb(identifier="a" * 3_000_000),
+    "a long licence": lambda: bomb(license="A" * 3_000_000),
+    "many postures": lambda: bomb(postures=VALID["postures"][:1] * 2000),
+    "many steps": lambda: bomb(motions=[VALID["motions"][0] | {"steps": [STEP] * 50_000}]),
+    "many motions": lambda: bomb(motions=[VALID["motions"][0]] * 101),
+    "many numbers": lambda: b'{"schema": [' + b"0," * 1_900_000 + b"0]}",
+    "large numbers": lambda: bomb(version=0).replace(b'"version": 0', b'"version": ' + b"9" * 100_000),
+    "too large": lambda: b" " * (LARGEST_BYTES + 1),
+    "nothing": lambda: b"",
+    "a list": lambda: b"[]",
+    "another file": lambda: b'{"keyframes": []}',
+}
+
+
+@pytest.mark.parametrize("kind", BOMBS)
+def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
+    """Deep, long and many: one short sentence."""
+    path = tmp_path / "bomb.json"
+    path.write_bytes(BOMBS[kind]())
+    with pytest.raises(InputError) as caught:
+        read_library(path)
+    sentence = str(caught.value)
+    assert len(sentence.splitlines()) == 1 and len(sentence) < 1500 and "bomb.json" in sentence
+
+
+@pytest.mark.parametrize(
+    ("way", "value", "said"),
+    [
+        (("schema",), "keymark-motion", "keymark-library"),
+        (("schema_version",), 2, "newer Keymark"),
+        (("schema_version",), 0, "schema_version"),
+        (("identifier",), "../up", "identifier is '../up'"),
+        (("identifier",), "Walk", "lower-case"),
+        (("titel",), "Walk", "unknown field 'titel' \\(is 'title' meant\\?\\)"),
+        (("title",), "a\u202eb", "control characters"),
+        (("title",), "t" * 61, "at most 60"),
+        (("version",), 0, "version is 0"),
+        (("license",), "free!", "SPDX"),
+        (("tags",), "gait", "a list of at most 30"),
+        (("actor", "segments_m", "shin.L"), 5.0, "shin.L is 5.0"),
+        (("actor", "segments_m", "tail"), 0.3, "'tail'"),
+        (("postures",), [], "1 to 1000 postures"),
+        (("postures", 1, "name"), "LEFT FOOT LANDS", "cannot be told apart"),
+        (("postures", 1, "name"), "Left\u200d foot  lands", "cannot be told apart"),
+        (
+            ("postures", 1, "posture", "knee.L.flexion"),
+            "bent",
+            r"postures\[1\].posture: knee.L.flexion|knee.L.flexion is",
+        ),
+        (("postures", 1, "posture", "knee.L.twist"), 0.1, "unknown degree of freedom"),
+        (("postures", 1, "posture", "pelvis.location_x"), 500.0, "from -100 to 100"),
+        (("motions", 0, "steps", 1, "time_s"), 0.0, "later than"),
+        (("motions", 0, "steps", 0, "time_s"), 0.1, "first step must be at 0"),
+        (("motions", 0, "steps", 1, "posture"), "Fly", "no posture so named"),
+        (("motions", 0, "duration_s"), 0.62, "must end later"),
+        (("motions", 0, "cyclic"), 1, "true or false"),
+        (("motions", 1, "travel"), {"x_m": 1.0, "y_m": 0.0, "heading_rad": 0.0}, "not cyclic has none"),
+        (("motions", 1, "name"), "steps", "cannot be told apart"),
+    ],
+)
+def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> None:
+    """The sentence says which value is wrong, and what would be right."""
+    library = json.loads(TEXT)
+    holder = library
+    for key in way[:-1]:
+        holder = holder[key]
+    holder[way[-1]] = value
+    with pytest.raises(InputError, match=said) as caught:
+        library_from_json(library, "walk.json")
+    assert str(caught.value).startswith("walk.json")
+
+
+def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
+    """A library built with a mistake in it leaves no file."""
+    with pytest.raises(InputError, match="identifier"):
+        write_library(tmp_path / "x.json", replace(small_library(), identifier="../x"))
+    assert list(tmp_path.iterdir()) == []

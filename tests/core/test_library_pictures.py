@@ -1,0 +1,91 @@
+"""Pictures of libraries: the right limbs in the right place, every posture on the sheet."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _libraries import ACTOR, small_library
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.body.standing import standing_posture
+from keymark.core.library.library import LibraryMotion, MotionStep
+from keymark.core.report.canvas import LEFT, RIGHT
+from keymark.core.report.library_sheet import library_sheet
+from keymark.core.report.mannequin import View, draw_mannequin
+from keymark.core.report.posture_picture import SIZE, posture_picture
+
+BODY = Body(ACTOR)
+STANDING = standing_posture(BODY)
+
+
+def alike(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
+    """Where a picture has a colour, whatever its brightness."""
+    wanted, shown = np.array(color, dtype=np.float64), image.astype(np.float64)
+    cosine = shown @ wanted / (np.linalg.norm(shown, axis=-1) * np.linalg.norm(wanted) + 1e-9)
+    return cosine > 0.985
+
+
+def moved(posture: Posture, offset: tuple[float, float, float]) -> Posture:
+    """The posture elsewhere."""
+    return Posture(posture.skeleton, posture.translation + offset, posture.rotations, posture.angles)
+
+
+def test_a_posture_fills_its_picture_and_left_is_told_from_right() -> None:
+    """Both sides' limbs are there, in about the same amount, and most of the height is used."""
+    image = posture_picture(BODY, STANDING)
+    assert image.shape == (SIZE, SIZE, 3) and image.dtype == np.uint8
+    left, right = alike(image, LEFT), alike(image, RIGHT)
+    assert 0.3 < left.sum() / right.sum() < 3.0
+    rows = np.flatnonzero((left | right).any(axis=1))
+    assert rows[-1] > 0.85 * SIZE and rows[0] < 0.35 * SIZE
+    np.testing.assert_array_equal(image, posture_picture(BODY, STANDING))
+
+
+def test_the_eye_stands_where_the_view_says() -> None:
+    """From the front the performer's left is at the right of the picture, from behind at the left."""
+    paper = np.full((200, 200, 3), 250, dtype=np.uint8)
+    for turn, side in ((0.0, 1.0), (np.pi, -1.0)):
+        image = draw_mannequin(paper, BODY, STANDING, View(turn, 0.1, 90.0, (100.0, 180.0)))
+        assert side * (np.nonzero(alike(image, LEFT))[1].mean() - 100.0) > 10.0
+        assert side * (np.nonzero(alike(image, RIGHT))[1].mean() - 100.0) < -10.0
+    assert (paper == 250).all()
+
+
+def test_a_limb_in_front_hides_what_is_behind() -> None:
+    """Seen from its left, a standing person's right leg hardly shows."""
+    paper = np.full((200, 200, 3), 250, dtype=np.uint8)
+    image = draw_mannequin(paper, BODY, STANDING, View(0.5 * np.pi, 0.0, 90.0, (100.0, 180.0)))
+    assert alike(image, LEFT).sum() > 20 * alike(image, RIGHT).sum()
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0, 0.3), (3.0, -2.0, 0.0)])
+def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, float]) -> None:
+    """Whoever leaps is seen above the floor; whoever walked away is in the middle all the same."""
+    here, there = (posture_picture(BODY, posture) for posture in (STANDING, moved(STANDING, offset)))
+    lowest = [np.flatnonzero((alike(im, LEFT) | alike(im, RIGHT)).any(axis=1))[-1] for im in (here, there)]
+    if offset[2]:
+        assert lowest[1] < lowest[0] - 15
+    else:
+        assert np.abs(here.astype(int) - there).mean() < 1.0
+
+
+def test_every_posture_is_on_the_sheet() -> None:
+    """A strip for each motion and one for what belongs to none; letters that cannot be drawn do no harm."""
+    library = small_library()
+    sheet = library_sheet(library)
+    more = replace(library, title="Schritte 歩く", motions=library.motions[1:], description="ö" * 500)
+    assert abs(library_sheet(more).shape[0] - sheet.shape[0]) < 30
+    fewer = library_sheet(replace(library, motions=library.motions[:1]))
+    assert fewer.shape[0] < sheet.shape[0]
+    strip = sheet[:, : sheet.shape[1] // 8 + 20]
+    assert alike(strip, LEFT).sum() > 500 and alike(strip, RIGHT).sum() > 500
+
+
+def test_a_long_motion_goes_on_in_the_next_row() -> None:
+    """More postures than fit beside each other are divided evenly."""
+    library = small_library()
+    names = [posture.name for posture in library.postures]
+    steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(14))
+    long = library_sheet(replace(library, motions=(LibraryMotion("Long", steps, 2.0),)))
+    short = library_sheet(replace(library, motions=(LibraryMotion("Short", steps[:7], 2.0),)))
+    assert long.shape[1] == short.shape[1] and long.shape[0] > 1.5 * short.shape[0]

@@ -1,0 +1,423 @@
+"""Jumps: straight up, far, astride, small ones on both feet and on one, and a leap over from a run-up."""
+
+from dataclasses import replace
+
+import numpy as np
+from keymark.core.library.library import Library
+
+from ..balance import balanced, flight, mass_of, thrown
+from ..composing import Composer
+from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
+
+SOURCES = (
+    "Bobbert, M. F. & van Ingen Schenau, G. J. (1988). Coordination in vertical jumping. Journal of"
+    " Biomechanics 21.",
+    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances performance"
+    " in the vertical jump. Journal of Biomechanics 37.",
+    "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human Movement"
+    " Science 24.",
+    "Hay, J. G. (1993). The Biomechanics of Sports Techniques, 4th ed.",
+    "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
+)
+APART_M = 0.11
+"""Half the distance between the feet of someone about to jump."""
+HIGH_S, FAR_S, ASTRIDE_S, HOP_S, SMALL_S, LEAP_S = 0.50, 0.46, 0.48, 0.22, 0.20, 0.40
+"""Times of flight: half a second is a jump of 31 cm."""
+FAR_M, LEAP_M = 1.25, 1.55
+"""How far the mass flies."""
+
+HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=15.0)
+BACK = swung_arm(-48.0, 12.0, rotation=0.0, elbow=14.0)
+FORWARD = swung_arm(84.0, 14.0, rotation=14.0, elbow=30.0, girdle=6.0)
+UP = Arm(elevation=158.0, plane=72.0, rotation=22.0, elbow=16.0, girdle=22.0)
+OPEN = Arm(elevation=78.0, plane=48.0, rotation=20.0, elbow=32.0, girdle=8.0)
+
+
+def library() -> Library:
+    """Compose it."""
+    made = Composer(
+        "jumping",
+        "Jumping",
+        "Jumps straight up, far, and astride with swinging arms; bouncing and hopping on the spot; a leap.",
+        SOURCES,
+        ("jumping",),
+    )
+    _up(made)
+    _far(made)
+    _astride(made)
+    _bounce(made)
+    _hop(made)
+    _leap(made)
+    return made.library()
+
+
+def feet(pitch: float = 0.0, y: float = 0.0, apart_m: float = APART_M) -> Foot:
+    """Both feet side by side, as the left one's place."""
+    return Foot(apart_m, y, 8.0, pitch)
+
+
+def crouched(
+    bend: float, pelvis: float, waist: float, arms: Arm, pitch: float = 0.0, y: float = 0.0
+) -> Moment:
+    """Someone on both feet with bent knees; angles of bending forward [degrees]."""
+    return balanced(
+        moment(
+            legs=feet(pitch, y),
+            arms=arms,
+            bend=bend,
+            pelvis=Turn(pelvis),
+            waist=Turn(waist),
+            neck=Turn(-0.45 * (pelvis + waist)),
+        ),
+        ahead_m=0.03 if bend > 30.0 else 0.0,
+    )
+
+
+def on_toes(arms: Arm, y: float = 0.0, **others: float) -> Moment:
+    """The last moment on the floor: all but stretched, on the balls of the feet."""
+    lean = others.get("lean_m", 0.05)
+    return balanced(
+        moment(
+            legs=feet(56.0, y), arms=arms, bend=12.0, pelvis=Turn(others.get("bow", 4.0)), waist=Turn(2.0)
+        ),
+        ahead_m=lean + 0.05,
+    )
+
+
+def _up(made: Composer) -> None:
+    off, on = on_toes(replace(UP, elevation=136.0, girdle=16.0)), crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    start, end = mass_of(off), mass_of(on)
+    rising = moment(arms=UP, legs=Leg(4.0, 4.0, 4.0, 9.0, 50.0), waist=Turn(-2.0), neck=Turn(-8.0))
+    top = moment(
+        arms=replace(UP, elevation=146.0),
+        legs=Leg(8.0, 5.0, 4.0, 18.0, 45.0),
+        waist=Turn(2.0),
+        neck=Turn(-4.0),
+    )
+    falling = moment(
+        arms=replace(OPEN, elevation=105.0, plane=60.0),
+        legs=Leg(18.0, 6.0, 4.0, 20.0, 25.0),
+        pelvis=Turn(4.0),
+        waist=Turn(6.0),
+    )
+    made.pose("standing", balanced(moment(legs=feet(), arms=HANGING, bend=7.0)))
+    made.pose("sinking", crouched(52.0, 22.0, 12.0, swung_arm(-30.0, 12.0, rotation=0.0, elbow=14.0)))
+    made.pose("crouched, arms back", crouched(98.0, 42.0, 16.0, BACK))
+    made.pose("pushing off, arms pass", crouched(82.0, 34.0, 14.0, swung_arm(24.0, 12.0, elbow=26.0)))
+    made.pose("stretching, arms forward", crouched(44.0, 14.0, 8.0, FORWARD, pitch=12.0))
+    made.pose("toes leave the floor", off)
+    made.pose("rising", thrown(rising, flight(start, end, HIGH_S, 0.22)))
+    made.pose("highest, arms up", thrown(top, flight(start, end, HIGH_S, 0.5)))
+    made.pose("falling", thrown(falling, flight(start, end, HIGH_S, 0.78)))
+    made.pose("toes touch the floor", on)
+    made.pose("caught, knees deep", crouched(78.0, 32.0, 18.0, swung_arm(30.0, 26.0, elbow=42.0)))
+    made.pose("straightening", crouched(36.0, 12.0, 8.0, swung_arm(12.0, 16.0, elbow=24.0)))
+    off_s = 1.02
+    on_s = off_s + HIGH_S
+    made.motion(
+        "jump up",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.36),
+            ("crouched, arms back", 0.66),
+            ("pushing off, arms pass", 0.81),
+            ("stretching, arms forward", 0.93),
+            ("toes leave the floor", off_s),
+            ("rising", off_s + 0.22 * HIGH_S),
+            ("highest, arms up", off_s + 0.5 * HIGH_S),
+            ("falling", off_s + 0.78 * HIGH_S),
+            ("toes touch the floor", on_s),
+            ("caught, knees deep", on_s + 0.20),
+            ("straightening", on_s + 0.55),
+            ("standing", on_s + 0.95),
+        ],
+    )
+
+
+def _far(made: Composer) -> None:
+    """A standing long jump; it begins with the jump up's standing and crouching."""
+    pushing = balanced(
+        moment(
+            legs=feet(28.0), arms=FORWARD, bend=52.0, pelvis=Turn(30.0), waist=Turn(8.0), neck=Turn(-22.0)
+        ),
+        ahead_m=0.24,
+    )
+    off = balanced(
+        moment(
+            legs=feet(60.0),
+            arms=replace(UP, elevation=138.0),
+            bend=14.0,
+            pelvis=Turn(22.0),
+            waist=Turn(2.0),
+            neck=Turn(-12.0),
+        ),
+        ahead_m=0.50,
+    )
+    land_y = -FAR_M - 0.50 - 0.28
+    on = balanced(
+        moment(
+            legs=feet(-14.0, land_y),
+            arms=swung_arm(58.0, 14.0, elbow=20.0),
+            bend=62.0,
+            pelvis=Turn(22.0),
+            waist=Turn(26.0),
+            neck=Turn(-20.0),
+        ),
+        ahead_m=-0.30,
+    )
+    start, end = mass_of(off), mass_of(on)
+    hang = moment(
+        arms=replace(UP, elevation=128.0),
+        legs=Leg(18.0, 5.0, 4.0, 62.0, 30.0),
+        pelvis=Turn(8.0),
+        neck=Turn(-8.0),
+    )
+    tuck = moment(
+        arms=swung_arm(86.0, 14.0, elbow=14.0),
+        legs=Leg(84.0, 5.0, 4.0, 64.0, -6.0),
+        pelvis=Turn(6.0),
+        waist=Turn(24.0),
+        neck=Turn(-14.0),
+    )
+    made.pose("far: pushing forward", pushing)
+    made.pose("far: toes leave the floor", off)
+    made.pose("far: highest, arms up", thrown(hang, flight(start, end, FAR_S, 0.38)))
+    made.pose("far: legs reach forward", thrown(tuck, flight(start, end, FAR_S, 0.8)))
+    made.pose("far: heels land", on)
+    flat = balanced(
+        moment(
+            legs=feet(0.0, land_y),
+            arms=swung_arm(48.0, 15.0, elbow=20.0),
+            bend=88.0,
+            pelvis=Turn(36.0),
+            waist=Turn(26.0),
+            neck=Turn(-24.0),
+        ),
+        ahead_m=-0.12,
+    )
+    made.pose("far: feet flat", flat)
+    made.pose("far: caught, deep", crouched(106.0, 46.0, 24.0, swung_arm(40.0, 16.0, elbow=20.0), y=land_y))
+    made.pose("far: rising", crouched(58.0, 26.0, 12.0, swung_arm(16.0, 14.0, elbow=18.0), y=land_y))
+    made.pose("far: standing", balanced(moment(legs=feet(y=land_y), arms=HANGING, bend=7.0)))
+    off_s = 1.06
+    on_s = off_s + FAR_S
+    made.motion(
+        "jump far",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.34),
+            ("crouched, arms back", 0.64),
+            ("pushing off, arms pass", 0.80),
+            ("far: pushing forward", 0.93),
+            ("far: toes leave the floor", off_s),
+            ("far: highest, arms up", off_s + 0.38 * FAR_S),
+            ("far: legs reach forward", off_s + 0.8 * FAR_S),
+            ("far: heels land", on_s),
+            ("far: feet flat", on_s + 0.10),
+            ("far: caught, deep", on_s + 0.26),
+            ("far: rising", on_s + 0.68),
+            ("far: standing", on_s + 1.1),
+        ],
+    )
+
+
+def _astride(made: Composer) -> None:
+    """A star in the air, with the jump up's beginning and end."""
+    off = on_toes(Arm(elevation=62.0, plane=15.0, rotation=10.0, elbow=18.0, girdle=6.0))
+    on = crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    start, end = mass_of(off), mass_of(on)
+    wide = Arm(elevation=128.0, plane=6.0, rotation=6.0, elbow=8.0, girdle=20.0)
+    star = moment(arms=wide, legs=Leg(4.0, 38.0, 8.0, 8.0, 40.0), neck=Turn(-6.0))
+    half = moment(arms=replace(wide, elevation=96.0, girdle=12.0), legs=Leg(6.0, 22.0, 6.0, 12.0, 45.0))
+    stretching = crouched(46.0, 15.0, 8.0, replace(OPEN, elevation=34.0, plane=25.0), pitch=12.0)
+    made.pose("star: stretching", stretching)
+    made.pose("star: toes leave the floor", off)
+    made.pose("star: opening", thrown(half, flight(start, end, ASTRIDE_S, 0.25)))
+    made.pose("star: wide open", thrown(star, flight(start, end, ASTRIDE_S, 0.52)))
+    made.pose("star: closing", thrown(half, flight(start, end, ASTRIDE_S, 0.80)))
+    on_s = 0.94 + ASTRIDE_S
+    made.motion(
+        "star jump",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.36),
+            ("pushing off, arms pass", 0.74),
+            ("star: stretching", 0.86),
+            ("star: toes leave the floor", 0.94),
+            ("star: opening", 0.94 + 0.25 * ASTRIDE_S),
+            ("star: wide open", 0.94 + 0.52 * ASTRIDE_S),
+            ("star: closing", 0.94 + 0.80 * ASTRIDE_S),
+            ("toes touch the floor", on_s),
+            ("caught, knees deep", on_s + 0.18),
+            ("straightening", on_s + 0.50),
+            ("standing", on_s + 0.90),
+        ],
+    )
+
+
+def _bounce(made: Composer) -> None:
+    """Small jumps on the balls of both feet, as over a rope."""
+    arms = Arm(elevation=26.0, plane=30.0, rotation=14.0, elbow=58.0)
+
+    def down(bend: float, pitch: float) -> Moment:
+        legs = feet(pitch, apart_m=0.07)
+        return balanced(
+            moment(legs=legs, arms=arms, bend=bend, pelvis=Turn(5.0), waist=Turn(3.0)), ahead_m=0.04
+        )
+
+    low, off = down(34.0, 14.0), down(9.0, 44.0)
+    mass = mass_of(off)
+    air = moment(arms=replace(arms, elevation=31.0), legs=Leg(6.0, 0.0, 5.0, 12.0, 48.0), waist=Turn(3.0))
+    made.pose("bounce: lowest", low)
+    made.pose("bounce: toes leave the floor", off)
+    made.pose("bounce: highest", thrown(air, flight(mass, mass, SMALL_S, 0.5)))
+    made.motion(
+        "bounce on the spot",
+        [
+            ("bounce: lowest", 0.0),
+            ("bounce: toes leave the floor", 0.13),
+            ("bounce: highest", 0.13 + 0.5 * SMALL_S),
+            ("bounce: toes leave the floor", 0.13 + SMALL_S),
+        ],
+        0.26 + SMALL_S,
+        cyclic=True,
+    )
+
+
+def _hop(made: Composer) -> None:
+    """On the left leg, a little forward each time."""
+    ahead_m = 0.42
+
+    def down(bend: float, pitch: float, ahead: float, free: Leg, swing: float) -> Moment:
+        return balanced(
+            moment(
+                left_leg=Foot(0.0, 0.0, 6.0, pitch),
+                right_leg=free,
+                left_arm=swung_arm(swing, 30.0, elbow=52.0),
+                right_arm=swung_arm(0.6 * swing, 34.0, elbow=48.0),
+                bend=bend,
+                pelvis=Turn(9.0, -3.0),
+                waist=Turn(5.0, 4.0),
+                neck=Turn(-8.0),
+            ),
+            ahead_m=ahead,
+        )
+
+    low = down(44.0, 6.0, 0.02, Leg(22.0, 4.0, 0.0, 82.0, 20.0), -16.0)
+    off = down(12.0, 52.0, 0.15, Leg(44.0, 4.0, 0.0, 84.0, 20.0), 24.0)
+    on = down(24.0, 12.0, -0.10, Leg(24.0, 4.0, 0.0, 70.0, 20.0), 10.0)
+    start = mass_of(off)
+    end = mass_of(on) - np.array([0.0, ahead_m, 0.0])
+    air = moment(
+        left_leg=Leg(16.0, 0.0, 6.0, 34.0, 30.0),
+        right_leg=Leg(40.0, 4.0, 0.0, 82.0, 20.0),
+        arms=swung_arm(26.0, 36.0, elbow=50.0),
+        pelvis=Turn(6.0),
+        waist=Turn(4.0),
+    )
+    made.pose("hop: lowest", low)
+    made.pose("hop: toes leave the floor", off)
+    made.pose("hop: highest", thrown(air, flight(start, end, HOP_S, 0.5)))
+    landed = replace(on, y=on.y - ahead_m, legs={**on.legs, "L": Foot(0.0, -ahead_m, 6.0, 12.0)})
+    made.pose("hop: foot lands", landed)
+    made.motion(
+        "hop on the left leg",
+        [
+            ("hop: lowest", 0.0),
+            ("hop: toes leave the floor", 0.18),
+            ("hop: highest", 0.18 + 0.5 * HOP_S),
+            ("hop: foot lands", 0.18 + HOP_S),
+        ],
+        0.30 + HOP_S,
+        cyclic=True,
+        travel=(0.0, -ahead_m, 0.0),
+    )
+
+
+def _leap(made: Composer) -> None:
+    """From a run-up off the left foot over to the right one."""
+    plant = balanced(
+        moment(
+            left_leg=Foot(0.02, 0.0, 5.0, -10.0),
+            right_leg=Leg(-12.0, 0.0, 0.0, 62.0, 30.0),
+            left_arm=swung_arm(-34.0, 16.0, elbow=52.0),
+            right_arm=swung_arm(20.0, 16.0, elbow=70.0),
+            bend=24.0,
+            pelvis=Turn(2.0, 0.0, -6.0),
+            waist=Turn(2.0, 0.0, 12.0),
+        ),
+        ahead_m=-0.34,
+    )
+    drive = balanced(
+        moment(
+            left_leg=Foot(0.02, 0.0, 5.0, 4.0),
+            right_leg=Leg(42.0, 0.0, 0.0, 98.0, 20.0),
+            left_arm=swung_arm(8.0, 18.0, elbow=66.0),
+            right_arm=swung_arm(-8.0, 18.0, elbow=66.0),
+            bend=40.0,
+            pelvis=Turn(5.0),
+            waist=Turn(4.0),
+        ),
+        ahead_m=0.10,
+    )
+    off = balanced(
+        moment(
+            left_leg=Foot(0.02, 0.0, 5.0, 62.0),
+            right_leg=Leg(78.0, 0.0, 0.0, 92.0, 10.0),
+            left_arm=swung_arm(62.0, 20.0, elbow=62.0),
+            right_arm=swung_arm(-30.0, 24.0, elbow=50.0),
+            bend=12.0,
+            pelvis=Turn(6.0, 0.0, 6.0),
+            waist=Turn(2.0, 0.0, -12.0),
+        ),
+        ahead_m=0.44,
+    )
+    land_y = float(mass_of(off)[1]) - LEAP_M - 0.28
+    on = balanced(
+        moment(
+            left_leg=Leg(-6.0, 0.0, 0.0, 60.0, 30.0),
+            right_leg=Foot(-0.03, land_y, -5.0, -8.0),
+            left_arm=swung_arm(40.0, 30.0, elbow=50.0),
+            right_arm=swung_arm(-22.0, 32.0, elbow=44.0),
+            bend=26.0,
+            pelvis=Turn(10.0, 0.0, 4.0),
+            waist=Turn(6.0, 0.0, -8.0),
+        ),
+        ahead_m=-0.26,
+    )
+    caught = balanced(
+        moment(
+            left_leg=Leg(14.0, 0.0, 0.0, 96.0, 30.0),
+            right_leg=Foot(-0.03, land_y, -5.0, 0.0),
+            left_arm=swung_arm(18.0, 30.0, elbow=58.0),
+            right_arm=swung_arm(0.0, 32.0, elbow=52.0),
+            bend=52.0,
+            pelvis=Turn(16.0),
+            waist=Turn(10.0),
+            neck=Turn(-10.0),
+        ),
+        ahead_m=0.05,
+    )
+    start, end = mass_of(off), mass_of(on)
+    high = moment(
+        left_leg=Leg(-26.0, 0.0, 0.0, 42.0, 40.0),
+        right_leg=Leg(72.0, 0.0, 0.0, 58.0, 10.0),
+        left_arm=swung_arm(66.0, 34.0, elbow=44.0),
+        right_arm=swung_arm(-30.0, 48.0, elbow=36.0),
+        pelvis=Turn(8.0, 0.0, 6.0),
+        waist=Turn(4.0, 0.0, -10.0),
+    )
+    names = (
+        "left foot plants",
+        "knee drives up",
+        "toes leave the floor",
+        "highest",
+        "right foot lands",
+        "caught",
+    )
+    moments = (plant, drive, off, thrown(high, flight(start, end, LEAP_S, 0.5)), on, caught)
+    times = (0.0, 0.11, 0.22, 0.22 + 0.5 * LEAP_S, 0.22 + LEAP_S, 0.36 + LEAP_S)
+    steps = []
+    for name, at, time_s in zip(names, moments, times, strict=True):
+        steps.append((made.pose(f"leap: {name}", at), time_s))
+    made.motion("leap", steps)
