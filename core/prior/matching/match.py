@@ -19,12 +19,12 @@ from .candidate import MatchedFrame
 from .chains import library_chains
 from .course_table import CourseTable
 from .floor import FLOOR_STD_M, floor_height
+from .habits import DEGREES, Habits
 from .lattice import Lattice
 from .path import Path
 from .refine import Course, Refinement
 from .sights import sights
 from .solids import marker_solids
-from .habits import DEGREES, Habits
 from .sweep import sweep, turned
 
 Array = NDArray[np.float64]
