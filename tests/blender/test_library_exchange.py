@@ -119,7 +119,7 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
 def test_a_library_is_installed_for_the_asset_browser(
     own: Path, assets: Path, library: Library, tmp_path: Path
 ) -> None:
-    """A .blend of its own, with catalogs at the root; another version is asked about; nothing stays loaded."""
+    """A .blend of its own, with catalogs at the root; another version is asked about; nothing stays."""
     imported(library, tmp_path)
     before = set(bpy.data.user_map())
     assert bpy.ops.keymark.install_library(library="small") == {"FINISHED"}
