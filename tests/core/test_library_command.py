@@ -52,7 +52,9 @@ def test_the_list_says_what_cannot_be_used(capsys: pytest.CaptureFixture[str]) -
     """Status 0: other libraries can be used all the same."""
     assert run("list") == 0
     lines = capsys.readouterr().out.splitlines()
-    assert any(re.match(r"small_steps +Small steps, große Schritte, 3 postures, 2 motions", line) for line in lines)
+    assert any(
+        re.match(r"small_steps +Small steps, große Schritte, 3 postures, 2 motions", line) for line in lines
+    )
     assert any(line.startswith("broken") and "cannot be used" in line for line in lines)
     assert run("list", "--json") == 0
     rows = {row["identifier"]: row for row in json.loads(capsys.readouterr().out)["libraries"]}
@@ -119,7 +121,10 @@ def merge_words(shelf: Path, tmp_path: Path) -> list[object]:
 
 @pytest.mark.parametrize("words", [mirror_words, merge_words])
 def test_what_is_made_of_libraries_is_one(
-    words: Callable[[Path, Path], list[object]], shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    words: Callable[[Path, Path], list[object]],
+    shelf: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """The file written can be read, and the ones it was made of stay as they were."""
     before = (shelf / "any name.json").read_bytes()
