@@ -214,6 +214,7 @@ def _whole_clip(
         take.keyframe_indices,
         album=reading.album,
         earlier=earlier,
+        matched=[keyframe.matched is not None for keyframe in take.keyframes],
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

@@ -14,8 +14,10 @@ from ..prior.variability import REFERENCE_STEP_S
 from ..progress import Part, Preview, scaled
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
+from .footing import FOOTING_STD_M
 from .keyframe_evidence import KeyframeEvidence
 from .terms.depths import DepthTerm
+from .terms.ground import GroundTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm
@@ -62,6 +64,12 @@ class ClipProblem:
     step_s: Array
     """(F - 1,) time between frames [s]."""
     noise: RegionNoise
+    matched: NDArray[np.bool_]
+    """(K,) which keyframes nobody posed."""
+    depth_std_m: Array
+    """(F,) how far the prior's depths may be off [m]."""
+    footing_m: Array | None = None
+    """(F,) usual height of the lower ankle [m]; None where no floor is known of."""
 
     @property
     def frames(self) -> int:
@@ -114,10 +122,12 @@ class WindowProblem:
                 self.evidence.distrust,
                 self.evidence.whole,
             ),
-            DepthTerm(clip.camera, prior_depth),
+            DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None]),
             LimitTerm(),
             StillnessTerm(clip.camera, feet, self.step_s),
         ]
+        if clip.footing_m is not None:
+            self.terms.append(GroundTerm(feet, clip.footing_m[frames], FOOTING_STD_M))
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""

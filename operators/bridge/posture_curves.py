@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind
@@ -49,6 +50,15 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
     for bone, values in channel_values(body, posture).items():
         for (path, index), value in zip(_channels(body, bone, len(values)), values, strict=True):
             set_posed_keys(channelbag, path, index, bone, np.array([FRAME]), np.array([value]))
+
+
+def rewrite_posture_curves(action: bpy.types.Action, actor: Actor, posture: Posture) -> None:
+    """Give a pose asset the curves of another posture; it has no others afterwards."""
+    for slot in list(action.slots):
+        action.slots.remove(slot)
+    for layer in list(action.layers):
+        action.layers.remove(layer)
+    write_posture_curves(action, Body(actor), posture)
 
 
 def read_posture_curves(
@@ -160,7 +170,8 @@ def _usable(values: Array, otherwise: Array, mode: str) -> Array:
 
 def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
     models = bone_models(body)
-    rig = rig_at_rest(body, rest_matrices(body), modes, AT_ORIGIN)
+    axes = {model.name: model.axes for model in models}
+    rig = rig_at_rest(body, axes, rest_matrices(body), modes, AT_ORIGIN)
     shown = rig.show([values[bone.name][None] for bone in rig.bones])
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}

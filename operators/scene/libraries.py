@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 Group = bpy.types.PropertyGroup
 SEPARATOR = ", "
+NOBODY = "Unknown"
+"""Author of a library that says none."""
 _silent: list[None] = []
 """Not empty while many properties change, so that pose assets follow once and not at each."""
 
@@ -154,6 +156,11 @@ def postures_of(group: Group) -> "dict[str, LibraryPosture]":
     return found
 
 
+def draft(group: Group) -> "Library":
+    """What a scene's library says of itself, unchecked and without postures: it may not be complete yet."""
+    return _said(group, {})
+
+
 def actor_of_library(group: Group) -> "Actor":
     """Whom a library's postures were posed on."""
     from ...core.body.actor import Actor
@@ -198,7 +205,7 @@ def details_changed(part: Group) -> None:
     group = None if _silent else _library_with(part)
     if group is None:
         return
-    header = header_text(_said(group, postures_of(group)))
+    header = header_text(library_of(group))
     for entry in group.postures:
         if entry.action is not None:
             stamp_header(entry.action, header)
@@ -256,7 +263,7 @@ def _said(group: Group, postures: "Mapping[str, LibraryPosture]") -> "Library":
         identifier=group.identifier.strip(),
         title=group.name.strip(),
         version=group.version,
-        author=group.author.strip(),
+        author=group.author.strip() or NOBODY,
         license=group.license.strip(),
         actor=actor_of_library(group),
         postures=tuple(postures.values()),

@@ -24,7 +24,8 @@ from .path import Path
 from .refine import Course, Refinement
 from .sights import sights
 from .solids import marker_solids
-from .sweep import DEGREES, sweep, turned
+from .habits import DEGREES, Habits
+from .sweep import sweep, turned
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -90,28 +91,31 @@ def match_library(sought: Sought, library: Library, floor_m: float | None) -> Pa
     if floor is None:
         floor = floor_height(sought.camera, tracks, sought.segments, sampled, states)
     yield 0.1
-    seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M)
-    fits = []
-    for index, sight in enumerate(seen):
-        fits.append(sweep(sight, states))
-        yield 0.1 + 0.3 * index / len(seen)
     time_s = tracks.time_s[sampled]
-    usual_s = float(np.median(np.diff(time_s)))
-    tempering = min(1.0, usual_s / CORRELATION_S)
-    lattice = Lattice(chains, states, seen, fits, tempering, time_s)
-    best = lattice.best_path()
-    yield 0.7
+    tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+    table = CourseTable(chains, solids)
+    habits = Habits.unknown(len(sought.segments))
+    for look in (0, 1):  # the second look knows how the performer differs from the library
+        seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M, habits)
+        fits = [sweep(sight, states) for sight in seen]
+        yield 0.2 + 0.4 * look
+        lattice = Lattice(chains, states, seen, fits, tempering, time_s)
+        path = Path(chains, states, seen, fits, lattice.best_path(), time_s)
+        yield 0.4 + 0.4 * look
+        refinement = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M)
+        refined = refinement.refined(path.course())
+        if look == 0:
+            habits = refinement.habits(refined)
     share, evidence = lattice.posterior()
     yield 0.95
-    path = Path(chains, states, seen, fits, best, time_s)
-    table = CourseTable(chains, solids)
-    refined = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M).refined(path.course())
     course = _every_frame(table, refined, sampled, tracks.frame_count)
     frames = tuple(
         alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
-    return LibraryMatch(library, frames, _fit(path), floor, course, evidence, int(len(sampled)))
+    return LibraryMatch(
+        library, frames, _fit(path, habits.middle), floor, course, evidence, int(len(sampled))
+    )
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
@@ -130,12 +134,12 @@ def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count:
     return interpolate(tuple(keyframes), frame_count)
 
 
-def _fit(path: Path) -> float:
+def _fit(path: Path, usual: Array) -> float:
     """Mean weight of the markers' middles, of which one weighs less the farther it is off."""
     weights = []
     for sight, fit, state in zip(path.sights, path.fits, path.best, strict=True):
         left = sight.left[fit.doubted[state]] @ path.states.numbers[:, state]
-        squared = (left[:-1].reshape(-1, 2) ** 2).sum(axis=1)[sight.seen]
+        squared = ((left[:-1].reshape(-1, 2) * usual[:, None]) ** 2).sum(axis=1)[sight.seen]
         weights.append(1.0 / (1.0 + squared / DEGREES))
     known = np.concatenate(weights)
     return float(known.mean()) if len(known) else 0.0

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from .course_table import CourseTable, Reading
+from .habits import DEGREES, Habits, scale
 from .placing import about_up
 from .sights import Sight, square_root
-from .sweep import DEGREES, ROOT_STD_M
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -74,7 +74,7 @@ class Refinement:
 
     @cached_property
     def _seen(self) -> tuple[Array, ...]:
-        names = ("weight", "axes", "root", "whole", "location", "backward", "pixel")
+        names = ("weight", "axes", "root", "whole", "location", "backward", "pixel", "root_std_m")
         return tuple(np.array([getattr(sight, name) for sight in self.sights]) for name in names)
 
     def _sizes(self, chain: Whole, values: Array) -> Array:
@@ -96,7 +96,7 @@ class Refinement:
 
     def _shown(self, chain: Whole, values: Array) -> tuple[Array, Array]:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
-        _, axes, _, _, location, backward, _ = self._seen
+        _, axes, _, _, location, backward, *_ = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
         turn = about_up(values[:, 1])
         middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
@@ -105,16 +105,23 @@ class Refinement:
         image = np.einsum("tmki,tmij,tmlj->tmkl", axes, spread, axes, optimize=True)
         return np.stack(square_root(image[..., 0, 0], image[..., 0, 1], image[..., 1, 1]), axis=-1), depth
 
+    def habits(self, course: Course) -> Habits:
+        """What the whole clip says of the performer."""
+        weight, _, _, whole, *_ = self._seen
+        size = self._sizes(course.chain, course.values)
+        off, extent, _ = self.residuals(course.chain, course.values, size)
+        return Habits(scale(off, weight > 0.0, self.tempering), scale(extent, whole, self.tempering), size)
+
     def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
         """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T,) of the floor."""
-        weight, axes, root, whole, location, _, pixel = self._seen
+        weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
         turn = about_up(values[:, 1])
         middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         off = np.einsum("tmki,tmi->tmk", axes, middle) * weight[..., None]
         shown, depth = self._shown(chain, values)
         shown = shown * size[:, None]
-        deviation = np.hypot(ROOT_STD_M, pixel[:, None] * depth)
+        deviation = np.hypot(root_std, pixel[:, None] * depth)
         extent = (shown - root * depth[..., None]) / deviation[..., None] * np.array([1.0, np.sqrt(2.0), 1.0])
         extent = np.where(whole[..., None], extent, 0.0)
         if self.floor_m is None:

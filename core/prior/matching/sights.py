@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
+from .habits import Habits
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -21,7 +22,8 @@ Whole = NDArray[np.intp]
 MIDDLE_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
 """How far a marker lies from where the same moment of another performer's motion has it, the hips aligned."""
 LIMB_STD_M = {"upper_arm": 0.07, "forearm": 0.11, "hand": 0.14, "thigh": 0.05, "shin": 0.09, "foot": 0.12}
-PIXEL_STD = 1.0
+ROOT_STD_M = 0.025
+"""How far off a marker's extent is: clothes, the colour's ends, a limb turned by a few degrees."""
 LEAST_QUALITY = 0.05
 DOUBTED = 0.15
 """Share of its weight that a marker keeps in finding the place, where another performer holds that limb
@@ -52,7 +54,11 @@ class Sight:
     axes: Array
     """(M, 2, 3) directions in the world in which a marker's image spreads to the right and upwards."""
     root: Array
-    """(M, 3) square root of the observed second moments, per metre of depth: xx, xy, yy."""
+    """(M, 3) square root of the observed second moments, per metre of depth: xx, xy, yy; of an average size."""
+    root_std_m: Array
+    """(M,) of their difference from the predicted ones."""
+    constant: float
+    """What is added to costs, so that performers of other habits can be compared."""
     pixel: float
     """What a pixel spans per metre of depth."""
     seen: NDArray[np.bool_]
@@ -68,6 +74,7 @@ def sights(
     frames: Whole,
     floor_m: float | None,
     floor_std_m: float,
+    habits: Habits | None = None,
 ) -> list[Sight]:
     """The sights of some frames.
 
@@ -78,9 +85,11 @@ def sights(
         frames: Which frames.
         floor_m: Height of the floor; None where it is not known.
         floor_std_m: How far a posture's height above it may be off.
+        habits: What is known of the performer.
     """
-    deviation = np.array([_deviation(segment) for segment in segments])
-    return [_sight(camera, tracks, int(frame), deviation, floor_m, floor_std_m) for frame in frames]
+    known = habits or Habits.unknown(len(segments))
+    deviation = known.middle * [_deviation(segment) for segment in segments]
+    return [_sight(camera, tracks, int(frame), deviation, floor_m, floor_std_m, known) for frame in frames]
 
 
 def _deviation(segment: str) -> float:
@@ -95,6 +104,7 @@ def _sight(
     deviation: Array,
     floor_m: float | None,
     floor_std_m: float,
+    habits: Habits,
 ) -> Sight:
     markers = len(deviation)
     seen = tracks.visible[frame] & (tracks.quality[frame] > LEAST_QUALITY)
@@ -134,7 +144,9 @@ def _sight(
         back,
         location,
         lines,
-        np.where(whole[:, None], np.stack(root, axis=-1), 0.0),
+        np.where(whole[:, None], np.stack(root, axis=-1), 0.0) / habits.size[:, None],
+        ROOT_STD_M * habits.extent,
+        float(2.0 * np.log(habits.middle[seen]).sum() + 3.0 * np.log(habits.extent[whole]).sum()),
         pixel,
         seen,
         whole,

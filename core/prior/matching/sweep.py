@@ -5,16 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .habits import DEGREES
 from .sights import Sight, square_root
 from .solids import Solids
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
-
-DEGREES = 4.0
-"""Of Student's t, by which what is far off counts less."""
-ROOT_STD_M = 0.025
-"""How far off a marker's extent is: clothes, the colour's ends, a limb turned by a few degrees."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +64,7 @@ def sweep(sight: Sight, states: Turned) -> Fit:
     """Every state at the best place for it."""
     left = sight.left.astype(np.float32) @ states.numbers  # (V, 2 M + 1, N H)
     left *= left
-    costs = np.float32(0.5) * left[:, -1]
+    costs = np.float32(0.5) * left[:, -1] + np.float32(sight.constant)
     for marker in np.flatnonzero(sight.seen):
         costs += _student(left[:, 2 * marker] + left[:, 2 * marker + 1], 2)
     doubted = costs.argmin(axis=0).astype(np.uint8)
@@ -90,7 +86,7 @@ def _extent_error(sight: Sight, states: Turned, marker: int, depth: Single) -> S
     rows = np.array([_products(u, v) for u, v in product], dtype=np.float32)
     predicted = square_root(*(rows @ states.spread[marker]))
     observed = sight.root[marker].astype(np.float32)
-    variance = np.float32(ROOT_STD_M**2) + (np.float32(sight.pixel) * depth) ** 2
+    variance = np.float32(sight.root_std_m[marker] ** 2) + (np.float32(sight.pixel) * depth) ** 2
     squared = sum(
         (predicted[k] - observed[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
     )

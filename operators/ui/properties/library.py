@@ -66,6 +66,9 @@ class KEYMARK_PG_library_posture(Group):
     name: bpy.props.StringProperty(
         name="Name", description="The posture's name, unique in its library", update=_posture_changed
     )
+    selected: bpy.props.BoolProperty(
+        name="Selected", description="Mark the posture, for what is done with marked ones only", default=False
+    )
     named: bpy.props.StringProperty(
         name="Named", description="The name that the motions know it by", options={"HIDDEN"}
     )
@@ -177,7 +180,7 @@ class KEYMARK_PG_library(Group):
     license: bpy.props.StringProperty(
         name="License",
         description="Under which terms others may use it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0",
-        default="CC0-1.0",
+        default="CC-BY-4.0",
         update=_details_changed,
     )
     description: bpy.props.StringProperty(

@@ -1,4 +1,4 @@
-"""Turning to the left: in steps on the spot, about, along a bend, about while walking, and around on one foot."""
+"""Turning to the left: on the spot, about, along a bend, about while walking, and around on one foot."""
 
 from dataclasses import replace
 
@@ -9,14 +9,15 @@ from keymark.core.library.library import Library
 from ..balance import balanced
 from ..composing import Composer
 from ..gait import LEADS, STANCE, Footfall, Style, Walk
-from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
+from ..moment import Arm, Foot, Leg, Moment, Turn, moment
+from ..placing import pivoted
 
 SOURCES = (
     "Hase, K. & Stein, R. B. (1999). Turning strategies during human walking. Journal of Neurophysiology 81.",
-    "Hollands, M. A., Ziavra, N. V. & Bronstein, A. M. (2004). A new paradigm to investigate the roles of head"
-    " and eye movements in the coordination of whole-body movements. Experimental Brain Research 154.",
-    "Patla, A. E., Adkin, A. & Ballard, T. (1999). Online steering: coordination and control of body center of"
-    " mass, head and body reorientation. Experimental Brain Research 129.",
+    "Hollands, M. A., Ziavra, N. V. & Bronstein, A. M. (2004). A new paradigm to investigate the roles of"
+    " head and eye movements in the coordination of whole-body movements. Experimental Brain Research 154.",
+    "Patla, A. E., Adkin, A. & Ballard, T. (1999). Online steering: coordination and control of body center"
+    " of mass, head and body reorientation. Experimental Brain Research 129.",
     "Laws, K. (2002). Physics and the Art of Dance.",
     "Perry, J. & Burnfield, J. M. (2010). Gait Analysis: Normal and Pathological Function, 2nd ed.",
 )
@@ -42,7 +43,7 @@ def library() -> Library:
     made = Composer(
         "turning",
         "Turning",
-        "Turning to the left in steps on the spot, about, along a bend, about while walking, and on one foot.",
+        "Turning to the left: on the spot, about, along a bend, about while walking, and on one foot.",
         SOURCES,
         ("turning",),
     )
@@ -163,7 +164,7 @@ def _about_while_walking(made: Composer) -> None:
     falls = [
         planted("R", -0.54, 0.12, 0.0, style, (0.0, 0.35), 1.0, 0.9),
         planted("L", 0.0, 0.74, 0.0, style, (0.0, -0.30), 0.9, 0.6),
-        planted("R", 0.54, 1.24, 50.0, style, (-0.02, -0.72), 0.5, 0.6),
+        planted("R", 0.54, 1.24, 58.0, style, (-0.02, -0.72), 0.5, 0.6),
         planted("L", 1.00, 1.72, 135.0, style, (0.06, -0.60), 0.2, 0.7),
         planted("R", 1.48, 2.22, 178.0, style, (0.03, -0.14), 0.7, 0.9),
         planted("L", 2.02, 2.70, 180.0, style, (0.02, 0.55), 1.0, 0.9),
@@ -188,8 +189,8 @@ def _about_while_walking(made: Composer) -> None:
 
 
 def _on_one_foot(made: Composer) -> None:
-    """Once around on the ball of the left foot, arms thrown open and drawn in."""
-    low = swung_arm(6.0, 12.0, elbow=22.0)
+    """Once around on the ball of the left foot, arms thrown open and drawn in, from standing as above."""
+    stand = Foot(ON_THE_SPOT.apart_m, 0.0, ON_THE_SPOT.toes_out)
     wound = Arm(elevation=62.0, plane=96.0, rotation=50.0, elbow=64.0, girdle=4.0)
     wide = Arm(elevation=76.0, plane=12.0, rotation=10.0, elbow=22.0, girdle=6.0)
     close = Arm(elevation=54.0, plane=64.0, rotation=52.0, elbow=100.0, pronation=40.0, girdle=4.0)
@@ -197,7 +198,7 @@ def _on_one_foot(made: Composer) -> None:
     def on_left(heading: float, free: Leg, arms: Arm, head: float, pitch: float = 22.0) -> Moment:
         return balanced(
             moment(
-                left_leg=Foot(0.04, 0.0, heading + 6.0, pitch),
+                left_leg=pivoted(stand, heading + stand.turn, pitch),
                 right_leg=free,
                 arms=arms,
                 bend=12.0,
@@ -207,11 +208,10 @@ def _on_one_foot(made: Composer) -> None:
         )
 
     drawn = Leg(40.0, 16.0, 22.0, 84.0, 20.0)
-    stand = balanced(moment(legs=Foot(0.11, 0.0, 8.0), arms=low, bend=9.0))
     wind = balanced(
         moment(
-            left_leg=Foot(0.04, 0.0, 6.0),
-            right_leg=Foot(-0.20, 0.22, -18.0, 8.0),
+            left_leg=stand,
+            right_leg=Foot(-0.18, 0.22, -18.0, 8.0),
             left_arm=wide,
             right_arm=wound,
             bend=34.0,
@@ -223,8 +223,8 @@ def _on_one_foot(made: Composer) -> None:
     )
     end = balanced(
         moment(
-            left_leg=Foot(0.04, 0.0, 366.0),
-            right_leg=Foot(-0.17, 0.06, 346.0),
+            left_leg=pivoted(stand, 360.0 + stand.turn, 0.0),
+            right_leg=Foot(-0.15, 0.06, 346.0),
             arms=wide,
             bend=28.0,
             pelvis=Turn(5.0, 0.0, 362.0),
@@ -232,7 +232,6 @@ def _on_one_foot(made: Composer) -> None:
         )
     )
     moments = {
-        "standing": (stand, 0.0),
         "wound up": (wind, 0.50),
         "pushed off": (on_left(40.0, Leg(26.0, 30.0, 16.0, 52.0, 20.0), wide, 36.0, 14.0), 0.78),
         "a third around": (on_left(125.0, drawn, close, -20.0), 1.00),
@@ -241,4 +240,4 @@ def _on_one_foot(made: Composer) -> None:
         "caught": (end, 1.72),
     }
     steps = [(made.pose(f"around: {name}", at), time_s) for name, (at, time_s) in moments.items()]
-    made.motion("around on one foot", [*steps, ("around: standing", 2.3)])
+    made.motion("around on one foot", [("about: standing", 0.0), *steps, ("about: standing", 2.3)])

@@ -1,0 +1,67 @@
+"""How far matched keyframes are off: another performer's way of moving, in another place.
+
+A library's postures are another performer's, so joints differ, and what hangs on them differs along with
+them; a person who poses a keyframe errs in the joints' places instead (`posing_error`). The place across the
+line of sight follows from where the markers are seen, the one along it from little.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.posture import Posture
+from ..body.skeleton import Skeleton
+from ..footage.camera import Camera
+from ..observation.depths import DEPTH_STD_M
+
+Array = NDArray[np.float64]
+
+JOINT_STD_DEG = {
+    "pelvis": 6.0,
+    "waist": 7.0,
+    "neck": 10.0,
+    "girdle": 5.0,
+    "shoulder": 12.0,
+    "elbow": 15.0,
+    "forearm": 25.0,
+    "hip": 8.0,
+    "knee": 10.0,
+    "shin": 7.0,
+}
+"""Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
+PLACE_STD_M, PLACE_DEPTH_STD_M = 0.035, 0.12
+"""Usual error of the place across and along the line of sight [m]."""
+POINT_DEPTH_STD_M = 2.0
+"""What the depths of the points count as observations of their own (paper, eq. 9) near a matched posture [m]:
+next to nothing, since place and joints, which are believed as far as they deserve, tell them."""
+
+
+def joint_std_rad(skeleton: Skeleton) -> Array:
+    """(D,) usual difference of each degree of freedom [rad]; zero for the place."""
+    names = skeleton.dof_names
+    degrees = [0.0 if "location" in name else JOINT_STD_DEG[name.split(".")[0]] for name in names]
+    return np.radians(degrees)
+
+
+def match_covariance(posture: Posture, camera: Camera, frame: NDArray[np.intp]) -> Array:
+    """The usual error of K matched keyframes, as covariance (K, D, D) of the posture's tangent."""
+    index = np.arange(posture.skeleton.dof_count)
+    covariance = np.zeros((len(frame), len(index), len(index)))
+    covariance[:, index, index] = joint_std_rad(posture.skeleton) ** 2
+    _, eye = camera.pose(frame)
+    sight = posture.translation - eye
+    sight = sight / np.linalg.norm(sight, axis=-1, keepdims=True)
+    along = sight[:, :, None] * sight[:, None, :]
+    covariance[:, :3, :3] = PLACE_STD_M**2 * (np.eye(3) - along) + PLACE_DEPTH_STD_M**2 * along
+    return covariance
+
+
+def depth_std_m(index: NDArray[np.intp], matched: NDArray[np.bool_], frames: int) -> Array:
+    """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
+
+    Args:
+        index: (K,) the keyframes' places in the clip, in order.
+        matched: (K,) which of them nobody posed.
+        frames: Frames of the clip, F.
+    """
+    share = np.interp(np.arange(frames), index, matched.astype(np.float64))
+    return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)

@@ -1,0 +1,68 @@
+"""What posed keyframes say of matched ones: the performer differs from the library's, and goes on differing.
+
+A library's postures are another performer's. Where a person has posed a keyframe too, the difference between
+both is known, and most of it is style, which holds all along the clip; the rest holds for a while. Both
+together are a Gaussian process over time, the same for every degree of freedom, and the matched keyframes
+take the mean that the posed ones leave of it (Rasmussen & Williams 2006, *Gaussian Processes for Machine
+Learning*, eq. 2.23).
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.posture import Posture
+from .interpolation import interpolate
+from .keyframes import Keyframe
+
+Array = NDArray[np.float64]
+
+LASTING_SHARE = 0.6
+"""Of the difference's variance, what holds all along the clip."""
+FORGETTING_S = 0.5
+"""Time in which the rest of it is forgotten."""
+POSED_VARIANCE = 0.1
+"""Of a person's own error, beside the difference's."""
+BEYOND_S = 0.1
+"""So far before the first or after the last matched keyframe, its posture says half as much of a posed one."""
+
+
+def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Keyframe, ...]:
+    """The keyframes, the matched ones changed the way the posed ones differ from the library.
+
+    Args:
+        keyframes: Posed and matched ones, in order of frame.
+        fps: Frames per second.
+    """
+    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
+    matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    if not posed or not matched:
+        return keyframes
+    difference, beyond_s = _differences(posed, matched, fps)
+    at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, matched))
+    noise = POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2
+    known = _covariance(at, at) + np.diag(noise)
+    share = np.linalg.solve(known, _covariance(at, wanted)).T  # (matched, posed)
+    changed = Posture.stack([k.posture for k in matched]).plus(share @ difference)
+    both = [*posed, *(replace(k, posture=changed[row]) for row, k in enumerate(matched))]
+    return tuple(sorted(both, key=lambda keyframe: keyframe.index))
+
+
+def _differences(
+    posed: list[Keyframe], matched: list[Keyframe], fps: float
+) -> tuple[Array, Array]:
+    """From the library to each posed keyframe, (P, D), and how far that lies outside the matched ones [s]."""
+    first, last = matched[0].index, matched[-1].index
+    if len(matched) > 1:
+        course = interpolate(tuple(matched), max(last, posed[-1].index) + 1)
+    else:
+        course = Posture.stack([matched[0].posture] * (max(last, posed[-1].index) + 1))
+    index = np.array([keyframe.index for keyframe in posed])
+    beyond = np.maximum(np.maximum(first - index, index - last), 0)
+    return Posture.stack([keyframe.posture for keyframe in posed]).minus(course[index]), beyond / fps
+
+
+def _covariance(one: Array, other: Array) -> Array:
+    apart = np.abs(one[:, None] - other)
+    return np.asarray(LASTING_SHARE + (1.0 - LASTING_SHARE) * np.exp(-apart / FORGETTING_S))
