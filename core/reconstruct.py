@@ -21,8 +21,8 @@ from .motion import Motion
 from .notes import clip_notes, evidence_notes, marker_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
-from .prior.style import with_style
 from .prior.speed import marker_speed
+from .prior.style import with_style
 from .progress import Job, Progress, stretch, within
 from .take import Take, check_frame_count, check_in_front, open_clip
 
