@@ -34,8 +34,8 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
         name="Name", description="What the motion is called, such as Brisk Walking", default="Motion"
     )
     duration_s: bpy.props.FloatProperty(
-        name="Duration",
-        description="Seconds that the whole motion takes, where the take's keyframes do not tell",
+        name="Duration (s)",
+        description="How long the whole motion takes, where the take's keyframes do not tell",
         default=1.0,
         min=0.01,
         max=600.0,

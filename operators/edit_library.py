@@ -13,7 +13,7 @@ class KEYMARK_OT_edit_library(bpy.types.Operator):
     """Bring a library into this file as pose assets: to apply, to blend, to change, and to share again"""
 
     bl_idname = "keymark.edit_library"
-    bl_label = "Bring into This File"
+    bl_label = "Edit in This File"
     bl_options = {"REGISTER", "UNDO"}
 
     library: bpy.props.StringProperty(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .running.failures import reported
+from .running.job_operator import JobOperator
 from .running.redraw import refresh_asset_browsers
 from .running.requirements import all_met, idle
 from .running.say import say
@@ -15,24 +16,25 @@ from .ui.choose_existing import WIDTH, draw_question
 
 if TYPE_CHECKING:
     from ..core.library.library import Library
+    from ..core.progress import Job
+    from ..core.report.canvas import Image
 
 FOLDER = "keymark"
 """In the asset library."""
-_items: list[tuple[str, str, str]] = []
+Item = tuple[str, str, str]
+_items: list[Item] = []
 """Blender keeps no copy of a menu's words."""
 
 
-def _asset_library_items(
-    _properties: object, context: bpy.types.Context | None
-) -> list[tuple[str, str, str]]:
+def _asset_library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
     found = asset_libraries(context or bpy.context)
     items = [(name, name, str(folder)) for name, folder in found.items()]
-    _items[:] = items or [("", "None", "The preferences name no asset library")]
+    _items[:] = items or [("NONE", "None", "The preferences name no asset library")]
     return _items
 
 
-class InstallOperator:
-    """What both installers share."""
+class InstallOperator(JobOperator):
+    """What both installers share: pictures are drawn first, then each library gets a .blend of its own."""
 
     bl_options = {"REGISTER"}
     existing: str
@@ -48,46 +50,78 @@ class InstallOperator:
         """What to install."""
         raise NotImplementedError
 
+    def again(self) -> set[str]:
+        """Call the operator anew, with what was chosen."""
+        raise NotImplementedError
+
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask where to, where there is a choice, and what to do where a library is there already."""
         with reported(self):
             root = self._root(context)
-            self._found = conflicts(self.libraries(context), lambda name: _installed(root, name))
+            if self.existing != "ASK":
+                return super().invoke(context, event)
+            self._found = conflicts(self.libraries(context), _Installed(root))
             if not self._found and len(asset_libraries(context)) == 1:
-                return self.execute(context)
+                return super().invoke(context, event)
             self.existing = "KEEP"
             return context.window_manager.invoke_props_dialog(self, width=WIDTH)
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw where to, and the question."""
-        self.layout.prop(self, "asset_library")
+        column = self.layout.column()
+        column.use_property_split = True
+        column.prop(self, "asset_library")
         if self._found:
             draw_question(self.layout, self, self._found)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write each into a .blend of its own."""
-        with reported(self):
-            from .bridge.library_blend import write_library_blend
+        """Do all of it at once; after the dialog, with a progress bar."""
+        if self.options.is_invoke and not bpy.app.background and self.existing != "ASK":
+            return self.again()
+        return super().execute(context)
 
-            root = self._root(context)
-            wanted = settled(self.libraries(context), lambda name: _installed(root, name), self.existing)
-            for library in wanted:
-                write_library_blend(_file(root, library.identifier), library, root)
-            refresh_asset_browsers(context)
-            if wanted:
-                say(
-                    self,
-                    "INFO",
-                    "Installed {count} libraries with {postures} pose assets in '{name}'",
-                    count=len(wanted),
-                    postures=sum(len(library.postures) for library in wanted),
-                    name=self.asset_library,
-                )
-            else:
-                say(self, "INFO", "Nothing to install: all of it is in '{name}'", name=self.asset_library)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+    def start(self, scene: bpy.types.Scene) -> "Job[list[tuple[Library, list[Image]]]]":
+        """Read what is there, and draw the pictures of what is to be installed."""
+        from ..core.progress import Progress
+        from .bridge.library_assets import draw_pictures
+
+        there = _Installed(self._root(bpy.context))
+        wanted = settled(self.libraries(bpy.context), there, self.existing)
+        count = sum(len(library.postures) for library in wanted)
+        drawn: list[tuple[Library, list[Image]]] = []
+        done = 0
+        for library in wanted:
+            pictures: list[Image] = []
+            for picture in draw_pictures(library):
+                pictures.append(picture)
+                done += 1
+                yield Progress("Drawing the postures", done / count)
+            drawn.append((library, pictures))
+        return drawn
+
+    def finish(self, scene: bpy.types.Scene, result: "list[tuple[Library, list[Image]]]") -> None:
+        """Write the files."""
+        from .bridge.library_blend import write_library_blend
+
+        root = self._root(bpy.context)
+        for library, pictures in result:
+            write_library_blend(_file(root, library.identifier), library, root, pictures)
+        refresh_asset_browsers(bpy.context)
+        name = self.asset_library
+        if not result:
+            say(self, "INFO", "Nothing to install: all of it is in '{name}'", name=name)
+            return
+        count = sum(len(library.postures) for library, _ in result)
+        titles = ", ".join(library.title for library, _ in result)
+        say(
+            self,
+            "INFO",
+            "Installed {titles} in '{name}': {count} pose assets",
+            titles=titles,
+            name=name,
+            count=count,
+        )
 
     def _root(self, context: bpy.types.Context) -> Path:
         from ..core.errors import InputError
@@ -125,6 +159,17 @@ class KEYMARK_OT_install_library(InstallOperator, bpy.types.Operator):
         """The chosen one."""
         return [chosen_library(context, self.library)]
 
+    def again(self) -> set[str]:
+        """Call the operator anew, with what was chosen."""
+        return set(
+            bpy.ops.keymark.install_library(
+                "INVOKE_DEFAULT",
+                library=self.library,
+                asset_library=self.asset_library,
+                existing=self.existing,
+            )
+        )
+
 
 class KEYMARK_OT_install_shipped_libraries(InstallOperator, bpy.types.Operator):
     """Install the libraries that come with Keymark as pose assets, so that the asset browser shows them"""
@@ -148,6 +193,14 @@ class KEYMARK_OT_install_shipped_libraries(InstallOperator, bpy.types.Operator):
 
         return [entry.library for entry in shelved([SHIPPED]) if entry.library is not None]
 
+    def again(self) -> set[str]:
+        """Call the operator anew, with what was chosen."""
+        return set(
+            bpy.ops.keymark.install_shipped_libraries(
+                "INVOKE_DEFAULT", asset_library=self.asset_library, existing=self.existing
+            )
+        )
+
 
 def _an_asset_library(context: bpy.types.Context) -> str | None:
     there = asset_libraries(context)
@@ -160,12 +213,21 @@ def _file(root: Path, identifier: str) -> Path:
     return root / FOLDER / f"{checked_identifier(identifier, 'the identifier')}.blend"
 
 
-def _installed(root: Path, identifier: str) -> "Library | None":
-    """The library of an identifier that is installed below a folder."""
-    from .bridge.library_blend import read_library_blend
+class _Installed:
+    """The libraries installed below a folder, each read once."""
 
-    path = _file(root, identifier)
-    return read_library_blend(path)[0] if path.exists() else None
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._read: dict[str, Library | None] = {}
+
+    def __call__(self, identifier: str) -> "Library | None":
+        """The library of an identifier; None where it is not installed."""
+        from .bridge.library_blend import read_library_blend
+
+        if identifier not in self._read:
+            path = _file(self._root, identifier)
+            self._read[identifier] = read_library_blend(path)[0] if path.exists() else None
+        return self._read[identifier]
 
 
 register, unregister = bpy.utils.register_classes_factory(

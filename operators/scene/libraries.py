@@ -22,17 +22,6 @@ _silent: list[None] = []
 """Not empty while many properties change, so that pose assets follow once and not at each."""
 
 
-@contextmanager
-def changing(group: Group) -> Iterator[None]:
-    """Change much of a scene's library at once; its pose assets follow at the end."""
-    _silent.append(None)
-    try:
-        yield
-    finally:
-        _silent.pop()
-    show_again(group)
-
-
 def find_library_here(scene: bpy.types.Scene) -> Group | None:
     """The library that is worked on in a scene; None where there is none."""
     settings = scene.keymark
@@ -70,7 +59,7 @@ def add_library(scene: bpy.types.Scene, library: "Library") -> Group:
 
     settings = scene.keymark
     group = settings.libraries.add()
-    with changing(group):
+    with _quiet():
         describe(group, library)
         for posture, action in zip(library.postures, add_assets(library), strict=True):
             add_posture_to(group, posture, action)
@@ -179,6 +168,8 @@ def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
     Raises:
         InputError: An asset is not what Keymark has written.
     """
+    from ...core.body.kinematics import Body
+    from ...core.report.posture_picture import posture_picture
     from ..bridge.library_assets import show_asset
 
     postures = postures_of(group)
@@ -190,8 +181,9 @@ def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
             entry.named = entry.name = posture.name
             entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
             entry.action.name = posture.name
-            draw = any(entry == other for other in drawn)
-            show_asset(entry.action, library, posture, order, draw=draw)
+            again = any(entry == other for other in drawn)
+            picture = posture_picture(Body(library.actor), posture.posture) if again else None
+            show_asset(entry.action, library, posture, order, picture)
 
 
 def details_changed(part: Group) -> None:

@@ -7,7 +7,7 @@ import bpy
 from ...running.say import label
 from ...scene.libraries import active_motion, active_posture, find_library_here
 from ...scene.shelf import chosen
-from .base import SubPanel
+from .base import SubPanel, draw_progress
 
 CHARACTER_WIDTH = 6.2
 MARGIN = 60.0
@@ -173,10 +173,9 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         row.enabled = shelf.posture in item.postures
         apply = row.operator("keymark.apply_posture", icon="POSE_HLT")
         apply.library, apply.posture, apply.mirrored = item.name, shelf.posture, shelf.mirrored
-        row = layout.row(align=True)
-        row.operator("keymark.install_library", icon="ASSET_MANAGER").library = item.name
-        row = layout.row(align=True)
-        row.operator("keymark.edit_library", icon="GREASEPENCIL").library = item.name
+        if not draw_progress(column, context, "keymark.install_"):
+            column.operator("keymark.install_library", icon="ASSET_MANAGER").library = item.name
+        column.operator("keymark.edit_library", icon="GREASEPENCIL").library = item.name
 
 
 class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
@@ -280,12 +279,13 @@ class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
         group, column = find_library_here(context.scene), self.column()
         for name in ("author", "license", "version", "description", "tags", "identifier"):
             column.prop(group, name)
-        column.separator()
+        lines = self.layout.column(align=True)
+        lines.use_property_split = False
         for number, line in enumerate(group.sources):
-            row = column.row(align=True)
-            row.prop(line, "text", text="" if number else "Sources")
-            row.operator("keymark.remove_source", text="", icon="REMOVE", emboss=False).line = number
-        column.operator("keymark.add_source", icon="ADD")
+            row = lines.row(align=True)
+            row.prop(line, "text", text="", icon="HELP" if not line.text else "BOOKMARKS")
+            row.operator("keymark.remove_source", text="", icon="REMOVE").line = number
+        lines.operator("keymark.add_source", icon="ADD")
 
 
 def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.PropertyGroup) -> None:

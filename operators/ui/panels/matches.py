@@ -10,6 +10,8 @@ from ...scene.takes import active_take
 from ..properties.match import DOUBTFUL, SURE
 from .base import TakePanel, draw_progress, draw_sentence
 
+WORTH_NAMING = 0.005
+"""Probability below which the second best kind of motion is none."""
 CLEAR = 0.6
 """Probability of a kind of motion above which nothing needs to be thought over."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
@@ -94,7 +96,10 @@ def _draw_choice(
     best, *others = matching.ranking
     sure = min(best.probability, matching.fit) >= CLEAR
     icon = "CHECKMARK" if sure else "QUESTION"
-    if others:
+    if others and others[0].probability < WORTH_NAMING:
+        words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+        draw_sentence(layout, context, words, icon)
+    elif others:
         words = label(
             "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
             best=best.name,

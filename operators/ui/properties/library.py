@@ -93,8 +93,8 @@ class KEYMARK_PG_library_step(Group):
     )
     time_exact: _exact()
     time_s: bpy.props.FloatProperty(
-        name="Time",
-        description="When, from the motion's beginning, in seconds",
+        name="Time (s)",
+        description="When, from the motion's beginning",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -115,8 +115,8 @@ class KEYMARK_PG_library_motion(Group):
     )
     duration_exact: _exact()
     duration_s: bpy.props.FloatProperty(
-        name="Duration",
-        description="Seconds that the motion takes; of a cyclic one until the first posture comes again",
+        name="Duration (s)",
+        description="How long the motion takes; of a cyclic one until the first posture comes again",
         min=0.0,
         max=3600.0,
         precision=3,
