@@ -116,7 +116,7 @@ def test_the_second_step_mirrors_the_first(name: str, motion: str) -> None:
 
 
 def test_knees_bend_as_gait_laboratories_measure() -> None:
-    """Winter (2009) and Perry & Burnfield (2010): 18 while loading, then all but straight, 60 in the swing."""
+    """Winter (2009), Perry & Burnfield (2010): 18 while loading, then all but straight, 60 in the swing."""
     library = shipped("walking")
     body = Body(library.actor)
     walk = library.motions[0]
