@@ -91,6 +91,7 @@ def match_notes(take: Take) -> tuple[str, ...]:
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
         named = listed([str(frame) for frame in frames], MOST_NAMED)
         notes.append(
-            f"{len(doubted)} of {len(matched)} matched postures may be wrong; pose frame {named} to set them right"
+            f"{len(doubted)} of {len(matched)} matched postures may be wrong; pose frame {named} to set them "
+            "right"
         )
     return tuple(notes)

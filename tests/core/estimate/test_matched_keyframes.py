@@ -31,7 +31,7 @@ TRACKS = film(TRUTH, 0.3)
 
 
 def off(seed: int = 2) -> Posture:
-    """The true postures at the keyframes as a library has them: another style, and each a little different."""
+    """The true postures at the keyframes as a library has them: of another style, and each a little off."""
     rng = np.random.default_rng(seed)
     covariance = match_covariance(TRUTH[INDEX], CAMERA, INDEX)
     factor = np.linalg.cholesky(covariance)
