@@ -10,13 +10,21 @@ from .errors import InputError
 from .footage.reading import Reading
 from .library.library import Library
 from .prior.keyframes import Keyframe, Matched
-from .prior.matching.match import LibraryMatch, Sought, match_library
+from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library, prepare
 from .prior.speed import marker_speed, propose_keyframes
 from .progress import Job, Progress, within
 from .take import Take
 
-LEAST_FIT = 0.45
-"""Footage of which less is explained shows something else than any of the libraries."""
+TRIED = 4
+"""So many libraries at most are matched as a whole where the first look leaves several."""
+HOPELESS = 6.0
+"""How much dearer than the best a library's postures may be in the first look, a frame."""
+NONE_EVIDENCE = -10.0
+"""Logarithm of the evidence of an independent frame for footage that no library was made for."""
+FRAMES_TOLD = 1.6
+"""A performer differs from a library all along a clip, which tells as much as so many independent frames."""
+LOOKING = 0.3
+"""Share of the work that the first look is."""
 NEAR_FRAMES = 2
 """A posed keyframe this near makes a matched one needless."""
 
@@ -65,15 +73,26 @@ def match_take(
         raise InputError(f"{take.folder}: no marker is seen in the footage, so no posture can be matched")
     keyframes = propose_keyframes(marker_speed(tracks), keyframe_count)
     sought = Sought(take.body, take.camera, tracks, take.marker_segments, keyframes)
-    matches = []
     with threadpool_limits(limits=1, user_api="blas"):
+        prepared = []
         for index, library in enumerate(usable):
-            part = match_library(sought, library, floor_m)
-            stage = f"Matching {library.title}"
-            found = yield from within(stage, part, index / len(usable), (index + 1) / len(usable))
-            matches.append(found)
+            yield Progress(f"Looking for {library.title}", LOOKING * index / len(usable))
+            prepared.append(prepare(sought, library))
+        matches = []
+        tried = _worth_trying(prepared)
+        for index, one in enumerate(tried):
+            share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
+            part = match_library(sought, one, floor_m)
+            matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
     yield Progress("Done", 1.0)
-    return _choice(matches)
+    return _choice(usable, matches)
+
+
+def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:
+    """The libraries whose postures do about as well as the best in the first look."""
+    ranked = sorted(prepared, key=lambda one: one.glance.cost)
+    least = ranked[0].glance.cost
+    return [one for one in ranked[:TRIED] if one.glance.cost - least < HOPELESS]
 
 
 def with_matches(take: Take, match: LibraryMatch) -> Take:
@@ -89,20 +108,23 @@ def with_matches(take: Take, match: LibraryMatch) -> Take:
     return replace(take, keyframes=tuple(sorted(keyframes, key=lambda keyframe: keyframe.index)))
 
 
-def _choice(matches: Sequence[LibraryMatch]) -> LibraryChoice:
-    evidence = np.array([match.log_evidence for match in matches])
-    share = np.exp(evidence - evidence.max())
+def _choice(libraries: Sequence[Library], matches: Sequence[LibraryMatch]) -> LibraryChoice:
+    ranked = sorted(matches, key=lambda match: -match.log_evidence)
+    best = ranked[0]
+    title, explained = best.library.title, f"{best.fit:.0%}"
+    if len(libraries) == 1:
+        return LibraryChoice(((best.library, 1.0),), best, f"{title} explains {explained} of the footage")
+    evidence = np.array([*(match.log_evidence for match in ranked), NONE_EVIDENCE])
+    share = np.exp(FRAMES_TOLD * (evidence - evidence.max()))
     share /= share.sum()
-    order = np.argsort(-share, kind="stable")
-    ranking = tuple((matches[int(i)].library, float(share[i])) for i in order)
-    best = matches[int(order[0])]
-    if len(matches) == 1:
-        return LibraryChoice(ranking, best, f"{best.library.title} explains the footage to {best.fit:.0%}")
-    if best.fit < LEAST_FIT:
+    tried = [match.library for match in ranked]
+    rest = [library for library in libraries if library not in tried]
+    ranking = tuple(zip([*tried, *rest], [*map(float, share[:-1]), *[0.0] * len(rest)], strict=True))
+    if share[-1] > share[0]:
         reason = (
-            f"none of the {len(matches)} libraries fits: {best.library.title}, the nearest, "
-            f"explains the footage to {best.fit:.0%} only"
+            f"no library fits ({share[-1]:.0%} sure); {title}, the nearest, explains {explained} of the "
+            "footage"
         )
         return LibraryChoice(ranking, None, reason)
-    reason = f"{best.library.title}, {share[order[0]]:.0%} sure; it explains the footage to {best.fit:.0%}"
+    reason = f"{title} ({share[0]:.0%} sure); it explains {explained} of the footage"
     return LibraryChoice(ranking, best, reason)

@@ -22,6 +22,7 @@ from .notes import clip_notes, evidence_notes, marker_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
+from .prior.style import with_style
 from .progress import Job, Progress, stretch, within
 from .take import Take, check_frame_count, check_in_front, open_clip
 
@@ -115,11 +116,12 @@ def _reconstruct(
         _check_tracks(take, reading.tracks)
     notes += reading.notes
     tracks = reading.tracks
-    prior = interpolate(take.keyframes, tracks.frame_count)
+    keyframes, doubt = with_style(take.keyframes, take.fps)
+    prior = interpolate(keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, _average_model(take), None
     if method == "map":
-        solution = yield from _whole_clip(take, reading, prior, begun, _usable(earlier, reading))
+        solution = yield from _whole_clip(take, reading, prior, doubt, begun, _usable(earlier, reading))
         motion, model = _solved(take, tracks, solution), solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
@@ -203,7 +205,12 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 
 def _whole_clip(
-    take: Take, reading: Reading, prior: Posture, begun: float, earlier: WholeClipResult | None
+    take: Take,
+    reading: Reading,
+    prior: Posture,
+    doubt: Array,
+    begun: float,
+    earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
     estimate = estimate_whole_clip(
         take.body,
@@ -214,7 +221,7 @@ def _whole_clip(
         take.keyframe_indices,
         album=reading.album,
         earlier=earlier,
-        matched=[keyframe.matched is not None for keyframe in take.keyframes],
+        doubt=doubt,
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

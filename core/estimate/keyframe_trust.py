@@ -19,7 +19,6 @@ from .posing_error import posing_covariance
 from .terms.regions import ObservedRegions, RegionNoise
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 FEWEST_POSED = 2
 """Fewer posed keyframes than these calibrate nothing."""
@@ -32,7 +31,7 @@ def read_trust(
     width_px: Array,
     posture: Posture,
     frame: NDArray[np.intp],
-    matched: Mask,
+    doubt: Array,
 ) -> Generator[None, None, KeyframeEvidence]:
     """The evidence of keyframes of which some may be matched; arguments as `read_keyframes`.
 
@@ -43,12 +42,13 @@ def read_trust(
         width_px: (K, M) half-width of each marker's limb there [px].
         posture: The K postures.
         frame: (K,) their places in the clip.
-        matched: (K,) which of them nobody posed.
+        doubt: (K,) how far matched ones are off, in usual differences between performers; 0 for posed ones.
     """
-    if not matched.any():
+    if not doubt.any():
         return (yield from read_keyframes(model, noise, observed, width_px, posture, frame))
-    posed = np.flatnonzero(~matched)
+    posed = np.flatnonzero(doubt == 0.0)
     information = np.linalg.inv(match_covariance(posture, model.camera, frame))
+    information /= np.where(doubt > 0.0, doubt, 1.0)[:, None, None] ** 2
     if len(posed) >= FEWEST_POSED:
         reading = read_keyframes(model, noise, observed[posed], width_px[posed], posture[posed], frame[posed])
         evidence = yield from reading

@@ -7,7 +7,6 @@ trusted; the regions, the prior's depths, feet at rest and the hinges' ranges pu
 annealed, so that early steps do not lock on to a wrong visibility.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -79,7 +78,7 @@ def estimate_whole_clip(
     options: WholeClipOptions | None = None,
     album: Album | None = None,
     earlier: WholeClipResult | None = None,
-    matched: Sequence[bool] | None = None,
+    doubt: Array | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -94,7 +93,8 @@ def estimate_whole_clip(
         album: Pictures of all frames, for contours to be looked for; None does without.
         earlier: An estimate of the same pictures. What has not changed since is taken from it, within the
             tolerances of `revision`.
-        matched: Which keyframes a library was matched with and nobody posed; none by default.
+        doubt: (K,) of keyframes that a library was matched with and nobody posed, how far they are off, in
+            usual differences between performers; 0 for posed ones, which all are by default.
 
     Yields:
         The fraction done, from 0 to 1, and what is known of a window's frames after every step.
@@ -107,10 +107,9 @@ def estimate_whole_clip(
     model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     index = np.array(keyframe_indices, dtype=np.intp)
-    unposed = np.zeros(len(index), dtype=bool) if matched is None else np.asarray(matched, dtype=bool)
-    reading = read_trust(
-        model, options.regions, observed[index], width_px[index], prior[index], index, unposed
-    )
+    doubt = np.zeros(len(index)) if doubt is None else doubt
+    matched = doubt > 0.0
+    reading = read_trust(model, options.regions, observed[index], width_px[index], prior[index], index, doubt)
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
@@ -125,9 +124,10 @@ def estimate_whole_clip(
         width_px,
         step_s,
         options.regions,
-        unposed,
-        depth_std_m(index, unposed, tracks.frame_count),
-        lower_ankle_m(body, prior[index], index, tracks.frame_count) if unposed.all() else None,
+        matched,
+        depth_std_m(index, matched, tracks.frame_count),
+        # Posed keyframes say where the floor is, and better.
+        lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
     )
     return (yield from _solve(problem, options, album, earlier))
 

@@ -1,7 +1,5 @@
 """A library on one sheet: every motion as a strip of its postures, then the postures that belong to none."""
 
-import textwrap
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,6 +10,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion, LibraryPosture
 from .canvas import GREY, INK, LEFT, RIGHT, Canvas, Color, Image
+from .captions import cut, plain, wrapped
 from .mannequin import View, draw_mannequin, view_axes
 from .posture_picture import FLESH_M, TILT_RAD, outermost, showing_turn, stage
 
@@ -60,7 +59,7 @@ class _Strip:
     @property
     def lines(self) -> int:
         """Lines of the longest name."""
-        return max(len(_wrapped(name, self.cell)) for name, _ in self.captions)
+        return max(len(_name_lines(name, self.cell)) for name, _ in self.captions)
 
     @property
     def row(self) -> int:
@@ -171,11 +170,17 @@ def _strip(
     left, right = float(seen[..., 0].min()) - FLESH_M, float(seen[..., 0].max()) + FLESH_M
     cell = int(np.clip(SCALE * (right - left) + 8, NARROWEST, WIDEST))
     high = int(SCALE * (float(seen[..., 1].max()) + FLESH_M)) + 8 + FLOOR_ROOM
-    captions = tuple((_plain(entry.name), _plain(words)) for entry, words in zip(entries, below, strict=True))
-    middle = 0.5 * (left + right)
-    return _Strip(
-        _plain(title), _plain(detail), cyclic, captions, postures, turn, middle, cell, max(high, 60)
+    captions = tuple(
+        (plain(_within(title, entry.name)), plain(words)) for entry, words in zip(entries, below, strict=True)
     )
+    middle = 0.5 * (left + right)
+    return _Strip(plain(title), plain(detail), cyclic, captions, postures, turn, middle, cell, max(high, 60))
+
+
+def _within(title: str, name: str) -> str:
+    """A posture's name in the strip of a motion: without the motion's name before a colon."""
+    before, colon, rest = name.partition(":")
+    return rest.strip() if colon and rest.strip() and before.casefold() == title.casefold() else name
 
 
 def _detail(motion: LibraryMotion) -> str:
@@ -191,14 +196,16 @@ def _detail(motion: LibraryMotion) -> str:
 
 
 def _header(canvas: Canvas, library: Library) -> None:
-    canvas.text(_plain(library.title), MARGIN, 38.0, 17.0, INK)
+    canvas.text(plain(library.title), MARGIN, 38.0, 17.0, INK)
     words = (
         f"{library.identifier}, version {library.version}   "
         f"{len(library.postures)} postures, {len(library.motions)} motions   "
         f"by {library.author}   {library.license}   figure of {library.actor.stature_m:.2f} m"
     )
-    canvas.text(_plain(words), MARGIN, 58.0, 8.5, GREY)
-    canvas.text(_cut(_plain(library.description), canvas.width - 2 * MARGIN - 260.0), MARGIN, 76.0, 8.5, GREY)
+    canvas.text(plain(words), MARGIN, 58.0, 8.5, GREY)
+    canvas.text(
+        cut(plain(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5), MARGIN, 76.0, 8.5, GREY
+    )
     sides: tuple[tuple[str, Color, bool], ...] = (("right, banded", RIGHT, True), ("left", LEFT, False))
     x = float(canvas.width - MARGIN)
     for word, color, banded in sides:
@@ -234,26 +241,11 @@ def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
 def _caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, width: int) -> None:
     name, below = caption
     middle, y = left + 0.5 * width, base + 13.0
-    for line in _wrapped(name, width):
+    for line in _name_lines(name, width):
         canvas.text(line, middle, y, LETTER, INK, "middle")
         y += LINE
-    canvas.text(_cut(below, width - 8.0), middle, y + 1.0, 7.5, GREY, "middle")
+    canvas.text(cut(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GREY, "middle")
 
 
-def _wrapped(text: str, width: int) -> Sequence[str]:
-    letters = max(int((width - 10) / Canvas.text_width("n", LETTER)), 8)
-    lines = textwrap.wrap(text, letters) or [""]
-    return lines if len(lines) <= MOST_LINES else [*lines[:2], lines[2][: letters - 3] + "..."]
-
-
-def _cut(text: str, width: float) -> str:
-    if Canvas.text_width(text, 8.5) <= width:
-        return text
-    while text and Canvas.text_width(text + "...", 8.5) > width:
-        text = text[:-1]
-    return text.rstrip() + "..."
-
-
-def _plain(text: str) -> str:
-    """The text in the letters that can be drawn."""
-    return unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+def _name_lines(name: str, width: int) -> Sequence[str]:
+    return wrapped(name, width - 10.0, LETTER, MOST_LINES)

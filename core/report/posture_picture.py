@@ -22,7 +22,7 @@ BEHIND_M = 0.45
 """The wall stands so far behind the figure."""
 TURNS_RAD = np.radians(np.arange(-80.0, 81.0, 10.0))
 """Views from the front half: faces are seen."""
-USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.05
+USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.10
 """People preferably look to the right of the picture: so much is lost for every radian away from there."""
 SHORTEST = 0.15
 """A limb that looks shorter than this share of its length is as good as hidden."""

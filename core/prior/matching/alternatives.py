@@ -18,45 +18,45 @@ DISTINCT_M = 0.08
 ABOUT_RIGHT_M = 0.10
 
 
-def alternatives(path: Path, share: Single, row: int, frame: int, chosen: Posture) -> MatchedFrame:
+def alternatives(path: Path, share: Single, frame: int, index: int, chosen: Posture) -> MatchedFrame:
     """The chosen posture of a frame and distinct ones beside it, the likelier first.
 
     Args:
         path: The way that was found.
-        share: (N H,) probability of every state.
-        row: Which of the path's frames.
-        frame: Its position in the clip.
+        share: (K,) probability of each of the frame's states.
+        frame: Which of the path's frames.
+        index: Its position in the clip.
         chosen: The posture that was chosen there.
     """
-    best = int(path.best[row])
+    fit = path.fits[frame]
+    best = fit.row(int(path.best[frame]))
     count = min(LOOKED_AT, len(share))
     likely = np.argpartition(-share, count - 1)[:count]
     likely = likely[np.argsort(-share[likely], kind="stable")]
     likely = np.concatenate([[best], likely[likely != best]]).astype(np.intp)
-    postures = path.postures(row, likely)
+    postures = path.postures(frame, likely)
     shape = _shape(path, postures)
     shape[0] = _shape(path, Posture.stack([chosen]))[0]
     weight = share[likely] / max(float(share[likely].sum()), 1e-12)
     kept: list[int] = []
-    for index in range(len(likely)):
-        if all(_apart(shape[index], shape[other]) > DISTINCT_M for other in kept):
-            kept.append(index)
+    for place in range(len(likely)):
+        if all(_apart(shape[place], shape[other]) > DISTINCT_M for other in kept):
+            kept.append(place)
         if len(kept) == MOST:
             break
-    headings = len(path.states.heading_rad)
     found = []
-    for index in kept:
-        near = np.linalg.norm(shape - shape[index], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
-        posture = int(likely[index]) // headings
+    for place in kept:
+        near = np.linalg.norm(shape - shape[place], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+        posture = int(fit.states[likely[place]]) // len(path.turned.heading_rad)
         found.append(
             Candidate(
-                chosen if index == 0 else postures[index],
+                chosen if place == 0 else postures[place],
                 path.chains.name(posture),
                 path.chains.is_mirrored(posture),
                 float(np.clip(weight[near].sum(), 0.0, 1.0)),
             )
         )
-    return MatchedFrame(frame, tuple(found))
+    return MatchedFrame(index, tuple(found))
 
 
 def _shape(path: Path, postures: Posture) -> Array:

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from .chains import Chains
 from .sights import Sight
-from .steps import NOWHERE, Roads, Step, step
-from .sweep import Fit, Turned, places
+from .steps import Move, Roads, moves
+from .sweep import Fit, Turned
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -26,10 +26,10 @@ JUMP_RATE = 0.4
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """The states of T frames: N postures in H headings."""
+    """The states of T frames."""
 
     chains: Chains
-    states: Turned
+    turned: Turned
     sights: list[Sight]
     fits: list[Fit]
     tempering: float
@@ -37,70 +37,73 @@ class Lattice:
     time_s: Array
     """(T,)."""
 
-    @cached_property
-    def log_likelihood(self) -> Single:
-        """(T, N H), tempered."""
-        return np.stack([fit.cost for fit in self.fits]) * np.float32(-self.tempering)
+    def best_path(self) -> NDArray[np.intp]:
+        """(T,) states of the best way through (Viterbi)."""
+        score = self._log_likelihood(0)
+        sources = []
+        for index, ways, jump in self._steps():
+            leap = int(score.argmax())
+            best = np.full(len(self.fits[index].states), score[leap] + jump)
+            source = np.full(len(best), leap, dtype=np.int32)
+            for way in ways:
+                through = score[way.origin] + way.weight
+                better = through > best[way.target]
+                rows = way.target[better]
+                best[rows] = through[better]
+                source[rows] = way.origin[better]
+            sources.append(source)
+            score = best + self._log_likelihood(index)
+        rows = [int(score.argmax())]
+        for source in reversed(sources):
+            rows.append(int(source[rows[-1]]))
+        return np.array([fit.states[row] for fit, row in zip(self.fits, rows[::-1], strict=True)])
+
+    def posterior(self) -> tuple[list[Single], float]:
+        """Of each frame the probability of its states, (K,); and the logarithm of the whole evidence."""
+        steps = list(self._steps())
+        forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
+        for index, ways, jump in steps:
+            total = np.full(len(self.fits[index].states), _log_sum(forward[-1]) + jump, dtype=np.float32)
+            for way in ways:
+                through = forward[-1][way.origin] + way.weight
+                total[way.target] = np.logaddexp(total[way.target], through)
+            forward.append(total + self._log_likelihood(index))
+        evidence = _log_sum(forward[-1])
+        backward = np.zeros(len(forward[-1]), dtype=np.float32)
+        shares = [_share(forward[-1])]
+        for index, ways, jump in reversed(steps):
+            ahead = backward + self._log_likelihood(index)
+            backward = np.full(len(forward[index - 1]), _log_sum(ahead) + jump, dtype=np.float32)
+            for way in ways:
+                through = ahead[way.target] + way.weight
+                backward[way.origin] = np.logaddexp(backward[way.origin], through)
+            shares.append(_share(forward[index - 1] + backward))
+        return shares[::-1], evidence
+
+    @property
+    def _count(self) -> int:
+        return len(self.chains) * len(self.turned.heading_rad)
 
     @cached_property
     def _roads(self) -> Roads:
-        return Roads(self.chains, self.states.heading_rad)
+        return Roads(self.chains, self.turned.heading_rad)
 
-    def best_path(self) -> NDArray[np.intp]:
-        """(T,) states of the best way through (Viterbi)."""
-        score = self.log_likelihood[0]
-        sources = []
-        for index, moves, jump in self._steps():
-            leap = int(score.argmax())
-            best = np.full_like(score, score[leap] + jump)
-            source = np.full(len(score), leap, dtype=np.int32)
-            known = np.append(score, NOWHERE)
-            for road, weight in moves.moves:
-                through = known[road.origin] + weight
-                better = through > best
-                np.copyto(best, through, where=better)
-                np.copyto(source, road.origin, where=better)
-            sources.append(source)
-            score = best + self.log_likelihood[index]
-        path = [int(score.argmax())]
-        for source in reversed(sources):
-            path.append(int(source[path[-1]]))
-        return np.array(path[::-1], dtype=np.intp)
+    def _log_likelihood(self, index: int) -> Single:
+        return self.fits[index].cost * np.float32(-self.tempering)
 
-    def posterior(self) -> tuple[Single, float]:
-        """(T, N H) probability of each state in each frame, and the logarithm of all their evidence."""
-        steps = list(self._steps()) if len(self.sights) < 400 else None
-        forward = np.empty_like(self.log_likelihood)
-        total = len(forward[0])
-        forward[0] = self.log_likelihood[0] - np.float32(np.log(total))
-        for index, moves, jump in steps or self._steps():
-            terms = [np.full(total, _log_sum(forward[index - 1]) + jump, dtype=np.float32)]
-            known = np.append(forward[index - 1], NOWHERE)
-            terms += [known[road.origin] + weight for road, weight in moves.moves]
-            forward[index] = np.logaddexp.reduce(terms, axis=0) + self.log_likelihood[index]
-        evidence = _log_sum(forward[-1])
-        backward = np.zeros(total, dtype=np.float32)
-        for index, moves, jump in reversed(steps or list(self._steps())):
-            ahead = backward + self.log_likelihood[index]
-            terms = [np.full(total, _log_sum(ahead) + jump, dtype=np.float32)]
-            terms += [np.append(ahead + weight, NOWHERE)[road.target] for road, weight in moves.moves]
-            backward = np.logaddexp.reduce(terms, axis=0)
-            forward[index - 1] += backward
-        forward -= forward.max(axis=1, keepdims=True)
-        share = np.exp(forward)
-        share /= share.sum(axis=1, keepdims=True)
-        return share, evidence
-
-    def _steps(self) -> Iterator[tuple[int, Step, np.float32]]:
-        total = self.log_likelihood.shape[1]
-        before = places(self.sights[0], self.states, self.fits[0])
+    def _steps(self) -> Iterator[tuple[int, list[Move], np.float32]]:
+        """From each frame to the next: its index, the ways there, the logarithm of a jump's probability."""
         for index in range(1, len(self.sights)):
-            after = places(self.sights[index], self.states, self.fits[index])
             duration = float(self.time_s[index] - self.time_s[index - 1])
-            pair = self.sights[index - 1], self.sights[index]
-            jump = np.float32(np.log(-np.expm1(-JUMP_RATE * duration)) - np.log(total))
-            yield index, step(self._roads, duration, pair, before, after), jump
-            before = after
+            sights = self.sights[index - 1], self.sights[index]
+            fits = self.fits[index - 1], self.fits[index]
+            jump = np.float32(np.log(-np.expm1(-JUMP_RATE * duration)) - np.log(self._count))
+            yield index, moves(self._roads, duration, sights, fits), jump
+
+
+def _share(log_probability: Single) -> Single:
+    share = np.exp(log_probability - log_probability.max())
+    return np.asarray(share / share.sum())
 
 
 def _log_sum(values: Single) -> float:

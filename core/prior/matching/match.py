@@ -16,16 +16,16 @@ from ..interpolation import interpolate
 from ..keyframes import Keyframe
 from .alternatives import alternatives
 from .candidate import MatchedFrame
-from .chains import library_chains
+from .chains import Chains, library_chains
 from .course_table import CourseTable
-from .floor import FLOOR_STD_M, floor_height
+from .glance import FLOOR_STD_M, Glance, glance
 from .habits import DEGREES, Habits
 from .lattice import Lattice
 from .path import Path
 from .refine import Course, Refinement
 from .sights import sights
-from .solids import marker_solids
-from .sweep import sweep, turned
+from .solids import Solids, marker_solids
+from .sweep import Turned, sweep, turned
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -64,36 +64,50 @@ class LibraryMatch:
     course: Posture
     """(F,) what the match says of every frame of the clip."""
     log_evidence: float
-    """Logarithm of the probability of the footage, given the library, up to a constant of the footage."""
-    samples: int
-    """Frames that were looked at."""
+    """Logarithm of the probability of what an independent frame shows, up to a constant of the footage."""
 
 
-def match_library(sought: Sought, library: Library, floor_m: float | None) -> Part[LibraryMatch]:
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A library on the performer's body, and a first look with it."""
+
+    library: Library
+    chains: Chains
+    solids: Solids
+    states: Turned
+    sampled: Whole
+    """(T,) the frames to look at."""
+    glance: Glance
+
+
+def prepare(sought: Sought, library: Library) -> Prepared:
+    """Put a library on the performer's body and look at a few frames with it."""
+    sampled = sampled_frames(sought.tracks, sought.keyframes)
+    chains = library_chains(library, sought.body)
+    solids = marker_solids(sought.body, sought.segments, chains.posture)
+    states = turned(solids, HEADINGS)
+    first = glance(sought.camera, sought.tracks, sought.segments, sampled, states)
+    return Prepared(library, chains, solids, states, sampled, first)
+
+
+def match_library(sought: Sought, prepared: Prepared, floor_m: float | None) -> Part[LibraryMatch]:
     """Find a library's postures in footage.
 
     Args:
         sought: The take.
-        library: The library.
+        prepared: The library, see `prepare`.
         floor_m: Height of the floor; where None, z = 0 if that agrees with the markers' sizes, else what
             they say.
 
     Yields:
         The fraction that is done.
     """
-    tracks = sought.tracks
-    sampled = sampled_frames(tracks, sought.keyframes)
-    chains = library_chains(library, sought.body)
-    solids = marker_solids(sought.body, sought.segments, chains.posture)
-    states = turned(solids, HEADINGS)
-    yield 0.05
-    floor = floor_m
-    if floor is None:
-        floor = floor_height(sought.camera, tracks, sought.segments, sampled, states)
-    yield 0.1
+    tracks, sampled = sought.tracks, prepared.sampled
+    chains, states = prepared.chains, prepared.states
+    floor = prepared.glance.floor_m if floor_m is None else floor_m
     time_s = tracks.time_s[sampled]
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
-    table = CourseTable(chains, solids)
+    table = CourseTable(chains, prepared.solids)
     habits = Habits.unknown(len(sought.segments))
     for look in (0, 1):  # the second look knows how the performer differs from the library
         seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M, habits)
@@ -106,15 +120,16 @@ def match_library(sought: Sought, library: Library, floor_m: float | None) -> Pa
         refined = refinement.refined(path.course())
         if look == 0:
             habits = refinement.habits(refined)
-    share, evidence = lattice.posterior()
+    shares, evidence = lattice.posterior()
     yield 0.95
     course = _every_frame(table, refined, sampled, tracks.frame_count)
     frames = tuple(
-        alternatives(path, share[row], row, int(sampled[row]), course[int(sampled[row])])
+        alternatives(path, shares[row], int(row), int(sampled[row]), course[int(sampled[row])])
         for row in np.searchsorted(sampled, sought.keyframes)
     )
+    likelihood = evidence / (len(sampled) * tempering)
     return LibraryMatch(
-        library, frames, _fit(path, habits.middle), floor, course, evidence, int(len(sampled))
+        prepared.library, frames, _fit(refinement, refined, habits.middle), floor, course, likelihood
     )
 
 
@@ -134,12 +149,16 @@ def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count:
     return interpolate(tuple(keyframes), frame_count)
 
 
-def _fit(path: Path, usual: Array) -> float:
-    """Mean weight of the markers' middles, of which one weighs less the farther it is off."""
-    weights = []
-    for sight, fit, state in zip(path.sights, path.fits, path.best, strict=True):
-        left = sight.left[fit.doubted[state]] @ path.states.numbers[:, state]
-        squared = ((left[:-1].reshape(-1, 2) * usual[:, None]) ** 2).sum(axis=1)[sight.seen]
-        weights.append(1.0 / (1.0 + squared / DEGREES))
-    known = np.concatenate(weights)
-    return float(known.mean()) if len(known) else 0.0
+def _fit(refinement: Refinement, course: Course, usual: Array) -> float:
+    """Mean weight of the markers' middles, of which one weighs less the farther it is off.
+
+    Args:
+        refinement: What the course was refined by.
+        course: The course.
+        usual: (M,) what the usual deviations were multiplied by there.
+    """
+    size = np.ones(len(usual))
+    off, _, _ = refinement.residuals(course.chain, course.values, size)
+    squared = ((off * usual[:, None]) ** 2).sum(axis=-1)
+    seen = np.array([sight.seen for sight in refinement.sights])
+    return float((1.0 / (1.0 + squared / DEGREES))[seen].mean())

@@ -11,7 +11,7 @@ from .placing import placed
 from .refine import Course
 from .sights import Sight
 from .steps import FASTEST
-from .sweep import Fit, Turned, places
+from .sweep import Fit, Turned
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -22,7 +22,7 @@ class Path:
     """The best state of each of T frames."""
 
     chains: Chains
-    states: Turned
+    turned: Turned
     sights: list[Sight]
     fits: list[Fit]
     best: Whole
@@ -30,18 +30,16 @@ class Path:
     clock_s: Array
     """(T,) times of the frames."""
 
-    def postures(self, row: int, states: Whole) -> Posture:
-        """The postures of some states in one of the T frames, in the world."""
-        posture, heading = np.divmod(states, len(self.states.heading_rad))
-        return placed(self.chains.posture[posture], self.states.heading_rad[heading], self.hips(row, states))
-
-    def hips(self, row: int, states: Whole) -> Array:
-        """(N, 3) places of the hips in some states of one of the T frames [m]."""
-        return np.asarray(places(self.sights[row], self.states, self.fits[row])[:, states].T, dtype=float)
+    def postures(self, frame: int, rows: Whole) -> Posture:
+        """The postures of some of a frame's states, in the world."""
+        fit = self.fits[frame]
+        posture, heading = np.divmod(fit.states[rows], len(self.turned.heading_rad))
+        hips = fit.hips[:, rows].T.astype(float)
+        return placed(self.chains.posture[posture], self.turned.heading_rad[heading], hips)
 
     def course(self) -> Course:
         """The path in times that go on over cycles, and headings that turn on."""
-        posture, heading = np.divmod(self.best, len(self.states.heading_rad))
+        posture, heading = np.divmod(self.best, len(self.turned.heading_rad))
         chain = self.chains.chain_of[posture]
         own = posture - self.chains.start[chain]
         count = np.diff(self.chains.start)[chain]
@@ -59,9 +57,11 @@ class Path:
         for row in range(1, len(own)):
             cycle[row] = cycle[row - 1] + (own[row] < own[row - 1]) if joined[row - 1] else 1.0
         cycle = np.where(cyclic, cycle, 0.0)
-        angle = self.states.heading_rad[heading] - cycle * turn
+        angle = self.turned.heading_rad[heading] - cycle * turn
         for row in range(1, len(own)):
             angle[row] -= 2.0 * np.pi * np.round((angle[row] - angle[row - 1]) / (2.0 * np.pi))
-        hips = np.stack([self.hips(row, self.best[row : row + 1])[0] for row in range(len(own))])
+        hips = np.stack(
+            [fit.hips[:, fit.row(state)] for fit, state in zip(self.fits, self.best, strict=True)]
+        )
         time = (own + cycle * count) * step
         return Course(chain, joined, np.column_stack([time, angle, hips]))

@@ -54,7 +54,7 @@ class Sight:
     axes: Array
     """(M, 2, 3) directions in the world in which a marker's image spreads to the right and upwards."""
     root: Array
-    """(M, 3) square root of the observed second moments, per metre of depth: xx, xy, yy; of an average size."""
+    """(M, 3) square root of the observed second moments, per metre of depth: xx, xy, yy; average size."""
     root_std_m: Array
     """(M,) of their difference from the predicted ones."""
     constant: float

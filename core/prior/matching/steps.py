@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from .chains import Chains
 from .sights import Sight
+from .sweep import Fit
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -24,7 +25,8 @@ DRIFT_STD_M = 0.35
 """Going besides what the motion travels, in a second."""
 DRIFT_CAP = np.float32(12.0)
 """A place that the footage gives wrongly costs no more than this."""
-NOWHERE = np.float32(-1e9)
+LEAST_PACE = 1e-3
+"""Paces less probable than that are left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +35,6 @@ class Road:
 
     origin: Whole
     """(N H,) the state each is reached from; N H where there is none."""
-    target: Whole
-    """(N H,) the state that each leads to; N H where there is none."""
     way: Single
     """(2, N H) how the motion travels on it [m], in the world."""
 
@@ -58,7 +58,6 @@ class Roads:
         count = len(self.heading_rad)
         total = len(self.chains) * count
         before, back_way, back_turn = self.chains.advanced(-steps)
-        after, _, turn = self.chains.advanced(steps)
         columns = np.arange(count)
         bins = count / (2.0 * np.pi)
 
@@ -72,7 +71,7 @@ class Roads:
         c, s = np.cos(self.heading_rad), np.sin(self.heading_rad)
         x, y = -back_way[:, 0, None], -back_way[:, 1, None]
         way = np.stack([c * x - s * y, s * x + c * y]).reshape(2, -1)
-        return Road(origin, states(after, turn, aside), way.astype(np.float32))
+        return Road(origin, way.astype(np.float32))
 
     def pace(self, duration_s: float) -> Array:
         """(A, N) probability of going on by 0, 1, ... A - 1 postures in a time."""
@@ -99,41 +98,50 @@ class Roads:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
-    """From one frame to the next: every road with the logarithm of its probability for every state."""
+class Move:
+    """One way on, for the states of a frame that can be come to by it."""
 
-    moves: list[tuple[Road, Single]]
+    origin: Whole
+    """(R,) which of the earlier frame's states."""
+    target: Whole
+    """(R,) which of the later frame's."""
+    weight: Single
+    """(R,) logarithm of the probability."""
 
 
-def step(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], before: Single, after: Single) -> Step:
-    """The moves between two frames.
+def moves(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], fits: tuple[Fit, Fit]) -> list[Move]:
+    """All ways from the states of a frame to those of the next.
 
     Args:
         roads: The ways.
         duration_s: Time between the frames.
         sights: What both frames say.
-        before: (3, N H) where the hips are in every state at first [m].
-        after: And then.
+        fits: Their states.
     """
     whiten = _whitening(sights, duration_s)
-    first = np.concatenate([whiten @ before, np.zeros((3, 1), dtype=np.float32)], axis=1)
-    second = whiten @ after
-    pace = roads.pace(duration_s)
+    first, second = whiten @ fits[0].hips, whiten @ fits[1].hips
+    states = fits[1].states
     headings = len(roads.heading_rad)
-    moves = []
+    place = np.full(len(roads.chains) * headings + 1, -1, dtype=np.int32)
+    place[fits[0].states] = np.arange(len(fits[0].states))
+    pace = roads.pace(duration_s)
     with np.errstate(divide="ignore"):
-        log_pace = np.maximum(np.log(pace), NOWHERE).astype(np.float32)
+        log_pace = np.log(pace).astype(np.float32)
+    found = []
     for steps in range(len(pace)):
-        if pace[steps].max() < 1e-3:
-            continue
-        going = np.repeat(log_pace[steps], headings)
         for aside, log_share in roads.asides(duration_s).items():
             road = roads.road(steps, aside)
-            apart = second - first[:, road.origin] - whiten[:, :2] @ road.way
+            origin = place[road.origin[states]]
+            target = np.flatnonzero((origin >= 0) & (pace[steps][states // headings] > LEAST_PACE))
+            if not len(target):
+                continue
+            origin, own = origin[target], states[target]
+            apart = second[:, target] - first[:, origin] - whiten[:, :2] @ road.way[:, own]
             apart *= apart
             drift = np.minimum(np.float32(0.5) * apart.sum(axis=0), DRIFT_CAP)
-            moves.append((road, going + np.float32(log_share) - drift))
-    return Step(moves)
+            weight = log_pace[steps][own // headings] + np.float32(log_share) - drift
+            found.append(Move(origin, target.astype(np.int32), weight))
+    return found
 
 
 def _whitening(sights: tuple[Sight, Sight], duration_s: float) -> Single:

@@ -11,6 +11,14 @@ from .solids import Solids
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
+Whole = NDArray[np.intp]
+
+DEARER = 18.0
+"""What explains a frame so much worse than the best is out of the question there, whatever comes before."""
+EXTENTS_DIFFER = 6.0
+"""The markers' extents make up for that much."""
+MOST_STATES = 2500
+"""States of a frame that are kept at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,45 +54,62 @@ def turned(solids: Solids, headings: int) -> Turned:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """How well all states explain a frame."""
+    """The K states that explain a frame best; all others are out of the question there."""
 
+    states: Whole
+    """(K,) increasing."""
     cost: Single
-    """(N H,) negative logarithm of the likelihood, up to a constant of the frame."""
-    doubted: NDArray[np.uint8]
-    """(N H,) which way of finding the place was best, see `Sight.place`."""
+    """(K,) negative logarithm of the likelihood, up to a constant of the footage."""
+    hips: Single
+    """(3, K) where the hips are [m]."""
+
+    def row(self, state: int) -> int:
+        """Where a state is among the K; the best one's place where it is not among them."""
+        row = int(np.searchsorted(self.states, state))
+        known = row < len(self.states) and self.states[row] == state
+        return row if known else int(self.cost.argmin())
 
 
-def places(sight: Sight, states: Turned, fit: Fit) -> Single:
-    """(3, N H) the hips' places in the world [m]."""
-    found = sight.place.astype(np.float32) @ states.numbers  # (V, 3, N H)
-    return np.asarray(np.take_along_axis(found, fit.doubted[None, None].astype(np.intp), axis=0)[0])
-
-
-def sweep(sight: Sight, states: Turned) -> Fit:
-    """Every state at the best place for it."""
-    left = sight.left.astype(np.float32) @ states.numbers  # (V, 2 M + 1, N H)
+def sweep(sight: Sight, turned: Turned) -> Fit:
+    """Find the states that explain a frame, each at the best place for it."""
+    left = sight.left.astype(np.float32) @ turned.numbers  # (V, 2 M + 1, N H)
     left *= left
     costs = np.float32(0.5) * left[:, -1] + np.float32(sight.constant)
     for marker in np.flatnonzero(sight.seen):
         costs += _student(left[:, 2 * marker] + left[:, 2 * marker + 1], 2)
-    doubted = costs.argmin(axis=0).astype(np.uint8)
-    fit = Fit(np.take_along_axis(costs, doubted[None].astype(np.intp), axis=0)[0], doubted)
+    cost = costs.min(axis=0)
+    states = _best(cost, DEARER + EXTENTS_DIFFER, 2 * MOST_STATES)
+    cost, doubted = cost[states], costs[:, states].argmin(axis=0)
+    numbers = turned.numbers[:, states]
+    hips = np.empty((3, len(states)), dtype=np.float32)
+    for way, place in enumerate(sight.place.astype(np.float32)):
+        own = doubted == way
+        hips[:, own] = place @ numbers[:, own]
     back = sight.backward.astype(np.float32)
-    hips = np.float32(sight.backward @ sight.location) - back @ places(sight, states, fit)
+    nearness = np.float32(sight.backward @ sight.location) - back @ hips
     for marker in np.flatnonzero(sight.whole):
-        middle = states.numbers[3 * marker : 3 * marker + 3]
-        depth = np.maximum(hips - back @ middle, np.float32(0.1))
-        np.add(fit.cost, _student(_extent_error(sight, states, marker, depth), 3), out=fit.cost)
-    fit.cost[hips < 0.3] += np.float32(1e3)
-    return fit
+        middle = numbers[3 * marker : 3 * marker + 3]
+        depth = np.maximum(nearness - back @ middle, np.float32(0.1))
+        cost += _student(_extent_error(sight, turned.spread[marker][:, states], marker, depth), 3)
+    cost[nearness < 0.3] += np.float32(1e3)
+    kept = _best(cost, DEARER, MOST_STATES)
+    return Fit(states[kept], cost[kept], hips[:, kept])
 
 
-def _extent_error(sight: Sight, states: Turned, marker: int, depth: Single) -> Single:
+def _best(cost: Single, dearer: float, most: int) -> Whole:
+    """Which are at most so much dearer than the cheapest, and how many at most."""
+    kept = np.flatnonzero(cost <= cost.min() + np.float32(dearer))
+    if len(kept) > most:
+        kept = np.sort(kept[np.argpartition(cost[kept], most)[:most]])
+    return kept
+
+
+def _extent_error(sight: Sight, spread: Single, marker: int, depth: Single) -> Single:
     """Squared difference of the extents seen and predicted, in standard deviations."""
     a, b = sight.axes[marker]
     product = [(a, a), (a, b), (b, b)]
     rows = np.array([_products(u, v) for u, v in product], dtype=np.float32)
-    predicted = square_root(*(rows @ states.spread[marker]))
+    predicted = square_root(*(rows @ spread))
     observed = sight.root[marker].astype(np.float32)
     variance = np.float32(sight.root_std_m[marker] ** 2) + (np.float32(sight.pixel) * depth) ** 2
     squared = sum(

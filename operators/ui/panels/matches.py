@@ -10,6 +10,8 @@ from ...scene.takes import active_take
 from ..properties.match import DOUBTFUL, SURE
 from .base import TakePanel, draw_progress, draw_sentence
 
+WORTH_NAMING = 0.005
+"""Probability below which the second best kind of motion is none."""
 CLEAR = 0.6
 """Probability of a kind of motion above which nothing needs to be thought over."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
@@ -75,6 +77,10 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")
+        elif matching.is_property_set("floor_found"):
+            found = column.row()
+            found.enabled = False
+            found.prop(matching, "floor_found")
         row = column.row()
         row.scale_y = 1.2
         if not draw_progress(row, context, "keymark.match_library"):
@@ -94,7 +100,10 @@ def _draw_choice(
     best, *others = matching.ranking
     sure = min(best.probability, matching.fit) >= CLEAR
     icon = "CHECKMARK" if sure else "QUESTION"
-    if others:
+    if others and others[0].probability < WORTH_NAMING:
+        words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+        draw_sentence(layout, context, words, icon)
+    elif others:
         words = label(
             "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
             best=best.name,

@@ -46,7 +46,7 @@ def library() -> Library:
     return work.library()
 
 
-def _standing(arms: Arm, bend: float = 8.0, trunk: float = 2.0) -> Moment:
+def _standing(arms: Arm, bend: float = 14.0, trunk: float = 2.0) -> Moment:
     return balanced_over(
         moment(arms=arms, legs=HIP_WIDE, bend=bend, pelvis=Turn(bow=trunk), waist=Turn(bow=1.0 + trunk))
     )
@@ -147,7 +147,7 @@ def _knee_lifts(work: Composer) -> None:
                 right_leg=CARRYING,
                 left_arm=left,
                 right_arm=right,
-                bend=7,
+                bend=14,
                 pelvis=Turn(bow=-0.07 * hip, lean=-0.05 * hip, turn=-0.06 * hip),
                 waist=Turn(bow=0.1 * hip, lean=0.07 * hip, turn=0.14 * turn),
                 neck=Turn(bow=-2),
@@ -202,7 +202,7 @@ def _arm_raises(work: Composer) -> None:
         ("arms half curled", Arm(10, 50, 6, 70, -50)),
         ("arms curled", Arm(16, 70, 6, 138, -60)),
     ):
-        work.pose(name, _standing(arms, bend=10 if "curled" in name else 8), "arms")
+        work.pose(name, _standing(arms, bend=18 if "curled" in name else 14), "arms")
     for name, path, hold in (
         ("side raise", ("arms half to the side", "arms to the side"), 1.0),
         ("front raise", ("arms half forward", "arms forward"), 1.0),

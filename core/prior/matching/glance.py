@@ -1,4 +1,6 @@
-"""How high the floor is that a performer stands on: from the sizes of the markers and where the feet are."""
+"""A first look at some frames: how high the floor is, and how well a library's postures do one by one."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,7 +8,7 @@ from numpy.typing import NDArray
 from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
 from .sights import sights
-from .sweep import Turned, places, sweep
+from .sweep import Turned, sweep
 
 Whole = NDArray[np.intp]
 
@@ -18,10 +20,20 @@ LOOKED_AT = 24
 UNKNOWN_STD_M = 2.0
 
 
-def floor_height(
+@dataclass(frozen=True)
+class Glance:
+    """What a first look says."""
+
+    floor_m: float
+    """Height of the floor, by the markers' sizes and the feet; 0 where that is about right."""
+    cost: float
+    """Mean negative logarithm of the likelihood of a frame's best posture: no order in time betters it."""
+
+
+def glance(
     camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: Whole, states: Turned
-) -> float:
-    """Height of the floor [m], by the postures that explain some frames best.
+) -> Glance:
+    """Look at some frames with no floor known.
 
     Args:
         camera: The camera.
@@ -31,14 +43,15 @@ def floor_height(
         states: The library's postures in all headings.
     """
     chosen = frames[np.unique(np.linspace(0, len(frames) - 1, LOOKED_AT).astype(int))]
-    heights, weights = [], []
+    heights, weights, costs = [], [], []
     for sight in sights(camera, tracks, segments, chosen, 0.0, UNKNOWN_STD_M):
         fit = sweep(sight, states)
-        height = places(sight, states, fit)[2] - states.numbers[-2]
+        height = fit.hips[2] - states.numbers[-2, fit.states]
         share = np.exp(fit.cost.min() - fit.cost)
         heights.append(float((share * height).sum() / share.sum()))
         weights.append(float(sight.seen.sum()))
+        costs.append(float(fit.cost.min()))
     order = np.argsort(heights)
     half = np.searchsorted(np.cumsum(np.array(weights)[order]), 0.5 * sum(weights))
     height = heights[int(order[min(int(half), len(order) - 1)])]
-    return 0.0 if abs(height) < WORLD_FLOOR_M else height
+    return Glance(0.0 if abs(height) < WORLD_FLOOR_M else height, float(np.mean(costs)))
