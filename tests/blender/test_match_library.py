@@ -52,6 +52,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
     return SimpleNamespace(
         library=library(motion),
         fit=0.75,
+        floor_m=0.02,
         frames=tuple(
             MatchedFrame(
                 index,
@@ -123,7 +124,7 @@ def test_matched_postures_are_keyed_and_kept(matched: Group, wave_motion: Motion
         ("Waves", 0.97),
         ("Walking", 0.02),
     ]
-    assert (state.reason, state.fit) == ("It is", 0.75)
+    assert (state.reason, state.fit, round(state.floor_found, 6)) == ("It is", 0.75, 0.02)
     match = state.matches[1]
     assert (match.frame, match.library, match.candidate.name) == (7.0, "waves", "Wave 6")
     assert [each.is_doubtful for each in state.matches] == [False, True, False]

@@ -77,6 +77,10 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")
+        elif matching.is_property_set("floor_found"):
+            found = column.row()
+            found.enabled = False
+            found.prop(matching, "floor_found")
         row = column.row()
         row.scale_y = 1.2
         if not draw_progress(row, context, "keymark.match_library"):
