@@ -40,6 +40,7 @@ MODULES = (
     "drop_files",
     "new_library",
     "edit_library",
+    "gather_library",
     "remove_library",
     "add_posture",
     "edit_postures",

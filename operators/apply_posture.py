@@ -87,9 +87,10 @@ class KEYMARK_OT_apply_posture(bpy.types.Operator):
             return chosen_library(context, self.library), self.posture
         group = library_here(context.scene)
         entry = active_posture(group)
-        if not self.posture and entry is None:
+        name = self.posture or (entry.name if entry is not None else "")
+        if not name:
             raise InputError(f"library '{group.name}' has no postures yet; pose the actor and add one")
-        return chosen_library(context, ""), self.posture or entry.name
+        return chosen_library(context, ""), name
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_apply_posture,))

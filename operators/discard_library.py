@@ -29,9 +29,11 @@ class KEYMARK_OT_discard_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete it."""
         with reported(self):
-            from ..core.errors import ConversionError
+            from ..core.errors import ConversionError, InputError
 
             item = chosen(context)
+            if item is None:
+                raise InputError("no library is chosen; choose the one to delete")
             title, path = item.title, Path(item.path)
             try:
                 path.unlink(missing_ok=True)

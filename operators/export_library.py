@@ -35,6 +35,7 @@ class KEYMARK_OT_export_library(bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
     filepath: bpy.props.StringProperty(name="File", description="Where to write", subtype="FILE_PATH")
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
     filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
 
     @classmethod

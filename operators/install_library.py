@@ -37,6 +37,8 @@ class InstallOperator(JobOperator):
     """What both installers share: pictures are drawn first, then each library gets a .blend of its own."""
 
     bl_options = {"REGISTER"}
+    layout: bpy.types.UILayout
+    options: bpy.types.OperatorOptions
     existing: str
     asset_library: str
     _found: list[Conflict] = []

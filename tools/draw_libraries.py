@@ -15,8 +15,8 @@ from keymark.core.report.canvas import GREY, INK, Canvas
 from keymark.core.report.posture_picture import posture_picture
 
 FIGURES, CELL = 8, 116
-TITLE, GAP = 170, 4
-QUALITY = 88
+TITLE, GAP = 190, 4
+QUALITY = 82
 
 
 def some_postures(library: Library) -> list[LibraryPosture]:

@@ -1,7 +1,7 @@
 """How high the lower ankle is over a clip, by what a matched library says of its performer's feet.
 
-A library's postures know the floor: their lowest sole touches it but in flight. Ankles are told from it and not
-from the library's own, which are lifted by feet that cannot bend.
+A library's postures know the floor: their lowest sole touches it but in flight. Ankles are told from it and
+not from the library's own, which are lifted by feet that cannot bend.
 """
 
 import numpy as np

@@ -16,19 +16,19 @@ from ..observation.depths import DEPTH_STD_M
 Array = NDArray[np.float64]
 
 JOINT_STD_DEG = {
-    "pelvis": 6.0,
-    "waist": 7.0,
-    "neck": 10.0,
-    "girdle": 5.0,
-    "shoulder": 12.0,
-    "elbow": 15.0,
-    "forearm": 25.0,
-    "hip": 8.0,
-    "knee": 10.0,
-    "shin": 7.0,
+    "pelvis": 9.0,
+    "waist": 10.0,
+    "neck": 15.0,
+    "girdle": 8.0,
+    "shoulder": 18.0,
+    "elbow": 22.0,
+    "forearm": 35.0,
+    "hip": 12.0,
+    "knee": 15.0,
+    "shin": 10.0,
 }
 """Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
-PLACE_STD_M, PLACE_DEPTH_STD_M = 0.035, 0.12
+PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
 """Usual error of the place across and along the line of sight [m]."""
 POINT_DEPTH_STD_M = 2.0
 """What the depths of the points count as observations of their own (paper, eq. 9) near a matched posture [m]:

@@ -29,6 +29,8 @@ from .windows import Window
 Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
+FAR_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
+"""From keyframes that nobody posed the way is longer, and has more wrong turns."""
 REFINEMENTS = (1.0, 1.0)
 """The steps that contours join in, when the markers have brought them within reach of their edges."""
 LOOKS = 2
@@ -131,7 +133,8 @@ class WindowProblem:
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
-        yield from self._descend(TEMPERATURES, 0.0, 1.0)
+        far = bool(self.clip.matched.any())
+        yield from self._descend(FAR_TEMPERATURES if far else TEMPERATURES, 0.0, 1.0)
 
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, looked for anew each time; yields like `follow_markers`."""

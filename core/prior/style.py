@@ -25,8 +25,9 @@ FORGETTING_S = 0.5
 POSED_VARIANCE = 0.1
 """Of a person's own error, beside the difference's."""
 LEAST_VARIANCE = 0.05
+"""Of the difference's variance, what no posed keyframe takes away."""
 BEYOND_S = 0.1
-"""So far before the first or after the last matched keyframe, its posture says half as much of a posed one."""
+"""So far outside the matched keyframes, the nearest of them is not what the library would have there."""
 
 
 def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
@@ -37,8 +38,8 @@ def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyfr
         fps: Frames per second.
 
     Returns:
-        The keyframes, and (K,) what is left of the usual difference between a performer and a library: 1 where
-        nothing was posed, less near posed ones, and 0 at these.
+        The keyframes, and (K,) what is left of the usual difference between a performer and a library: 1
+        where nothing was posed, less near posed ones, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]

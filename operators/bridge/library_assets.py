@@ -167,18 +167,27 @@ def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, .
     Raises:
         InputError: What an Action says of itself is not what Keymark writes.
     """
+    return tuple(_joined(members) for members in assets_by_library(actions).values())
+
+
+def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
+    """The pose assets of each library, in its order, by its identifier; other Actions are passed over.
+
+    Raises:
+        InputError: What an Action says of itself is not what Keymark writes.
+    """
     found: dict[str, list[bpy.types.Action]] = {}
     for action in actions:
         if is_posture(action):
             found.setdefault(str(_fields(action, HEADER).get("identifier")), []).append(action)
-    return tuple(_joined(members) for members in found.values())
+    return {identifier: sorted(members, key=_order) for identifier, members in found.items()}
 
 
 def _joined(actions: Sequence[bpy.types.Action]) -> Library:
     header = max((_fields(action, HEADER) for action in actions), key=_version)
     postures: list[LibraryPosture] = []
     now: dict[str, str] = {}
-    for action in sorted(actions, key=_order):
+    for action in actions:
         posture = read_asset(action)
         name = told_apart(posture.name, [other.name for other in postures])
         now.setdefault(stored_name(action), name)

@@ -34,7 +34,7 @@ def as_kept(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> P
     place = turned.translation[0] * [-1.0, -1.0, 0.0]
     if on_floor:
         place[2] = -lowest_m(body, turned)
-    level = moved(turned, 0.0, place)
+    level = moved(turned, np.zeros(1), place)
     return applied(level, body.actor, Body(actor))
 
 
@@ -65,7 +65,7 @@ def standing_as(posture: Posture, body: Body, shown: Posture) -> Posture:
     turned = moved(both[:1], wanted - own, np.zeros(3))
     place = shown.translation - turned.translation[0]
     place = np.array([place[0], place[1], lowest_m(body, both[1:])])
-    return moved(turned, 0.0, place)[0]
+    return moved(turned, np.zeros(1), place)[0]
 
 
 def lowest_m(body: Body, postures: Posture) -> float:

@@ -33,12 +33,11 @@ if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
 
-Group = bpy.types.PropertyGroup
 DECIMALS_S = 4
 
 
 def keep_postures(
-    group: Group,
+    group: bpy.types.PropertyGroup,
     body: "Body",
     postures: "Posture",
     names: Sequence[str],
@@ -69,7 +68,7 @@ def keep_postures(
     return add_named(group, [LibraryPosture(name.strip(), kept[row], tags) for row, name in enumerate(names)])
 
 
-def add_named(group: Group, postures: Sequence[LibraryPosture]) -> list[str]:
+def add_named(group: bpy.types.PropertyGroup, postures: Sequence[LibraryPosture]) -> list[str]:
     """Add postures of the library's own actor; a number makes a name unique. Returns the names."""
     library = draft(group)
     names = []
@@ -83,7 +82,9 @@ def add_named(group: Group, postures: Sequence[LibraryPosture]) -> list[str]:
     return names
 
 
-def replace_posture(group: Group, body: "Body", postures: "Posture", *, on_floor: bool) -> Group:
+def replace_posture(
+    group: bpy.types.PropertyGroup, body: "Body", postures: "Posture", *, on_floor: bool
+) -> bpy.types.PropertyGroup:
     """Put a pose in the place of the chosen posture.
 
     Raises:
@@ -100,8 +101,13 @@ def replace_posture(group: Group, body: "Body", postures: "Posture", *, on_floor
 
 
 def keep_motion(
-    group: Group, name: str, postures: Sequence[str], time_s: "NDArray[np.float64]", *, cyclic: bool
-) -> Group:
+    group: bpy.types.PropertyGroup,
+    name: str,
+    postures: Sequence[str],
+    time_s: "NDArray[np.float64]",
+    *,
+    cyclic: bool,
+) -> bpy.types.PropertyGroup:
     """Add a motion through postures of the library.
 
     Args:
@@ -126,7 +132,7 @@ def keep_motion(
     return motion
 
 
-def add_mirrored(group: Group, *, only_chosen: bool) -> int:
+def add_mirrored(group: bpy.types.PropertyGroup, *, only_chosen: bool) -> int:
     """Add the mirrored form of what a library lacks the other side of; how many postures that were.
 
     Args:
@@ -155,7 +161,7 @@ def add_mirrored(group: Group, *, only_chosen: bool) -> int:
     return len(names)
 
 
-def _check(group: Group, names: Sequence[str], tags: Sequence[str]) -> None:
+def _check(group: bpy.types.PropertyGroup, names: Sequence[str], tags: Sequence[str]) -> None:
     for name in names:
         fault = text_fault(name.strip(), LONGEST_NAME)
         if fault:

@@ -11,7 +11,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import write_library
 from keymark.core.library.shelf import shelved
-from keymark.operators.bridge.library_blend import read_library_blend
+from keymark.operators.bridge.library_blend import read_library_blend, write_library_blend
 from keymark.operators.scene import shelf
 
 RandomPosture = Callable[[int], Posture]
@@ -175,3 +175,18 @@ def test_a_file_on_the_shelf_that_is_damaged_is_listed_as_such(own: Path) -> Non
     assert [entry[0] for entry in shelf.library_items(None, bpy.context)] == ["auto"]
     bpy.ops.keymark.discard_library()
     assert list(own.iterdir()) == []
+
+
+def test_pose_assets_brought_by_other_means_are_gathered(own: Path, library: Library, tmp_path: Path) -> None:
+    """Appended as Blender does, they become a library of this file again, to the last byte."""
+    write_library_blend(tmp_path / "small.blend", library)
+    with bpy.data.libraries.load(str(tmp_path / "small.blend")) as (found, wanted):
+        wanted.actions = found.actions
+    count = len(bpy.data.actions)
+    assert bpy.ops.keymark.gather_library() == {"FINISHED"}
+    assert len(bpy.data.actions) == count
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "back.json"))
+    write_library(tmp_path / "first.json", library)
+    assert (tmp_path / "back.json").read_bytes() == (tmp_path / "first.json").read_bytes()
+    with pytest.raises(RuntimeError, match="no pose assets of a library that is not listed"):
+        bpy.ops.keymark.gather_library()

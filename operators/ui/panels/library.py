@@ -5,7 +5,7 @@ from textwrap import wrap
 import bpy
 
 from ...running.say import label
-from ...scene.libraries import active_motion, active_posture, find_library_here
+from ...scene.libraries import active_motion, active_posture, find_library_here, library_here
 from ...scene.shelf import chosen
 from .base import SubPanel, draw_progress
 
@@ -139,6 +139,7 @@ class KEYMARK_MT_library(bpy.types.Menu):
         ):
             layout.operator("keymark.mirror_library", text=text, icon="MOD_MIRROR").what = what
         layout.separator()
+        layout.operator("keymark.gather_library", icon="ASSET_MANAGER")
         layout.operator("keymark.remove_library", icon="TRASH")
 
 
@@ -190,6 +191,7 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
         layout, group = self.layout, find_library_here(context.scene)
         if group is None:
             layout.operator("keymark.new_library", icon="ADD")
+            layout.operator("keymark.gather_library", icon="ASSET_MANAGER")
             return
         settings = context.scene.keymark
         row = layout.row(align=True)
@@ -238,7 +240,7 @@ class KEYMARK_PT_library_motions(LibraryPart, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the motions, and the steps of the chosen one."""
-        layout, group = self.layout, find_library_here(context.scene)
+        layout, group = self.layout, library_here(context.scene)
         row = layout.row()
         row.template_list(
             "KEYMARK_UL_library_motions", "", group, "motions", group, "active_motion", rows=2, maxrows=6
@@ -276,7 +278,7 @@ class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw who made it, under which terms, and from what."""
-        group, column = find_library_here(context.scene), self.column()
+        group, column = library_here(context.scene), self.column()
         for name in ("author", "license", "version", "description", "tags", "identifier"):
             column.prop(group, name)
         lines = self.layout.column(align=True)

@@ -38,11 +38,12 @@ def library() -> Library:
     made = Composer(
         "jumping",
         "Jumping",
-        "Jumps straight up, far, and astride with swinging arms; bouncing and hopping on the spot; a leap.",
+        "Jumps up, tucked, astride and far, with swinging arms; bouncing on the spot, hopping, a leap.",
         SOURCES,
         ("jumping",),
     )
     _up(made)
+    _tuck(made)
     _far(made)
     _astride(made)
     hops.bounce(made)
@@ -84,8 +85,18 @@ def on_toes(arms: Arm, y: float = 0.0, **others: float) -> Moment:
     )
 
 
+def leaving_upward() -> Moment:
+    """The last moment on the floor of a jump straight up."""
+    return on_toes(replace(UP, elevation=136.0, girdle=16.0))
+
+
+def landing() -> Moment:
+    """The first moment on the floor again."""
+    return crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+
+
 def _up(made: Composer) -> None:
-    off, on = on_toes(replace(UP, elevation=136.0, girdle=16.0)), crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    off, on = leaving_upward(), landing()
     start, end = mass_of(off), mass_of(on)
     rising = moment(arms=UP, legs=Leg(4.0, 4.0, 4.0, 9.0, 50.0), waist=Turn(-2.0), neck=Turn(-8.0))
     top = moment(
@@ -130,6 +141,36 @@ def _up(made: Composer) -> None:
             ("caught, knees deep", on_s + 0.20),
             ("straightening", on_s + 0.55),
             ("standing", on_s + 0.95),
+        ],
+    )
+
+
+def _tuck(made: Composer) -> None:
+    """Knees to the chest, with the jump up's beginning and end."""
+    tucked = moment(
+        arms=swung_arm(58.0, 26.0, rotation=30.0, elbow=62.0),
+        legs=Leg(104.0, 8.0, 4.0, 112.0, 15.0),
+        pelvis=Turn(6.0),
+        waist=Turn(24.0),
+        neck=Turn(-10.0),
+    )
+    start, end = mass_of(leaving_upward()), mass_of(landing())
+    made.pose("tuck: knees high", thrown(tucked, flight(start, end, HIGH_S, 0.5)))
+    off_s = 1.02
+    made.motion(
+        "tuck jump",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.36),
+            ("crouched, arms back", 0.66),
+            ("pushing off, arms pass", 0.81),
+            ("stretching, arms forward", 0.93),
+            ("toes leave the floor", off_s),
+            ("tuck: knees high", off_s + 0.5 * HIGH_S),
+            ("toes touch the floor", off_s + HIGH_S),
+            ("caught, knees deep", off_s + HIGH_S + 0.20),
+            ("straightening", off_s + HIGH_S + 0.55),
+            ("standing", off_s + HIGH_S + 0.95),
         ],
     )
 
@@ -224,7 +265,7 @@ def _far(made: Composer) -> None:
 def _astride(made: Composer) -> None:
     """A star in the air, with the jump up's beginning and end."""
     off = on_toes(Arm(elevation=62.0, plane=15.0, rotation=10.0, elbow=18.0, girdle=6.0))
-    on = crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    on = landing()
     start, end = mass_of(off), mass_of(on)
     wide = Arm(elevation=128.0, plane=6.0, rotation=6.0, elbow=8.0, girdle=20.0)
     star = moment(arms=wide, legs=Leg(4.0, 38.0, 8.0, 8.0, 40.0), neck=Turn(-6.0))
