@@ -12,16 +12,18 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
+from .estimate.match_error import undecided_covariance
 from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
 from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
-from .notes import clip_notes, evidence_notes, marker_notes
+from .notes import clip_notes, evidence_notes, marker_notes, match_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
+from .prior.style import with_style
 from .progress import Job, Progress, stretch, within
 from .take import Take, check_frame_count, check_in_front, open_clip
 
@@ -113,14 +115,15 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    notes += reading.notes
+    notes += reading.notes + match_notes(take)
     tracks = reading.tracks
-    prior = interpolate(take.keyframes, tracks.frame_count)
+    keyframes, doubt = with_style(take.keyframes, take.fps)
+    prior = interpolate(keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, _average_model(take), None
     if method == "map":
-        solution = yield from _whole_clip(take, reading, prior, begun, _usable(earlier, reading))
-        motion, model = _solved(take, tracks, solution), solution.evidence.model
+        solution = yield from _whole_clip(take, reading, prior, doubt, begun, _usable(earlier, reading))
+        motion, model = _solved(take, tracks, solution, doubt), solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
@@ -203,7 +206,12 @@ def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
 
 
 def _whole_clip(
-    take: Take, reading: Reading, prior: Posture, begun: float, earlier: WholeClipResult | None
+    take: Take,
+    reading: Reading,
+    prior: Posture,
+    doubt: Array,
+    begun: float,
+    earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
     estimate = estimate_whole_clip(
         take.body,
@@ -214,11 +222,12 @@ def _whole_clip(
         take.keyframe_indices,
         album=reading.album,
         earlier=earlier,
+        doubt=doubt,
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
-def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult) -> Motion:
+def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Array) -> Motion:
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -227,7 +236,12 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult) -> Motion
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
     }
-    return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    if not doubt.any():
+        return motion
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    undecided = undecided_covariance(motion.points, take.camera, index, doubt)
+    return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

@@ -1,10 +1,10 @@
 """A whole session with Keymark as a script: from an empty scene to an asset and a file for other programs.
 
-Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER
+Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER [LIBRARY]
 
 Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
 that of the demonstration take; an animator's eye and hand are stood in for by the poses that come with that
-take.
+take. With a LIBRARY, as in `aerobic`, nobody poses: its postures are matched with the footage.
 """
 
 import sys
@@ -99,12 +99,22 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
     bpy.data.objects.remove(hand)
 
 
-def session(scene: bpy.types.Scene, folder: Path) -> bpy.types.PropertyGroup:
+def match_keyframes(scene: bpy.types.Scene, library: str) -> None:
+    """Step 4 without posing: keyframes from a library; what is in doubt may be replaced, or posed."""
+    bpy.ops.keymark.match_library(library=library)
+    for match in active_take(scene).matching.matches:
+        print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
+
+
+def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.types.PropertyGroup:
     """All seven steps; returns the take."""
     load_footage(scene)
     pick_markers(active_take(scene))
     build_actor(active_take(scene))
-    pose_keyframes(scene)
+    if library:
+        match_keyframes(scene, library)
+    else:
+        pose_keyframes(scene)
     bpy.ops.keymark.reconstruct()  # step 5: a new Action; the keyframes stay in theirs
     take = active_take(scene)
     for weak in take.review.weak_frames:  # step 6, review
@@ -119,7 +129,8 @@ def session(scene: bpy.types.Scene, folder: Path) -> bpy.types.PropertyGroup:
 
 
 if __name__ == "__main__":
-    output = Path(sys.argv[sys.argv.index("--") + 1]).resolve()
+    folder_name, *libraries = sys.argv[sys.argv.index("--") + 1 :]
+    output = Path(folder_name).resolve()
     output.mkdir(parents=True, exist_ok=True)
     bpy.ops.wm.read_homefile(use_empty=True)
-    session(bpy.context.scene, output)
+    session(bpy.context.scene, output, *libraries)

@@ -58,14 +58,16 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         """Draw the dialog."""
         layout = self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
-        for name in ("title", "author", "license", "count", "for_matching"):
+        for name in ("title", "author", "license"):
             layout.prop(self, name)
+        layout.prop(self, "count", text="Postures (0: Automatic)")
+        layout.prop(self, "for_matching")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Learn it, keep it in the scene as pose assets, and on the shelf where that is wanted."""
         with reported(self):
             from ..core.library.learning import About
-            from ..core.library.library_file import write_library
+            from ..core.library.library_file import library_from_json, library_to_json, write_library
             from ..core.library.shelf import library_path, shelved
             from ..core.library.texts import identifier_from
             from .bridge.learning import library_from_action
@@ -88,6 +90,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
                 ),
                 self.count or None,
             )
+            library_from_json(library_to_json(library), f"library '{title}'")  # checks what was typed
             if self.for_matching:
                 write_library(library_path(own_folder(), library.identifier), library)
                 fill(library.identifier)

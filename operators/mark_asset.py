@@ -3,6 +3,7 @@
 import bpy
 
 from .running.failures import reported
+from .running.redraw import refresh_asset_browsers
 from .running.requirements import actor, all_met, idle, motion
 from .running.say import say, warn_if_outdated
 from .scene.takes import active_take
@@ -33,21 +34,11 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
             tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
             details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
             mark_action(action, details, picture)
-            _refresh_asset_browsers(context)
+            refresh_asset_browsers(context)
             warn_if_outdated(self, take)
             say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
             return {"FINISHED"}
         return {"CANCELLED"}
-
-
-def _refresh_asset_browsers(context: bpy.types.Context) -> None:
-    """Let open asset browsers read the catalogs again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.ui_type == "ASSETS":
-                with context.temp_override(window=window, area=area):
-                    if bpy.ops.asset.library_refresh.poll():
-                        bpy.ops.asset.library_refresh()
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mark_asset,))

@@ -51,7 +51,7 @@ class KEYMARK_OT_replace_match(bpy.types.Operator):
             say(
                 self,
                 "INFO",
-                "Frame {frame:g} is {posture} now",
+                "Frame {frame:g} shows {posture} now",
                 frame=match.frame,
                 posture=match.candidate.name,
             )

@@ -139,6 +139,12 @@ def read_keyframes(
     return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, information)
 
 
+def uncalibrated(model: RegionModel) -> KeyframeEvidence:
+    """What is known of the markers before any keyframe is posed: average proportions."""
+    markers, dofs = len(model.placements), model.body.skeleton.dof_count
+    return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
+
+
 def evenly_chosen(frame: NDArray[np.intp], most: int) -> NDArray[np.intp]:
     """Which of the keyframes at increasing frames speak for all: one more or less changes little of it."""
     if len(frame) <= most:

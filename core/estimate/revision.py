@@ -34,6 +34,8 @@ SAME_LENS = 5e-4
 """Logarithm of the focal length."""
 SAME_SIZE = 0.1
 """Logarithms of the posing error's size, markers' distrust and areas; the timing error in frames."""
+SAME_FOOTING_M = 2e-3
+"""Of the lower ankle's usual height."""
 SAME_FACTOR = 0.15
 """Logarithm of the accelerations' covariance, in whatever direction it differs most."""
 
@@ -65,6 +67,7 @@ def held(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
         earlier.evidence.posing_scale,
         earlier.evidence.timing_frames,
     )
+    information[now.matched] = now.evidence.information[now.matched]
     evidence = replace(earlier.evidence, information=information)
     return replace(now, evidence=evidence, factor=earlier.factor)
 
@@ -91,12 +94,19 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> Mask:
     """(F,) frames of which anything differs but the evidence: prior, keyframe, or what was seen."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
     changed |= _seen_differently(earlier.observed, now.observed)
+    changed |= (earlier.depth_std_m != now.depth_std_m) | _footed_differently(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
     both, before, after = np.intersect1d(earlier.keyframes, now.keyframes, return_indices=True)
     information, other = earlier.evidence.information[before], now.evidence.information[after]
     scale = np.abs(other).max(axis=(1, 2))
     changed[both[np.abs(information - other).max(axis=(1, 2)) > 1e-6 * scale]] = True
     return changed
+
+
+def _footed_differently(earlier: ClipProblem, now: ClipProblem) -> Mask:
+    if earlier.footing_m is None or now.footing_m is None:
+        return np.full(now.frames, earlier.footing_m is not now.footing_m)
+    return np.abs(now.footing_m - earlier.footing_m) > SAME_FOOTING_M
 
 
 def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> Mask:

@@ -19,7 +19,7 @@ from ..observation.regions import RegionModel
 from ..prior.belief import Belief
 from ..progress import run
 from .clip_state import ClipState
-from .keyframe_evidence import KeyframeEvidence, read_keyframes
+from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
 from .terms.ground import GroundTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder
@@ -75,12 +75,6 @@ def fit_frame(
     """
     descent = _Descent(evidence, observed, belief, frame, noise or RegionNoise())
     return descent.fit()
-
-
-def uncalibrated(model: RegionModel) -> KeyframeEvidence:
-    """What is known of the markers before any keyframe is posed: average proportions."""
-    markers, dofs = len(model.placements), model.body.skeleton.dof_count
-    return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
 
 
 def calibrated(

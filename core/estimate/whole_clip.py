@@ -21,7 +21,10 @@ from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, scaled
 from .contour_evidence import ContourEvidence, learn_contours
-from .keyframe_evidence import KeyframeEvidence, read_keyframes
+from .footing import lower_ankle_m
+from .keyframe_evidence import KeyframeEvidence
+from .keyframe_trust import read_trust
+from .match_error import depth_std_m
 from .revision import changed_frames, held, revised_share, revised_windows, same_setting
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .window_problem import ClipProblem
@@ -75,6 +78,7 @@ def estimate_whole_clip(
     options: WholeClipOptions | None = None,
     album: Album | None = None,
     earlier: WholeClipResult | None = None,
+    doubt: Array | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -89,6 +93,8 @@ def estimate_whole_clip(
         album: Pictures of all frames, for contours to be looked for; None does without.
         earlier: An estimate of the same pictures. What has not changed since is taken from it, within the
             tolerances of `revision`.
+        doubt: (K,) of keyframes that a library was matched with and nobody posed, how far they are off, in
+            usual differences between performers; 0 for posed ones, which all are by default.
 
     Yields:
         The fraction done, from 0 to 1, and what is known of a window's frames after every step.
@@ -101,12 +107,27 @@ def estimate_whole_clip(
     model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     index = np.array(keyframe_indices, dtype=np.intp)
-    reading = read_keyframes(model, options.regions, observed[index], width_px[index], prior[index], index)
+    doubt = np.zeros(len(index)) if doubt is None else doubt
+    matched = doubt > 0.0
+    reading = read_trust(model, options.regions, observed[index], width_px[index], prior[index], index, doubt)
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     problem = ClipProblem(
-        body, camera, evidence, factor, prior, index, observed, width_px, step_s, options.regions
+        body,
+        camera,
+        evidence,
+        factor,
+        prior,
+        index,
+        observed,
+        width_px,
+        step_s,
+        options.regions,
+        matched,
+        depth_std_m(index, matched, tracks.frame_count),
+        # Posed keyframes say where the floor is, and better.
+        lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
     )
     return (yield from _solve(problem, options, album, earlier))
 

@@ -14,8 +14,10 @@ from ..prior.variability import REFERENCE_STEP_S
 from ..progress import Part, Preview, scaled
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
+from .footing import FOOTING_STD_M
 from .keyframe_evidence import KeyframeEvidence
 from .terms.depths import DepthTerm
+from .terms.ground import GroundTerm
 from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder, QuadraticTerm
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm
@@ -27,6 +29,8 @@ from .windows import Window
 Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
+FAR_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
+"""From keyframes that nobody posed the way is longer, and has more wrong turns."""
 REFINEMENTS = (1.0, 1.0)
 """The steps that contours join in, when the markers have brought them within reach of their edges."""
 LOOKS = 2
@@ -62,6 +66,12 @@ class ClipProblem:
     step_s: Array
     """(F - 1,) time between frames [s]."""
     noise: RegionNoise
+    matched: NDArray[np.bool_]
+    """(K,) which keyframes nobody posed."""
+    depth_std_m: Array
+    """(F,) how far the prior's depths may be off [m]."""
+    footing_m: Array | None = None
+    """(F,) usual height of the lower ankle [m]; None where no floor is known of."""
 
     @property
     def frames(self) -> int:
@@ -114,14 +124,17 @@ class WindowProblem:
                 self.evidence.distrust,
                 self.evidence.whole,
             ),
-            DepthTerm(clip.camera, prior_depth),
+            DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None]),
             LimitTerm(),
             StillnessTerm(clip.camera, feet, self.step_s),
         ]
+        if clip.footing_m is not None:
+            self.terms.append(GroundTerm(feet, clip.footing_m[frames], FOOTING_STD_M))
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
-        yield from self._descend(TEMPERATURES, 0.0, 1.0)
+        far = bool(self.clip.matched.any())
+        yield from self._descend(FAR_TEMPERATURES if far else TEMPERATURES, 0.0, 1.0)
 
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, looked for anew each time; yields like `follow_markers`."""

@@ -1,7 +1,5 @@
 """A library on one sheet: every motion as a strip of its postures, then the postures that belong to none."""
 
-import textwrap
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,23 +8,27 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..library.library import Library, LibraryMotion
+from ..library.library import Library, LibraryMotion, LibraryPosture
 from .canvas import GREY, INK, LEFT, RIGHT, Canvas, Color, Image
+from .captions import cut, plain, wrapped
 from .mannequin import View, draw_mannequin, view_axes
 from .posture_picture import FLESH_M, TILT_RAD, outermost, showing_turn, stage
 
 Array = NDArray[np.float64]
 
 MARGIN = 28
-LEAST_COLUMNS, MOST_COLUMNS = 8, 12
-SCALE = 92.0
+LEAST_WIDTH, WIDTH = 900, 1520
+"""Of what lies between the margins, at least and at most."""
+SCALE = 86.0
 """Pixels a metre, the same for every figure."""
-NARROWEST, WIDEST = 112, 210
+NARROWEST, WIDEST = 98, 230
 """Width of a cell."""
-HEADER, SECTION, LABELS, GAP = 96, 34, 62, 14
+HEADER, SECTION = 96, 34
+BETWEEN, BELOW = 40, 22
+"""Space between two strips side by side, and below them."""
 FLOOR_ROOM = 22
 """Height below the floor's middle, where the nearer foot is."""
-LETTER = 8.0
+LETTER, LINE, MOST_LINES = 8.0, 11.5, 3
 
 
 @dataclass(frozen=True)
@@ -41,74 +43,144 @@ class _Strip:
     postures: Posture
     """A batch."""
     turn_rad: float
+    middle_m: float
+    """What stands in the middle of a cell, so far to the right of the hips."""
+    cell: int
+    """Width of what one posture takes."""
+    high: int
+    """Height of the stage."""
+
+    @property
+    def columns(self) -> int:
+        """Postures in a row; where one row is too short for all they are divided evenly."""
+        rows = -(-len(self.captions) * self.cell // WIDTH)
+        return -(-len(self.captions) // rows)
+
+    @property
+    def lines(self) -> int:
+        """Lines of the longest name."""
+        return max(len(_name_lines(name, self.cell)) for name, _ in self.captions)
+
+    @property
+    def row(self) -> int:
+        """Height of a row with what is written below."""
+        return self.high + round(LINE * (self.lines + 1)) + 12
+
+    @property
+    def height(self) -> int:
+        """Height of the whole strip."""
+        return SECTION + self.row * -(-len(self.captions) // self.columns)
+
+    @property
+    def width(self) -> int:
+        """Width of the whole strip, its title included."""
+        words = Canvas.text_width(self.title, 11.0) + Canvas.text_width(self.detail, 8.5) + 40.0
+        return max(self.columns * self.cell, min(int(words), WIDTH))
 
 
 def library_sheet(library: Library) -> Image:
-    """Draw every posture of a library with its name and time, motions in rows.
+    """Draw every posture of a library with its name and time, each motion a strip.
 
     Returns:
         (height, width, 3) blue, green, red.
     """
     body = Body(library.actor)
-    strips = _strips(library, body)
-    seen = [outermost(body, strip.postures, strip.turn_rad) - _ground(strip)[:, None] for strip in strips]
-    reach = max(float(np.abs(places[..., 0]).max()) for places in seen) + FLESH_M
-    cell = int(np.clip(2.0 * SCALE * reach, NARROWEST, WIDEST))
-    tall = [int(SCALE * (float(places[..., 1].max()) + FLESH_M)) + 8 + FLOOR_ROOM for places in seen]
-    rows = [-(-len(strip.captions) // MOST_COLUMNS) for strip in strips]
-    columns = [-(-len(strip.captions) // row) for strip, row in zip(strips, rows, strict=True)]
-    width = 2 * MARGIN + max(*columns, LEAST_COLUMNS) * cell
-    height = HEADER + sum(SECTION + row * (high + LABELS) + GAP for row, high in zip(rows, tall, strict=True))
-    canvas = Canvas(width, height)
+    shelves = _packed(_strips(library, body))
+    heights = [max(strip.height for strip in shelf) + BELOW for shelf in shelves]
+    widest = max(sum(strip.width + BETWEEN for strip in shelf) - BETWEEN for shelf in shelves)
+    canvas = Canvas(max(widest, LEAST_WIDTH) + 2 * MARGIN, HEADER + sum(heights))
     _header(canvas, library)
-    figures: list[tuple[int, int, int, Posture, float]] = []
+    figures: list[tuple[int, int, _Strip, int]] = []
     top = HEADER
-    for strip, high, across in zip(strips, tall, columns, strict=True):
-        _section(canvas, strip, top)
-        top += SECTION
-        for first in range(0, len(strip.captions), across):
-            shown = range(first, min(first + across, len(strip.captions)))
-            floor = stage(high, cell * len(shown), high - FLOOR_ROOM, SCALE)
-            canvas.paste(floor, MARGIN, top, floor.shape[1], high)
-            for place, index in enumerate(shown):
-                left = MARGIN + place * cell
-                _caption(canvas, strip.captions[index], left, top + high, cell)
-                figures.append((left, top, high, strip.postures[index], strip.turn_rad))
-            top += high + LABELS
-        top += GAP
+    for shelf, height in zip(shelves, heights, strict=True):
+        left = MARGIN
+        for strip in shelf:
+            figures += _lay(canvas, strip, left, top)
+            left += strip.width + BETWEEN
+        top += height
     image = canvas.image()
-    for left, top, high, posture, turn in figures:
-        ground = posture.translation * [1.0, 1.0, 0.0] @ view_axes(turn, TILT_RAD)[:2].T
-        centre = (0.5 * cell - SCALE * ground[0], high - FLOOR_ROOM + SCALE * ground[1])
-        tile = image[top : top + high, left : left + cell]
-        tile[:] = draw_mannequin(tile, body, posture, View(turn, TILT_RAD, SCALE, centre))
+    for left, top, strip, index in figures:
+        posture = strip.postures[index]
+        ground = posture.translation * [1.0, 1.0, 0.0] @ view_axes(strip.turn_rad, TILT_RAD)[:2].T
+        centre = (
+            0.5 * strip.cell - SCALE * (ground[0] + strip.middle_m),
+            strip.high - FLOOR_ROOM + SCALE * ground[1],
+        )
+        tile = image[top : top + strip.high, left : left + strip.cell]
+        tile[:] = draw_mannequin(tile, body, posture, View(strip.turn_rad, TILT_RAD, SCALE, centre))
     return image
+
+
+def _lay(canvas: Canvas, strip: _Strip, left: int, top: int) -> list[tuple[int, int, _Strip, int]]:
+    """Draw a strip without its figures; where these go: left, top, strip, and which of its postures."""
+    _section(canvas, strip, left, top)
+    figures = []
+    for first in range(0, len(strip.captions), strip.columns):
+        shown = range(first, min(first + strip.columns, len(strip.captions)))
+        y = top + SECTION + strip.row * (first // strip.columns)
+        floor = stage(strip.high, strip.cell * len(shown), strip.high - FLOOR_ROOM, SCALE)
+        canvas.paste(floor, left, y, floor.shape[1], strip.high)
+        for place, index in enumerate(shown):
+            x = left + place * strip.cell
+            _caption(canvas, strip.captions[index], x, y + strip.high, strip.cell)
+            figures.append((x, y, strip, index))
+    return figures
+
+
+def _packed(strips: Sequence[_Strip]) -> list[list[_Strip]]:
+    """Strips side by side as long as they fit, in their order."""
+    shelves: list[list[_Strip]] = []
+    room = 0
+    for strip in strips:
+        if not shelves or strip.width + BETWEEN > room:
+            shelves.append([])
+            room = WIDTH + BETWEEN
+        shelves[-1].append(strip)
+        room -= strip.width + BETWEEN
+    return shelves
 
 
 def _strips(library: Library, body: Body) -> list[_Strip]:
     strips = []
     for motion in library.motions:
-        postures = Posture.stack([library.by_name[step.posture].posture for step in motion.steps])
-        captions = tuple((step.posture, f"{step.time_s:.2f} s") for step in motion.steps)
-        strips.append(
-            _Strip(
-                motion.name, _detail(motion), motion.cyclic, captions, postures, showing_turn(body, postures)
-            )
-        )
+        postures = [library.by_name[step.posture] for step in motion.steps]
+        times = [f"{step.time_s:.2f} s" for step in motion.steps]
+        strips.append(_strip(body, motion.name, _detail(motion), motion.cyclic, postures, times))
     placed = {step.posture for motion in library.motions for step in motion.steps}
     loose = [posture for posture in library.postures if posture.name not in placed]
     if loose:
-        postures = Posture.stack([posture.posture for posture in loose])
-        captions = tuple((posture.name, ", ".join(posture.tags)) for posture in loose)
         title = "Postures in no motion" if library.motions else "Postures"
-        strips.append(_Strip(title, "in any order", False, captions, postures, showing_turn(body, postures)))
+        tags = [", ".join(posture.tags) for posture in loose]
+        strips.append(_strip(body, title, "in any order", False, loose, tags))
     return strips
 
 
-def _ground(strip: _Strip) -> Array:
-    """(K, 2) where the floor under each figure's hips lies in the view [m]."""
-    flat = strip.postures.translation * [1.0, 1.0, 0.0]
-    return np.asarray(flat @ view_axes(strip.turn_rad, TILT_RAD)[:2].T)
+def _strip(
+    body: Body,
+    title: str,
+    detail: str,
+    cyclic: bool,
+    entries: Sequence[LibraryPosture],
+    below: Sequence[str],
+) -> _Strip:
+    postures = Posture.stack([entry.posture for entry in entries])
+    turn = showing_turn(body, postures)
+    flat = postures.translation * [1.0, 1.0, 0.0] @ view_axes(turn, TILT_RAD)[:2].T
+    seen = outermost(body, postures, turn) - flat[:, None]
+    left, right = float(seen[..., 0].min()) - FLESH_M, float(seen[..., 0].max()) + FLESH_M
+    cell = int(np.clip(SCALE * (right - left) + 8, NARROWEST, WIDEST))
+    high = int(SCALE * (float(seen[..., 1].max()) + FLESH_M)) + 8 + FLOOR_ROOM
+    captions = tuple(
+        (plain(_within(title, entry.name)), plain(words)) for entry, words in zip(entries, below, strict=True)
+    )
+    middle = 0.5 * (left + right)
+    return _Strip(plain(title), plain(detail), cyclic, captions, postures, turn, middle, cell, max(high, 60))
+
+
+def _within(title: str, name: str) -> str:
+    """A posture's name in the strip of a motion: without the motion's name before a colon."""
+    before, colon, rest = name.partition(":")
+    return rest.strip() if colon and rest.strip() and before.casefold() == title.casefold() else name
 
 
 def _detail(motion: LibraryMotion) -> str:
@@ -124,14 +196,16 @@ def _detail(motion: LibraryMotion) -> str:
 
 
 def _header(canvas: Canvas, library: Library) -> None:
-    canvas.text(_plain(library.title), MARGIN, 38.0, 17.0, INK)
+    canvas.text(plain(library.title), MARGIN, 38.0, 17.0, INK)
     words = (
         f"{library.identifier}, version {library.version}   "
         f"{len(library.postures)} postures, {len(library.motions)} motions   "
         f"by {library.author}   {library.license}   figure of {library.actor.stature_m:.2f} m"
     )
-    canvas.text(_plain(words), MARGIN, 58.0, 8.5, GREY)
-    canvas.text(_cut(_plain(library.description), canvas.width - 2 * MARGIN - 260.0), MARGIN, 76.0, 8.5, GREY)
+    canvas.text(plain(words), MARGIN, 58.0, 8.5, GREY)
+    canvas.text(
+        cut(plain(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5), MARGIN, 76.0, 8.5, GREY
+    )
     sides: tuple[tuple[str, Color, bool], ...] = (("right, banded", RIGHT, True), ("left", LEFT, False))
     x = float(canvas.width - MARGIN)
     for word, color, banded in sides:
@@ -143,15 +217,14 @@ def _header(canvas: Canvas, library: Library) -> None:
         x -= 46.0
 
 
-def _section(canvas: Canvas, strip: _Strip, top: int) -> None:
+def _section(canvas: Canvas, strip: _Strip, left: int, top: int) -> None:
     base = top + SECTION - 11.0
-    title = _plain(strip.title)
-    canvas.text(title, MARGIN, base, 11.0, INK)
-    x = MARGIN + canvas.text_width(title, 11.0) + 16.0
+    canvas.text(strip.title, left, base, 11.0, INK)
+    x = left + canvas.text_width(strip.title, 11.0) + 14.0
     if strip.cyclic:
         _loop(canvas, x + 7.0, base - 5.5)
         x += 22.0
-    canvas.text(_plain(strip.detail), x, base, 8.5, GREY)
+    canvas.text(strip.detail, x, base, 8.5, GREY)
 
 
 def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
@@ -166,29 +239,13 @@ def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
 
 
 def _caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, width: int) -> None:
-    name, time = caption
-    middle = left + 0.5 * width
-    letters = max(int((width - 10) / canvas.text_width("n", LETTER)), 8)
-    line_y = base + 13.0
-    for line in _wrapped(_plain(name), letters):
-        canvas.text(line, middle, line_y, LETTER, INK, "middle")
-        line_y += 11.5
-    canvas.text(_cut(_plain(time), width - 8.0), middle, line_y + 1.0, 7.5, GREY, "middle")
+    name, below = caption
+    middle, y = left + 0.5 * width, base + 13.0
+    for line in _name_lines(name, width):
+        canvas.text(line, middle, y, LETTER, INK, "middle")
+        y += LINE
+    canvas.text(cut(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GREY, "middle")
 
 
-def _wrapped(text: str, letters: int) -> Sequence[str]:
-    lines = textwrap.wrap(text, letters) or [""]
-    return lines if len(lines) <= 3 else [*lines[:2], lines[2][: letters - 3] + "..."]
-
-
-def _cut(text: str, width: float) -> str:
-    if Canvas.text_width(text, 8.5) <= width:
-        return text
-    while text and Canvas.text_width(text + "...", 8.5) > width:
-        text = text[:-1]
-    return text.rstrip() + "..."
-
-
-def _plain(text: str) -> str:
-    """The text in the letters that can be drawn."""
-    return unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+def _name_lines(name: str, width: int) -> Sequence[str]:
+    return wrapped(name, width - 10.0, LETTER, MOST_LINES)

@@ -61,6 +61,11 @@ def view_axes(turn_rad: float, tilt_rad: float) -> Array:
     return np.stack([right, np.cross(right, away), away])
 
 
+def _spacing_m(view: View) -> float:
+    """How far points of the skin lie apart, in few steps, so that views of like scale share a skin [m]."""
+    return float(2.0 ** (np.floor(-4.0 * np.log2(DENSITY * FINER * view.scale)) / 4.0))
+
+
 def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Image:
     """A picture with a figure drawn onto it.
 
@@ -75,7 +80,7 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     """
     height, width = image.shape[:2]
     size = (height * FINER, width * FINER)
-    surface = mannequin_surface(body, 1.0 / (DENSITY * FINER * view.scale))
+    surface = mannequin_surface(body, _spacing_m(view))
     pose = body.pose(posture)
     place, towards = [], []
     for joint, skin in surface.parts:

@@ -93,7 +93,8 @@ def _limb(piece: Piece, kind: str, spacing_m: float) -> _Tube:
     inner = np.linspace(0.0, 1.0, max(int(length / spacing_m), 2))
     for way, end in ((-1.0, 0), (1.0, 1)):
         size = ROUNDING.get(kind, 0.85) * piece.half_widths[end].mean()
-        angle = np.linspace(0.0, 0.5 * np.pi, max(int(1.6 * size / spacing_m), 4))[1:]
+        widest = max(size, float(piece.half_widths[end].max()))
+        angle = np.linspace(0.0, 0.5 * np.pi, max(int(1.6 * widest / spacing_m), 4))[1:]
         share.append(end + way * np.sin(angle) * size / length)
         width.append(np.cos(angle)[:, None] * piece.half_widths[end])
     shares = np.concatenate([share[0][::-1], inner, share[1]])

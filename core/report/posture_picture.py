@@ -22,8 +22,12 @@ BEHIND_M = 0.45
 """The wall stands so far behind the figure."""
 TURNS_RAD = np.radians(np.arange(-80.0, 81.0, 10.0))
 """Views from the front half: faces are seen."""
-USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.05
+USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.10
 """People preferably look to the right of the picture: so much is lost for every radian away from there."""
+SHORTEST = 0.15
+"""A limb that looks shorter than this share of its length is as good as hidden."""
+WORST, WORST_COUNTS = 5, 0.3
+"""So many of a posture's limbs, those that look shortest, speak against a view."""
 FLESH_M = 0.07
 """How far skin reaches beyond the joints."""
 
@@ -43,7 +47,7 @@ def posture_picture(body: Body, posture: Posture) -> Image:
     left, right = float(seen[:, 0].min()) - FLESH_M, float(seen[:, 0].max()) + FLESH_M
     free = SIZE - 2 * EDGE
     scale = min(free / (high - low), free / (right - left), free / (1.08 * body.actor.stature_m))
-    centre = (0.5 * SIZE - scale * 0.5 * (left + right), 0.5 * SIZE + scale * 0.5 * (low + high))
+    centre = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE + scale * low)
     view = View(turn, TILT_RAD, scale, centre)
     return draw_mannequin(stage(SIZE, SIZE, centre[1] - scale * floor_y, scale), body, posture, view)
 
@@ -74,14 +78,21 @@ def showing_turn(body: Body, postures: Posture) -> float:
 
 
 def _shown(body: Body, postures: Posture, turn_rad: float, heading_rad: float) -> float:
-    """How far apart joints, hands and feet lie in a view, over all postures [of their distance in space]."""
+    """How well limbs show in a view, over all postures: far apart, and not pointing at the eye."""
+    axes = view_axes(turn_rad, TILT_RAD)[:2]
     places = _places(body, postures)
-    seen = places @ view_axes(turn_rad, TILT_RAD)[:2].T
+    pose = body.pose(postures)
+    ends = [body.segment_ends(pose, segment.name) for segment in body.skeleton.segments]
+    limbs = np.stack([end - start for start, end in ends], axis=1)  # (K, S, 3)
+    apart = places[:, :, None] - places[:, None]
+    aside = _length(apart @ axes.T).mean() / _length(apart).mean()
+    share = np.maximum(_length(limbs @ axes.T) / _length(limbs), SHORTEST)
+    worst = np.sort(np.log(share), axis=1)[:, :WORST].mean()
+    return float(aside + WORST_COUNTS * worst - UNUSUAL * abs(turn_rad - heading_rad - USUAL_RAD))
 
-    def apart(points: Array) -> float:
-        return float(np.linalg.norm(points[:, :, None] - points[:, None], axis=-1).mean())
 
-    return apart(seen) / apart(places) - UNUSUAL * abs(turn_rad - heading_rad - USUAL_RAD)
+def _length(vector: Array) -> Array:
+    return np.asarray(np.linalg.norm(vector, axis=-1))
 
 
 def outermost(body: Body, postures: Posture, turn_rad: float) -> Array:

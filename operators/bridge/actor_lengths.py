@@ -1,6 +1,7 @@
 """An actor's sizes from an armature's bones, whatever the armature's rest pose."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
+from ...core.body.rotations import hinge
 from ...core.body.skeleton import Placement, Skeleton
 from ...core.errors import InputError
 from .bones import BoneModel, bone_models
@@ -21,8 +23,17 @@ ANY_STATURE_M = 1.7
 """Bones' axes do not depend on sizes; any actor yields them."""
 
 
+SAME_DIRECTION = 1e-3
+"""Length of the difference of two unit vectors that still point the same way."""
+LEAST_ROLL_RAD = 1e-4
+"""A smaller roll is rounding."""
+
+
 def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
     """The skeleton's bones, parents first, of an armature that has them all.
+
+    Bones of a T pose at rest may be rolled about their own length: their axes are then as they are. Of
+    another rest pose nothing tells roll from pose, and it counts as posed.
 
     Raises:
         InputError: The object is no armature, or lacks bones.
@@ -38,7 +49,23 @@ def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tup
             f"armature '{armature_object.name}' lacks the bones {', '.join(missing)}; "
             "build an actor with Keymark and keep its bones' names"
         )
-    return models
+    return _as_rolled(models, bones)
+
+
+def _as_rolled(
+    models: tuple[BoneModel, ...], bones: "bpy.types.bpy_prop_collection[bpy.types.Bone]"
+) -> tuple[BoneModel, ...]:
+    """The bones with the rolls that an armature has at rest; as they are where it rests in another pose."""
+    rolled = []
+    for model in models:
+        rest = np.array(bones[model.name].matrix_local, dtype=np.float64)[:3, :3]
+        turn = model.axes.T @ rest  # at rest in a T pose all joints' frames are the object's own
+        if model.chain and np.linalg.norm(turn[:, 1] - [0.0, 1.0, 0.0]) > SAME_DIRECTION:
+            return models
+        roll = float(np.arctan2(turn[0, 2], turn[0, 0]))
+        about = hinge(np.array([0.0, 1.0, 0.0]), np.array(roll))
+        rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > LEAST_ROLL_RAD else model)
+    return tuple(rolled)
 
 
 def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:

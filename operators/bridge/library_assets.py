@@ -6,12 +6,14 @@ whatever file they are. What an animator changes counts: curves, name and tags o
 """
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import bpy
 
+from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from ...core.files.json_file import parse_json
@@ -19,6 +21,7 @@ from ...core.library.library import Library, LibraryPosture
 from ...core.library.library_fields import LONGEST_TAG
 from ...core.library.library_file import library_from_json, library_to_json
 from ...core.library.texts import LONGEST_NAME, text_fault, told_apart
+from ...core.report.canvas import Image
 from ...core.report.posture_picture import posture_picture
 from .asset_catalogs import catalog_identifier
 from .assets import AssetDetails, mark_action
@@ -42,23 +45,50 @@ def catalog_of(library: Library, posture: LibraryPosture) -> str:
     return "/".join([CATALOGS, *("".join("-" if a in ":/\\" else a for a in name) for name in names)])
 
 
-def add_assets(library: Library, data: bpy.types.BlendData | None = None) -> list[bpy.types.Action]:
-    """An Action for each posture, in order, marked as asset; in the open file by default."""
-    return [add_asset(library, posture, order, data) for order, posture in enumerate(library.postures)]
+def draw_pictures(library: Library) -> Iterator[Image]:
+    """The picture of each posture, in order; one takes about a tenth of a second."""
+    return (posture_picture(_body(library), posture.posture) for posture in library.postures)
+
+
+def add_assets(
+    library: Library, data: bpy.types.BlendData | None = None, pictures: Iterable[Image] | None = None
+) -> list[bpy.types.Action]:
+    """An Action for each posture, in order, marked as asset.
+
+    Args:
+        library: The library.
+        data: Where to; the open file by default.
+        pictures: Of each posture; drawn by default.
+    """
+    drawn = draw_pictures(library) if pictures is None else pictures
+    return [
+        add_asset(library, posture, order, picture, data)
+        for order, (posture, picture) in enumerate(zip(library.postures, drawn, strict=True))
+    ]
 
 
 def add_asset(
-    library: Library, posture: LibraryPosture, order: int, data: bpy.types.BlendData | None = None
+    library: Library,
+    posture: LibraryPosture,
+    order: int,
+    picture: Image | None = None,
+    data: bpy.types.BlendData | None = None,
 ) -> bpy.types.Action:
-    """An Action for a posture of a library, marked as asset."""
+    """An Action for a posture of a library, marked as asset; its picture is drawn by default."""
     action = (data or bpy.data).actions.new(posture.name)
-    write_posture_curves(action, Body(library.actor), posture.posture)
-    show_asset(action, library, posture, order)
+    write_posture_curves(action, _body(library), posture.posture)
+    if picture is None:
+        picture = posture_picture(_body(library), posture.posture)
+    show_asset(action, library, posture, order, picture)
     return action
 
 
 def show_asset(
-    action: bpy.types.Action, library: Library, posture: LibraryPosture, order: int, *, draw: bool = True
+    action: bpy.types.Action,
+    library: Library,
+    posture: LibraryPosture,
+    order: int,
+    picture: Image | None = None,
 ) -> None:
     """Let an Action say which posture of which library it is: to people, and to `library_from_assets`.
 
@@ -67,7 +97,7 @@ def show_asset(
         library: The library, or one that says the same of itself.
         posture: What the Action's curves show, under its name.
         order: Its place among the library's postures.
-        draw: Whether its picture is drawn too.
+        picture: (S, S, 3) blue, green, red; None keeps the one it has.
     """
     details = AssetDetails(
         catalog=catalog_identifier(catalog_of(library, posture)),
@@ -76,16 +106,21 @@ def show_asset(
         license=library.license,
         description=library.description,
     )
-    mark_action(action, details, posture_picture(Body(library.actor), posture.posture) if draw else None)
+    mark_action(action, details, picture)
     alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
     asset = {"name": action.name, "tags": _asset_tags(action)}
     action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
-    stamp_header(action, header_text(library))
+    stamp_header(action, _header_text(library))
 
 
 def header_text(library: Library) -> str:
     """All of a library but its postures, as text."""
-    return _text({**library_to_json(library), "postures": []})
+    return _text(library_to_json(replace(library, postures=())))
+
+
+@lru_cache(maxsize=4)
+def _header_text(library: Library) -> str:
+    return header_text(library)
 
 
 def stamp_header(action: bpy.types.Action, header: str) -> None:
@@ -110,7 +145,7 @@ def read_asset(action: bpy.types.Action) -> LibraryPosture:
     if len(library.postures) != 1:
         raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
     stored = library.postures[0]
-    shown = read_posture_curves(action, Body(library.actor), stored.posture)
+    shown = read_posture_curves(action, _body(library), stored.posture)
     if shown is None:
         raise InputError(f"{where}: none of its curves turns a bone of Keymark's actors")
     asset = own.get("asset")
@@ -132,18 +167,27 @@ def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, .
     Raises:
         InputError: What an Action says of itself is not what Keymark writes.
     """
+    return tuple(_joined(members) for members in assets_by_library(actions).values())
+
+
+def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
+    """The pose assets of each library, in its order, by its identifier; other Actions are passed over.
+
+    Raises:
+        InputError: What an Action says of itself is not what Keymark writes.
+    """
     found: dict[str, list[bpy.types.Action]] = {}
     for action in actions:
         if is_posture(action):
             found.setdefault(str(_fields(action, HEADER).get("identifier")), []).append(action)
-    return tuple(_joined(members) for members in found.values())
+    return {identifier: sorted(members, key=_order) for identifier, members in found.items()}
 
 
 def _joined(actions: Sequence[bpy.types.Action]) -> Library:
     header = max((_fields(action, HEADER) for action in actions), key=_version)
     postures: list[LibraryPosture] = []
     now: dict[str, str] = {}
-    for action in sorted(actions, key=_order):
+    for action in actions:
         posture = read_asset(action)
         name = told_apart(posture.name, [other.name for other in postures])
         now.setdefault(stored_name(action), name)
@@ -196,6 +240,16 @@ def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
     return parse_json(text, f"{_where(action)}: its property {name}")
+
+
+def _body(library: Library) -> Body:
+    """Who was posed; the same for all libraries of the same lengths, so that bones and skin are made once."""
+    return _body_of(tuple(library.actor.segments_m.items()))
+
+
+@lru_cache(maxsize=4)
+def _body_of(lengths: tuple[tuple[str, float], ...]) -> Body:
+    return Body(Actor(dict(lengths)))
 
 
 def _is_named(action: bpy.types.Action, name: Any) -> bool:

@@ -1,7 +1,7 @@
 """Keyframe libraries as .blend files of pose assets with their catalogs: written, and read from strangers."""
 
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from ...core.errors import ConversionError, InputError
 from ...core.files.output_folder import output_folder
 from ...core.library.library import Library
 from ...core.library.library_fields import MOST_POSTURES
+from ...core.report.canvas import Image
 from .asset_catalogs import NAME, ensure_catalog
 from .library_assets import add_assets, catalog_of, is_posture, library_from_assets
 
@@ -20,7 +21,9 @@ BEGINNINGS = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
 """Of .blend files: plain, and packed in the two ways that Blender knows."""
 
 
-def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
+def write_library_blend(
+    path: Path, library: Library, root: Path | None = None, pictures: Iterable[Image] | None = None
+) -> None:
     """Write a library's pose assets and nothing else into a .blend, and its catalogs into their file.
 
     The open file is not touched. Both files appear whole, or neither.
@@ -30,6 +33,7 @@ def write_library_blend(path: Path, library: Library, root: Path | None = None) 
         library: What to write.
         root: Folder of the asset library that `path` lies in, whose catalogs are kept there; by default that
             of the .blend itself.
+        pictures: Of each posture; drawn by default.
 
     Raises:
         InputError: The file of catalogs is of another kind, or nothing can be written there.
@@ -39,7 +43,7 @@ def write_library_blend(path: Path, library: Library, root: Path | None = None) 
     with output_folder(root) as new, bpy.data.temp_data() as data:
         if (root / NAME).exists():
             shutil.copyfile(root / NAME, new / NAME)
-        actions = add_assets(library, data)
+        actions = add_assets(library, data, pictures)
         for action, posture in zip(actions, library.postures, strict=True):
             action.asset_data.catalog_id = ensure_catalog(new / NAME, catalog_of(library, posture))
         blend = new / path.relative_to(root)

@@ -12,8 +12,9 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
+from ...core.estimate.keyframe_evidence import uncalibrated
 from ...core.estimate.placing import place_standing
-from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame, uncalibrated
+from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame
 from ...core.estimate.terms.regions import ObservedRegions
 from ...core.footage.marker_style import MarkerStyle
 from ...core.footage.one_frame import regions_of_frame

@@ -5,11 +5,13 @@ every bone in the rotation mode it is built with. Blender's own pose library app
 """
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind
@@ -46,9 +48,20 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
     """
     slot = action.slots.new(id_type="OBJECT", name=SLOT)
     channelbag = action.layers.new("Layer").strips.new(type="KEYFRAME").channelbag(slot, ensure=True)
-    for bone, values in channel_values(body, posture).items():
-        for (path, index), value in zip(_channels(body, bone, len(values)), values, strict=True):
-            set_posed_keys(channelbag, path, index, bone, np.array([FRAME]), np.array([value]))
+    values = channel_values(body, posture)
+    for model in _models(body):
+        if model.chain:
+            for (path, index), value in zip(_channels(body, model), values[model.name], strict=True):
+                set_posed_keys(channelbag, path, index, model.name, np.array([FRAME]), np.array([value]))
+
+
+def rewrite_posture_curves(action: bpy.types.Action, actor: Actor, posture: Posture) -> None:
+    """Give a pose asset the curves of another posture; it has no others afterwards."""
+    for slot in list(action.slots):
+        action.slots.remove(slot)
+    for layer in list(action.layers):
+        action.layers.remove(layer)
+    write_posture_curves(action, Body(actor), posture)
 
 
 def read_posture_curves(
@@ -69,7 +82,7 @@ def read_posture_curves(
     modes: dict[str, str] = {}
     changed: list[str] = []
     found = False
-    for model in bone_models(body):
+    for model in _models(body):
         modes[model.name] = usual_mode(body.skeleton, model)
         if not model.chain:
             continue
@@ -92,23 +105,32 @@ def read_posture_curves(
 def channel_values(body: Body, posture: Posture) -> Values:
     """What the curves of a single posture hold."""
     batch = Posture.stack([posture])
-    models = bone_models(body)
+    models = _models(body)
     values: Values = {}
     modes = {model.name: usual_mode(body.skeleton, model) for model in models}
-    for channel in channels_at_rest(models, rest_matrices(body), AT_ORIGIN, batch):
+    for channel in channels_at_rest(models, _rest(body), AT_ORIGIN, batch):
         turn = rotation_values(channel.rotation, modes[channel.bone])[0]
         place = () if channel.location is None else channel.location[0]
         values[channel.bone] = np.concatenate([turn, place])
     return values
 
 
-def _channels(body: Body, bone: str, count: int) -> list[tuple[str, int]]:
+def _channels(body: Body, model: BoneModel) -> list[tuple[str, int]]:
     """Data path and index of each of a bone's values."""
-    model = next(model for model in bone_models(body) if model.name == bone)
-    path = bone_path(bone, rotation_path(usual_mode(body.skeleton, model)))
-    turning = channel_count(usual_mode(body.skeleton, model))
-    places = [(bone_path(bone, "location"), index) for index in range(count - turning)]
-    return [*((path, index) for index in range(turning)), *places]
+    mode = usual_mode(body.skeleton, model)
+    path = bone_path(model.name, rotation_path(mode))
+    places = [(bone_path(model.name, "location"), index) for index in range(3 if model.is_root else 0)]
+    return [*((path, index) for index in range(channel_count(mode))), *places]
+
+
+@lru_cache(maxsize=4)
+def _models(body: Body) -> tuple[BoneModel, ...]:
+    return bone_models(body)
+
+
+@lru_cache(maxsize=4)
+def _rest(body: Body) -> Mapping[str, Array]:
+    return rest_matrices(body)
 
 
 def _fcurves(action: bpy.types.Action) -> list[bpy.types.FCurve]:
@@ -159,8 +181,9 @@ def _usable(values: Array, otherwise: Array, mode: str) -> Array:
 
 
 def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
-    models = bone_models(body)
-    rig = rig_at_rest(body, rest_matrices(body), modes, AT_ORIGIN)
+    models = _models(body)
+    axes = {model.name: model.axes for model in models}
+    rig = rig_at_rest(body, axes, _rest(body), modes, AT_ORIGIN)
     shown = rig.show([values[bone.name][None] for bone in rig.bones])
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
@@ -173,7 +196,7 @@ def _with_joints(body: Body, stored: Posture, shown: Posture, bones: list[str]) 
     skeleton = body.skeleton
     rotations, angles = stored.rotations.copy(), stored.angles.copy()
     translation = stored.translation
-    for model in bone_models(body):
+    for model in _models(body):
         if model.name not in bones:
             continue
         translation = shown.translation if model.is_root else translation

@@ -29,7 +29,7 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
     Raises:
         InputError: A bone is missing, the object is scaled unevenly, or the armature is not the file's own.
     """
-    skeleton_bones(armature_object, body.skeleton)  # has them all
+    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
     models = bone_models(body)
     scale = object_space(armature_object).scale
     _check_own(armature_object)
@@ -40,7 +40,7 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
     frames: dict[str, Array] = {}
     for model in models:
         bone = bones[model.name]
-        frames[model.name] = np.array(bone.matrix_local, dtype=np.float64)[:3, :3] @ model.axes.T
+        frames[model.name] = np.array(bone.matrix_local, dtype=np.float64)[:3, :3] @ axes[model.name].T
         if model.parent is None:
             head = np.array(bone.head_local, dtype=np.float64)
         else:

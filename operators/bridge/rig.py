@@ -24,26 +24,31 @@ def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
     """
-    names = [model.name for model in skeleton_bones(armature_object, body.skeleton)]
+    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
+    names = list(axes)
     bones = armature_object.data.bones
     rest = {name: np.array(bones[name].matrix_local, dtype=np.float64) for name in names}
     modes = {name: armature_object.pose.bones[name].rotation_mode for name in names}
-    return rig_at_rest(body, rest, modes, object_space(armature_object))
+    return rig_at_rest(body, axes, rest, modes, object_space(armature_object))
 
 
 def rig_at_rest(
-    body: Body, rest: Mapping[str, np.ndarray], modes: Mapping[str, str], space: ObjectSpace
+    body: Body,
+    axes: Mapping[str, np.ndarray],
+    rest: Mapping[str, np.ndarray],
+    modes: Mapping[str, str],
+    space: ObjectSpace,
 ) -> Rig:
     """The same for any bones.
 
     Args:
         body: Skeleton and sizes.
+        axes: (3, 3) each bone's axes in its joint's frame.
         rest: (4, 4) each bone's place and axes at rest, in the object's space.
         modes: Rotation mode of each bone.
         space: Where the object stands.
     """
     models = bone_models(body)
-    axes = {model.name: model.axes for model in models}
     turning = [model for model in models if model.chain]
     names = [model.name for model in turning]
     bones = []

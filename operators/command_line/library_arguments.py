@@ -58,20 +58,35 @@ def _add_makers(inner: "Commands[LineParser]") -> None:
         inner,
         "merge",
         "join two libraries",
-        "Writes the postures and motions of both libraries as one. What has the same name in both and "
-        "differs is kept of both, the second's under another name.",
+        "Writes the postures and motions of both libraries as one, on the proportions of the first. Two "
+        "versions of one library are merged by name; different libraries become a new one, in which "
+        "postures of the same name get a number.",
         _merge,
     )
     merge.add_argument("library", metavar="A", help=f"{NAME}, which gives title, author and proportions")
     merge.add_argument("other", metavar="B", help=NAME)
+    merge.add_argument(
+        "--conflicts",
+        choices=("keep", "replace"),
+        help="of two versions: what of A has changed in B is kept, or replaced; by default they are named "
+        "and nothing is written",
+    )
+    merge.add_argument("--title", metavar="TEXT", help="of the new library; by default that of both")
+    merge.add_argument(
+        "--identifier", metavar="NAME", help="of the new library; by default made of the title"
+    )
     mirror = add_command(
         inner,
         "mirror",
         "exchange left and right",
-        "Writes a library with left and right exchanged in every posture and motion.",
+        "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
+        "itself; it is for posing.",
         _mirror,
     )
     mirror.add_argument("library", metavar="LIBRARY", help=NAME)
+    mirror.add_argument(
+        "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
+    )
     learn = add_command(
         inner,
         "learn",

@@ -44,5 +44,15 @@ def redraw_sidebars_soon() -> None:
         timers.register(_settle, first_interval=SETTLING_S)
 
 
+def refresh_asset_browsers(context: bpy.types.Context) -> None:
+    """Let open asset browsers look again at what assets and catalogs there are."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.ui_type == "ASSETS":
+                with context.temp_override(window=window, area=area):
+                    if bpy.ops.asset.library_refresh.poll():
+                        bpy.ops.asset.library_refresh()
+
+
 def _settle() -> None:
     redraw_sidebars(bpy.context)

@@ -98,6 +98,16 @@ def weak_frames(context: bpy.types.Context) -> str | None:
     return None if len(take.review.weak_frames) else "No frame needs another keyframe"
 
 
+def a_library_here(context: bpy.types.Context) -> str | None:
+    """A keyframe library is made in this file."""
+    return None if len(context.scene.keymark.libraries) else "Begin a keyframe library first"
+
+
+def a_shelved_library(context: bpy.types.Context) -> str | None:
+    """There is a keyframe library at hand."""
+    return None if len(context.window_manager.keymark_shelf.libraries) else "Import a keyframe library first"
+
+
 def object_mode_possible(context: bpy.types.Context) -> str | None:
     """No object is being edited."""
     active = context.view_layer.objects.active

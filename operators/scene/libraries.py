@@ -14,31 +14,21 @@ if TYPE_CHECKING:
     from ...core.body.actor import Actor
     from ...core.library.library import Library, LibraryMotion, LibraryPosture
 
-Group = bpy.types.PropertyGroup
 SEPARATOR = ", "
+NOBODY = "Unknown"
+"""Author of a library that says none."""
 _silent: list[None] = []
 """Not empty while many properties change, so that pose assets follow once and not at each."""
 
 
-@contextmanager
-def changing(group: Group) -> Iterator[None]:
-    """Change much of a scene's library at once; its pose assets follow at the end."""
-    _silent.append(None)
-    try:
-        yield
-    finally:
-        _silent.pop()
-    show_again(group)
-
-
-def find_library_here(scene: bpy.types.Scene) -> Group | None:
+def find_library_here(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     """The library that is worked on in a scene; None where there is none."""
     settings = scene.keymark
     count = len(settings.libraries)
     return settings.libraries[min(settings.active_library, count - 1)] if count else None
 
 
-def library_here(scene: bpy.types.Scene) -> Group:
+def library_here(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     """The same.
 
     Raises:
@@ -50,27 +40,36 @@ def library_here(scene: bpy.types.Scene) -> Group:
     return library
 
 
-def active_posture(library: Group) -> Group | None:
+def active_posture(library: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
     """The posture chosen in a library's list."""
     chosen = library.active_posture
     return library.postures[chosen] if chosen < len(library.postures) else None
 
 
-def active_motion(library: Group) -> Group | None:
+def active_motion(library: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
     """The motion chosen in a library's list."""
     chosen = library.active_motion
     return library.motions[chosen] if chosen < len(library.motions) else None
 
 
-def add_library(scene: bpy.types.Scene, library: "Library") -> Group:
-    """Make a library one of the scene's, its postures pose assets of the file; it becomes the active one."""
+def add_library(
+    scene: bpy.types.Scene, library: "Library", actions: Sequence[bpy.types.Action] | None = None
+) -> bpy.types.PropertyGroup:
+    """Make a library one of the scene's; it becomes the active one.
+
+    Args:
+        scene: The scene.
+        library: The library.
+        actions: The pose assets of its postures, where the file has them already; made by default.
+    """
     from ..bridge.library_assets import add_assets
 
     settings = scene.keymark
     group = settings.libraries.add()
-    with changing(group):
+    with _quiet():
         describe(group, library)
-        for posture, action in zip(library.postures, add_assets(library), strict=True):
+        assets = add_assets(library) if actions is None else actions
+        for posture, action in zip(library.postures, assets, strict=True):
             add_posture_to(group, posture, action)
         for motion in library.motions:
             add_motion_to(group, motion)
@@ -78,7 +77,7 @@ def add_library(scene: bpy.types.Scene, library: "Library") -> Group:
     return group
 
 
-def describe(group: Group, library: "Library") -> None:
+def describe(group: bpy.types.PropertyGroup, library: "Library") -> None:
     """Let a scene's library say what a library says of itself."""
     group.actor = json.dumps(dict(library.actor.segments_m))
     group.identifier, group.name, group.version = library.identifier, library.title, library.version
@@ -90,7 +89,9 @@ def describe(group: Group, library: "Library") -> None:
         group.sources.add().text = source
 
 
-def add_posture_to(group: Group, posture: "LibraryPosture", action: bpy.types.Action) -> Group:
+def add_posture_to(
+    group: bpy.types.PropertyGroup, posture: "LibraryPosture", action: bpy.types.Action
+) -> bpy.types.PropertyGroup:
     """Put a posture at the end of a library's list."""
     entry = group.postures.add()
     entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
@@ -99,7 +100,7 @@ def add_posture_to(group: Group, posture: "LibraryPosture", action: bpy.types.Ac
     return entry
 
 
-def add_motion_to(group: Group, motion: "LibraryMotion") -> Group:
+def add_motion_to(group: bpy.types.PropertyGroup, motion: "LibraryMotion") -> bpy.types.PropertyGroup:
     """Put a motion at the end of a library's list."""
     entry = group.motions.add()
     entry.duration_exact = repr(motion.duration_s)
@@ -113,7 +114,7 @@ def add_motion_to(group: Group, motion: "LibraryMotion") -> Group:
     return entry
 
 
-def library_of(group: Group) -> "Library":
+def library_of(group: bpy.types.PropertyGroup) -> "Library":
     """A scene's library as it is now: what the pose assets show, under what the properties say.
 
     Postures whose asset has been deleted are left out, and so are the steps that lead to them. A name or tags
@@ -132,7 +133,7 @@ def library_of(group: Group) -> "Library":
     return library
 
 
-def postures_of(group: Group) -> "dict[str, LibraryPosture]":
+def postures_of(group: bpy.types.PropertyGroup) -> "dict[str, LibraryPosture]":
     """The postures of a scene's library, in order, by the names in its list.
 
     Raises:
@@ -154,7 +155,12 @@ def postures_of(group: Group) -> "dict[str, LibraryPosture]":
     return found
 
 
-def actor_of_library(group: Group) -> "Actor":
+def draft(group: bpy.types.PropertyGroup) -> "Library":
+    """What a scene's library says of itself, unchecked and without postures: it may not be complete yet."""
+    return _said(group, {})
+
+
+def actor_of_library(group: bpy.types.PropertyGroup) -> "Actor":
     """Whom a library's postures were posed on."""
     from ...core.body.actor import Actor
     from ...core.files.json_file import parse_json
@@ -162,7 +168,7 @@ def actor_of_library(group: Group) -> "Actor":
     return Actor(parse_json(group.actor or "{}", f"library '{group.name}': actor"))
 
 
-def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
+def show_again(group: bpy.types.PropertyGroup, drawn: Sequence[bpy.types.PropertyGroup] = ()) -> None:
     """Let every pose asset say its name, its tags, its place and its library as they are now.
 
     Args:
@@ -172,6 +178,8 @@ def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
     Raises:
         InputError: An asset is not what Keymark has written.
     """
+    from ...core.body.kinematics import Body
+    from ...core.report.posture_picture import posture_picture
     from ..bridge.library_assets import show_asset
 
     postures = postures_of(group)
@@ -183,11 +191,12 @@ def show_again(group: Group, drawn: Sequence[Group] = ()) -> None:
             entry.named = entry.name = posture.name
             entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
             entry.action.name = posture.name
-            draw = any(entry == other for other in drawn)
-            show_asset(entry.action, library, posture, order, draw=draw)
+            again = any(entry == other for other in drawn)
+            picture = posture_picture(Body(library.actor), posture.posture) if again else None
+            show_asset(entry.action, library, posture, order, picture)
 
 
-def details_changed(part: Group) -> None:
+def details_changed(part: bpy.types.PropertyGroup) -> None:
     """Let the pose assets of a library say what its properties say now, after a part of it was changed.
 
     Raises:
@@ -198,13 +207,13 @@ def details_changed(part: Group) -> None:
     group = None if _silent else _library_with(part)
     if group is None:
         return
-    header = header_text(_said(group, postures_of(group)))
+    header = header_text(library_of(group))
     for entry in group.postures:
         if entry.action is not None:
             stamp_header(entry.action, header)
 
 
-def posture_changed(entry: Group) -> None:
+def posture_changed(entry: bpy.types.PropertyGroup) -> None:
     """Let the motions and the pose asset follow a posture's name, which stays unique, and its tags.
 
     Raises:
@@ -231,7 +240,7 @@ def _quiet() -> Iterator[None]:
         _silent.pop()
 
 
-def _library_with(part: Group) -> Group | None:
+def _library_with(part: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
     """The scene's library that a part of one belongs to: a motion, a step, a line; None for none."""
     for library in part.id_data.keymark.libraries:
         if part == library or any(part == other for other in _parts(library)):
@@ -239,7 +248,7 @@ def _library_with(part: Group) -> Group | None:
     return None
 
 
-def _rename_steps(group: Group, before: str, now: str) -> None:
+def _rename_steps(group: bpy.types.PropertyGroup, before: str, now: str) -> None:
     if before == now:
         return
     for motion in group.motions:
@@ -248,7 +257,7 @@ def _rename_steps(group: Group, before: str, now: str) -> None:
                 step.posture = now
 
 
-def _said(group: Group, postures: "Mapping[str, LibraryPosture]") -> "Library":
+def _said(group: bpy.types.PropertyGroup, postures: "Mapping[str, LibraryPosture]") -> "Library":
     """What a scene's library says of itself, unchecked."""
     from ...core.library.library import Library
 
@@ -256,7 +265,7 @@ def _said(group: Group, postures: "Mapping[str, LibraryPosture]") -> "Library":
         identifier=group.identifier.strip(),
         title=group.name.strip(),
         version=group.version,
-        author=group.author.strip(),
+        author=group.author.strip() or NOBODY,
         license=group.license.strip(),
         actor=actor_of_library(group),
         postures=tuple(postures.values()),
@@ -267,22 +276,25 @@ def _said(group: Group, postures: "Mapping[str, LibraryPosture]") -> "Library":
     )
 
 
-def _motions(group: Group, known: Mapping[str, str]) -> "Iterable[LibraryMotion]":
+def _motions(group: bpy.types.PropertyGroup, known: Mapping[str, str]) -> "Iterable[LibraryMotion]":
     from ...core.library.library import LibraryMotion, MotionStep
 
     for entry in group.motions:
-        rows = sorted((step for step in entry.steps if step.posture in known), key=lambda row: row.time_s)
-        if not rows:
-            continue
-        times = [float(row.time_exact or 0.0) for row in rows]
-        steps = [
-            MotionStep(known[row.posture], time_s - times[0]) for row, time_s in zip(rows, times, strict=True)
+        there = [
+            (float(step.time_exact or 0.0), known[step.posture])
+            for step in entry.steps
+            if step.posture in known
         ]
-        travel = tuple(float(getattr(entry, f"travel_{name}_exact") or 0.0) for name in ("x", "y", "turn"))
+        if not there:
+            continue
+        there.sort(key=lambda step: step[0])
+        steps = tuple(MotionStep(posture, time_s - there[0][0]) for time_s, posture in there)
+        travel = (0.0, 0.0, 0.0)
+        if entry.cyclic:
+            x, y, turn = entry.travel_x_exact, entry.travel_y_exact, entry.travel_turn_exact
+            travel = (float(x or 0.0), float(y or 0.0), float(turn or 0.0))
         duration_s = float(entry.duration_exact or 0.0)
-        yield LibraryMotion(
-            entry.name.strip(), tuple(steps), duration_s, entry.cyclic, travel if entry.cyclic else (0.0,) * 3
-        )
+        yield LibraryMotion(entry.name.strip(), steps, duration_s, entry.cyclic, travel)
 
 
 def _tags(text: str, exact: tuple[str, ...]) -> tuple[str, ...]:
@@ -294,7 +306,7 @@ def _split(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(tag.strip() for tag in text.split(",") if tag.strip()))
 
 
-def _parts(library: Group) -> Iterable[Group]:
+def _parts(library: bpy.types.PropertyGroup) -> Iterable[bpy.types.PropertyGroup]:
     yield from library.sources
     yield from library.postures
     for motion in library.motions:

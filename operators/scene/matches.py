@@ -79,7 +79,7 @@ def clear_choice(matching: bpy.types.PropertyGroup) -> None:
     """Forget what was found; what is to be looked for stays."""
     for name in ("ranking", "matches"):
         getattr(matching, name).clear()
-    for name in ("reason", "fit", "active_match"):
+    for name in ("reason", "fit", "floor_found", "active_match"):
         matching.property_unset(name)
 
 
@@ -118,6 +118,8 @@ def keep_choice(
         chance.name, chance.probability = library.title, probability
     if found is not None:
         matching.fit = found.fit
+        if found.floor_m is not None:
+            matching.floor_found = found.floor_m
         known = {frame.index: frame.candidates for frame in found.frames}
         free = [each for each in keyframes if not has_frame(posed, float(clip_frames[each.index]))]
         _keep_matches(take, free, known, clip_frames)
@@ -135,7 +137,8 @@ def _keep_matches(
         if matched is not None:
             match = add_match(take, float(clip_frames[keyframe.index]), matched.library)
             add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
-            for other in known.get(keyframe.index, ())[1:]:
+            others = known.get(keyframe.index, ())[1:]
+            for other in sorted(others, key=lambda other: -other.confidence):
                 add_candidate(match, other.posture, other.name, other.mirrored, other.confidence)
     if keyframes:
         frames = clip_frames[[keyframe.index for keyframe in keyframes]]

@@ -70,7 +70,7 @@ def test_a_library_file_comes_back_from_assets_to_the_last_byte(library: Library
 
 
 def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path) -> None:
-    """The open file is as before, both after writing and after reading; only pose assets are in the .blend."""
+    """The open file is as before, after writing and after reading; only pose assets are in the .blend."""
     first = file_bytes(library, tmp_path)
     mine = bpy.data.actions.new("Midstance")
     before = set(bpy.data.user_map())

@@ -1,5 +1,8 @@
 """Matching in a scene: what is keyed, what is kept, and what the animator does with it."""
 
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
@@ -10,7 +13,8 @@ from keymark.core import match_take as matching
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.library.library import Library, LibraryPosture
+from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from keymark.core.library.library_file import write_library
 from keymark.core.match_take import LibraryChoice
 from keymark.core.motion import Motion
 from keymark.core.prior.matching.candidate import Candidate, MatchedFrame
@@ -48,6 +52,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
     return SimpleNamespace(
         library=library(motion),
         fit=0.75,
+        floor_m=0.02,
         frames=tuple(
             MatchedFrame(
                 index,
@@ -72,6 +77,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         takes=[],
         floors=[],
         error=None,
+        meanwhile=lambda: None,
     )
 
     def match(take, reading, libraries, floor_m=None, keyframe_count=None):  # noqa: ANN001, ANN202
@@ -79,6 +85,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         asked.floors.append(floor_m)
         for step in range(3):
             yield Progress("Matching Waves", step / 3)
+        asked.meanwhile()
         if asked.error:
             raise asked.error
         return asked.choice
@@ -119,7 +126,7 @@ def test_matched_postures_are_keyed_and_kept(matched: Group, wave_motion: Motion
         ("Waves", 0.97),
         ("Walking", 0.02),
     ]
-    assert (state.reason, state.fit) == ("It is", 0.75)
+    assert (state.reason, state.fit, round(state.floor_found, 6)) == ("It is", 0.75, 0.02)
     match = state.matches[1]
     assert (match.frame, match.library, match.candidate.name) == (7.0, "waves", "Wave 6")
     assert [each.is_doubtful for each in state.matches] == [False, True, False]
@@ -175,6 +182,16 @@ def test_footage_that_fits_nothing_says_so(matched: Group, given: SimpleNamespac
     assert keyframes_of(take) == () and len(take.matching.matches) == 0
     assert take.matching.reason == "None of the 2 libraries fits"
     assert len(take.matching.ranking) == 2
+
+
+def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: SimpleNamespace) -> None:
+    """The user interface stays alive meanwhile: the match of that frame comes too late."""
+    before = shown(unposed, 7)
+    given.meanwhile = bpy.ops.keymark.store_keyframe
+    bpy.ops.keymark.match_library()
+    take = active_take(bpy.context.scene)
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-5)
 
 
 def test_the_floor_is_handed_on(unposed: Group, given: SimpleNamespace) -> None:
@@ -279,3 +296,37 @@ def test_without_an_actor_nothing_can_be_matched(tiny_take: Take) -> None:
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.match_library()
+
+
+def test_the_menu_holds_what_is_on_the_shelf_and_what_was_chosen(unposed: Group) -> None:
+    """A file may come from a machine that had another library; then it says which one is missing."""
+    state = unposed.matching
+    assert state.library == "auto"
+    state.library = "walking"
+    assert state.library_name == "walking"
+    state.library_name = "dragging a cart"
+    assert state.library == "dragging a cart"
+    with pytest.raises(RuntimeError, match="no keyframe library 'dragging a cart'"):
+        bpy.ops.keymark.match_library(library=state.library_name)
+    state.library = "walking"
+    assert state.library_name == "walking"
+
+
+def test_footage_is_matched_with_a_library_file(
+    unposed: Group,
+    wave_motion: Motion,
+    tmp_path: Path,
+    shown_points: Callable[[bpy.types.Object], np.ndarray],
+) -> None:
+    """The way as a whole: the library's postures stand where the performer stood when they were drawn."""
+    steps = tuple(MotionStep(f"Wave {i}", i / 25.0) for i in (0, 6, 12))
+    waves = replace(library(wave_motion), motions=(LibraryMotion("wave", steps, 12 / 25.0),))
+    write_library(tmp_path / "waves.json", waves)
+    assert bpy.ops.keymark.match_library(library=str(tmp_path / "waves.json")) == {"FINISHED"}
+    take = active_take(bpy.context.scene)
+    assert len(matched_frames(take)) >= 2 and take.matching.fit > 0.5
+    for frame in (1, 13):
+        bpy.context.scene.frame_set(frame)
+        apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
+        assert apart.mean() < 0.15
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}

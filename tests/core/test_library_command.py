@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -132,6 +133,41 @@ def test_what_is_made_of_libraries_is_one(
     assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "out.json")]
     assert len(read_library(tmp_path / "out.json").postures) >= 3
     assert (shelf / "any name.json").read_bytes() == before
+
+
+def test_two_versions_are_merged_only_as_told(
+    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What has changed is named and nothing written, until somebody says which of them counts."""
+    mine = small_library()
+    first, *others = mine.postures
+    moved = replace(first, posture=others[0].posture)
+    theirs = replace(mine, version=mine.version + 1, postures=(moved, *others))
+    write_library(tmp_path / "theirs.json", theirs)
+    words = ("merge", "small_steps", tmp_path / "theirs.json", "--output", tmp_path / "out.json")
+    assert run(*words) == 2
+    assert first.name in capsys.readouterr().err and not (tmp_path / "out.json").exists()
+    for choice, wanted in (("keep", first), ("replace", moved)):
+        assert run(*words, "--conflicts", choice, "--replace", "--quiet") == 0
+        got = read_library(tmp_path / "out.json").by_name[first.name].posture
+        assert np.abs(got.minus(wanted.posture)).max() < 1e-8
+
+
+def test_different_libraries_become_a_new_one(
+    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With everything of both, and an identifier of its own."""
+    write_library(tmp_path / "other.json", replace(small_library(), identifier="other", title="Other"))
+    words = ("merge", "small_steps", tmp_path / "other.json", "--output", tmp_path / "out.json")
+    assert run(*words, "--title", "Both of Them", "--quiet") == 0
+    both = read_library(tmp_path / "out.json")
+    assert (both.identifier, both.title) == ("both_of_them", "Both of Them")
+
+
+def test_both_sides_fit_in_one_library(tmp_path: Path) -> None:
+    """With --both the postures that a mirror shows are added."""
+    assert run("mirror", "small_steps", "--both", "--output", tmp_path / "out.json", "--quiet") == 0
+    assert len(read_library(tmp_path / "out.json").postures) == 6
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.standing import standing_posture
 from keymark.core.library.library import LibraryMotion, MotionStep
 from keymark.core.report.canvas import LEFT, RIGHT
-from keymark.core.report.library_sheet import library_sheet
+from keymark.core.report.library_sheet import MARGIN, WIDTH, library_sheet
 from keymark.core.report.mannequin import View, draw_mannequin
 from keymark.core.report.posture_picture import SIZE, posture_picture
 
@@ -70,22 +70,32 @@ def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, f
 
 
 def test_every_posture_is_on_the_sheet() -> None:
-    """A strip for each motion and one for what belongs to none; letters that cannot be drawn do no harm."""
+    """Figures for each step of each motion and for what belongs to none; any letters do."""
     library = small_library()
-    sheet = library_sheet(library)
-    more = replace(library, title="Schritte 歩く", motions=library.motions[1:], description="ö" * 500)
-    assert abs(library_sheet(more).shape[0] - sheet.shape[0]) < 30
-    fewer = library_sheet(replace(library, motions=library.motions[:1]))
-    assert fewer.shape[0] < sheet.shape[0]
-    strip = sheet[:, : sheet.shape[1] // 8 + 20]
-    assert alike(strip, LEFT).sum() > 500 and alike(strip, RIGHT).sum() > 500
+    both, first, none = (
+        library_sheet(replace(library, motions=motions, title="Schritte 歩く", description="ö" * 500))
+        for motions in (library.motions, library.motions[:1], ())
+    )
+    shown = [int(alike(sheet[90:], RIGHT).sum()) for sheet in (both, first, none)]
+    assert shown[0] == pytest.approx(5.0 / 3.0 * shown[1], rel=0.25)
+    assert shown[1] == pytest.approx(shown[2], rel=0.25)
 
 
 def test_a_long_motion_goes_on_in_the_next_row() -> None:
     """More postures than fit beside each other are divided evenly."""
     library = small_library()
     names = [posture.name for posture in library.postures]
-    steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(14))
+    steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(18))
     long = library_sheet(replace(library, motions=(LibraryMotion("Long", steps, 2.0),)))
-    short = library_sheet(replace(library, motions=(LibraryMotion("Short", steps[:7], 2.0),)))
-    assert long.shape[1] == short.shape[1] and long.shape[0] > 1.5 * short.shape[0]
+    short = library_sheet(replace(library, motions=(LibraryMotion("Short", steps[:9], 2.0),)))
+    assert long.shape[1] <= WIDTH + 2 * MARGIN and long.shape[0] > short.shape[0] + 150
+
+
+def test_short_motions_lie_side_by_side() -> None:
+    """Two that fit one row do not take two."""
+    library = small_library()
+    one, other = library.motions[0], replace(library.motions[0], name="Again")
+    sheets = [library_sheet(replace(library, motions=motions)) for motions in ((one,), (one, other))]
+    assert sheets[0].shape[0] == sheets[1].shape[0]
+    drawn = [int(alike(sheet[90:], RIGHT).sum()) for sheet in sheets]
+    assert drawn[1] == pytest.approx(2.0 * drawn[0], rel=0.05)

@@ -121,3 +121,13 @@ def test_removing_leaves_nothing_behind(bare_blender: Blender, package: Path) ->
     extensions = bare_blender.user / "extensions"
     assert not (extensions / "user_default" / "keymark").exists()
     assert list(extensions.glob(".local/lib/python*/site-packages/cv2")) == []
+
+
+def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) -> None:
+    """Every keyframe library of the repository can be named, and none of them is broken."""
+    done = blender.run("--command", "keymark", "library", "list", "--json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    listed = {row["identifier"]: row for row in json.loads(done.stdout)["libraries"]}
+    shipped = {file.stem for file in (repository / "presets" / "keyframes").glob("*.json")}
+    assert "walking" in shipped and shipped <= set(listed)
+    assert all(listed[name]["problem"] == "" and listed[name]["postures"] >= 10 for name in shipped)

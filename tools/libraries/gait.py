@@ -20,7 +20,7 @@ from .solving import BODY, ankle_of, hips_height
 
 Array = NDArray[np.float64]
 
-RATE_HZ = 200.0
+RATE_HZ = 100.0
 STANCE = 0.61
 """Share of a cycle for which a foot is on the floor."""
 LEADS = 0.25
@@ -35,6 +35,12 @@ SWING_HEIGHT = {0.0: (1.0, 0.0, 0.0), 0.12: (1.0, 0.0, 0.04), 0.35: (0.7, 0.1, 0
 SWING_HEIGHT |= {0.8: (0.0, 0.9, 0.012), 1.0: (0.0, 1.0, 0.0)}
 """An ankle's height after a share of the swing: shares of its height at toe off and at heel strike, and
 metres for a stride of a metre and a half."""
+
+
+_SWING_PLACE, _SWING_HEIGHT = (
+    PchipInterpolator(list(keys), np.array(list(keys.values()), dtype=float), axis=0)
+    for keys in (SWING_PLACE, SWING_HEIGHT)
+)
 
 
 @dataclass(frozen=True)
@@ -173,7 +179,7 @@ class Walk:
         capped = np.minimum(allowed, lowest + HIPS_RISE_M)
         # Loading bends the knee: the hips sink on for a moment after the heel strikes.
         window = int(LOADING_S * RATE_HZ)
-        sunk = minimum_filter1d(capped, window, mode="nearest", origin=window // 2 - 1)
+        sunk = minimum_filter1d(capped, window, mode="nearest", origin=(window - 1) // 2)
         smooth = gaussian_filter1d(sunk, SMOOTH_S * RATE_HZ, mode="nearest")
         return np.asarray(np.minimum(smooth, allowed))
 
@@ -205,8 +211,8 @@ class Walk:
         share = (time_s - before.lift_s) / (after.strike_s - before.lift_s)
         start = ankle_of(self._standing(before, before.lift_s), self.body)
         end = ankle_of(self._standing(after, after.strike_s), self.body)
-        gone = float(_curve(SWING_PLACE)(share))
-        high, low, extra = (float(v) for v in _curve(SWING_HEIGHT)(share))
+        gone = float(_SWING_PLACE(share))
+        high, low, extra = (float(v) for v in _SWING_HEIGHT(share))
         length = float(np.linalg.norm(end[:2] - start[:2]))
         place = start[:2] + gone * (end[:2] - start[:2])
         floor = 0.36 * self.body.actor.segments_m["foot.L"]
@@ -232,16 +238,12 @@ class Walk:
         )
 
 
-def steady(stride_m: float, stride_s: float, style: Style = Style(), cycles: int = 3) -> Walk:
+def steady(stride_m: float, stride_s: float, style: Style = Style()) -> Walk:
     """Walking straight ahead along -Y; the left heel strikes at time 0 with the hips at y = 0."""
     falls = []
-    for step in range(-4, 2 * cycles + 2):
+    for step in range(-4, 5):
         side, sign = ("L", 1.0) if step % 2 == 0 else ("R", -1.0)
         strike, ahead = 0.5 * step * stride_s, (0.5 * step + LEADS) * stride_m
         turn = sign * style.toes_out
         falls.append(Footfall(side, strike, strike + STANCE * stride_s, sign * style.apart_m, -ahead, turn))
     return Walk(falls, 0.5 * stride_s, style)
-
-
-def _curve(keys: dict) -> PchipInterpolator:  # type: ignore[type-arg]
-    return PchipInterpolator(list(keys), np.array(list(keys.values()), dtype=float), axis=0)

@@ -6,10 +6,8 @@ Joints beyond their range, feet that slide or sink, arms in the trunk.
 import numpy as np
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
-from keymark.core.body.rotations import hinge
 from keymark.core.library.library import Library, LibraryMotion
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.library.motion_course import course
 from numpy.typing import NDArray
 
 from .solving import BALL, HEEL
@@ -21,15 +19,9 @@ TRUNK_RADIUS_M = (0.15, 0.105)
 
 
 def over_time(library: Library, motion: LibraryMotion, rate_hz: float = 60.0) -> tuple[Posture, Array]:
-    """Postures along a motion, through a cycle and to its first posture again, and their times (T,) [s]."""
-    steps = [(library.by_name[step.posture].posture, step.time_s) for step in motion.steps]
-    if motion.cyclic:
-        steps.append((_advanced(steps[0][0], motion), motion.duration_s))
-    frames = [int(round(time_s * 1000.0)) for _, time_s in steps]
-    keys = tuple(Keyframe(frame, posture) for frame, (posture, _) in zip(frames, steps, strict=True))
-    times = np.arange(0.0, steps[-1][1] + 1e-9, 1.0 / rate_hz)
-    at = np.minimum(np.rint(times * 1000.0).astype(int), frames[-1])
-    return interpolate(keys, frames[-1] + 1)[at], times
+    """Postures along a motion, once through, and their times (T,) [s]."""
+    times = np.arange(0.0, motion.duration_s + 1e-9, 1.0 / rate_hz)
+    return course(library, motion, Body(library.actor), times), times
 
 
 def ranges_left(library: Library) -> list[str]:
@@ -102,12 +94,3 @@ def arms_in_trunk(body: Body, posture: Posture, limb_radius_m: float = 0.03) -> 
 
 def _transposed(matrices: Array) -> Array:
     return np.swapaxes(matrices, -1, -2)
-
-
-def _advanced(posture: Posture, motion: LibraryMotion) -> Posture:
-    """A cycle's first posture as it comes again."""
-    turn = hinge(np.array([0.0, 0.0, 1.0]), np.asarray(motion.travel[2]))
-    rotations = posture.rotations.copy()
-    rotations[0] = turn @ rotations[0]
-    place = turn @ posture.translation + np.array([motion.travel[0], motion.travel[1], 0.0])
-    return Posture(posture.skeleton, place, rotations, posture.angles)

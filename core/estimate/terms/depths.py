@@ -20,10 +20,12 @@ class DepthTerm:
     camera: Camera
     prior_depth: Array
     """(F, P) [m]."""
-    std_m: float = depths.DEPTH_STD_M
+    std_m: float | Array = depths.DEPTH_STD_M
+    """One for all or (F, 1)."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each point."""
         residual = depths.evaluate(state.body, self.camera, state.pose, state.frame) - self.prior_depth
         jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.chain
-        equations.add_rows(residual / self.std_m, jacobian / self.std_m)
+        std_m = np.asarray(self.std_m)
+        equations.add_rows(residual / std_m, jacobian / std_m[..., None])

@@ -18,14 +18,14 @@ DEGREES = 3.0
 """Of Student's t: leaps and stairs are forgiven."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GroundTerm:
     """The height of the lower of some points."""
 
     points: tuple[int, ...]
     """Which of the principal points: the ankles."""
-    height_m: float
-    """How high the lower one is while its foot is on the ground."""
+    height_m: float | Array
+    """How high the lower one is while its foot is on the ground; one height or (F,)."""
     std_m: float = 0.03
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

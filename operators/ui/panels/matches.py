@@ -10,9 +10,11 @@ from ...scene.takes import active_take
 from ..properties.match import DOUBTFUL, SURE
 from .base import TakePanel, draw_progress, draw_sentence
 
+WORTH_NAMING = 0.005
+"""Probability below which the second best kind of motion is none."""
 CLEAR = 0.6
 """Probability of a kind of motion above which nothing needs to be thought over."""
-FRAME_UNITS, PERCENT_UNITS = 2.0, 2.4
+FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
 NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
@@ -44,18 +46,17 @@ class KEYMARK_UL_matches(bpy.types.UIList):
         said = row.row()
         said.ui_units_x = PERCENT_UNITS
         said.alignment = "RIGHT"
-        if state == "MATCHED":
-            words = label("by hand") if item.by_hand else percent(item.confidence)
-        else:
-            words = label("posed") if state == "POSED" else label("no key")
+        words = {"POSED": label("posed"), "GONE": label("no key")}.get(state, percent(item.confidence))
         said.label(text=words, translate=False)
 
 
 def confidence_icon(match: bpy.types.PropertyGroup) -> str:
-    """How sure a match is, as a shape: a tick, a dot, a question mark."""
-    if match.by_hand or match.confidence >= SURE:
-        return "CHECKMARK"
-    return "QUESTION" if match.confidence < DOUBTFUL else "DOT"
+    """How sure a match is, as a shape: a hand that chose it, a tick, a dot, a question mark."""
+    if match.by_hand:
+        return "VIEW_PAN"
+    if match.confidence < DOUBTFUL:
+        return "QUESTION"
+    return "CHECKMARK" if match.confidence >= SURE else "DOT"
 
 
 def percent(share: float) -> str:
@@ -76,6 +77,10 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")
+        elif matching.is_property_set("floor_found"):
+            found = column.row()
+            found.enabled = False
+            found.prop(matching, "floor_found")
         row = column.row()
         row.scale_y = 1.2
         if not draw_progress(row, context, "keymark.match_library"):
@@ -83,33 +88,37 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
         _draw_choice(column, context, matching)
         if len(matching.matches):
             _draw_matches(column, matching)
-            _draw_candidates(column, matching)
+            _draw_candidates(column, active_take(context.scene))
 
 
 def _draw_choice(
     layout: bpy.types.UILayout, context: bpy.types.Context, matching: bpy.types.PropertyGroup
 ) -> None:
-    """Which library, how sure, and what comes next; why, where that is in doubt."""
+    """Which library, how sure, and what comes next; why, where that is in doubt or one alone was tried."""
     if not len(matching.ranking):
         return
     best, *others = matching.ranking
-    sure = bool(len(matching.matches)) and best.probability >= CLEAR
-    words = f"{best.name}, {percent(best.probability)}"
-    if others:
+    sure = min(best.probability, matching.fit) >= CLEAR
+    icon = "CHECKMARK" if sure else "QUESTION"
+    if others and others[0].probability < WORTH_NAMING:
+        words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+        draw_sentence(layout, context, words, icon)
+    elif others:
         words = label(
-            "{best}; next {other}, {percent:.0f} %",
-            best=words,
+            "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
+            best=best.name,
+            percent=100.0 * best.probability,
             other=others[0].name,
-            percent=100.0 * others[0].probability,
+            less=100.0 * others[0].probability,
         )
-    draw_sentence(layout, context, words, "CHECKMARK" if sure else "QUESTION")
-    if matching.reason and not sure:
-        draw_sentence(layout, context, matching.reason, "BLANK1")
+        draw_sentence(layout, context, words, icon)
+    if matching.reason and not (sure and others):
+        draw_sentence(layout, context, matching.reason, "BLANK1" if others else icon)
 
 
 def _draw_matches(layout: bpy.types.UILayout, matching: bpy.types.PropertyGroup) -> None:
     layout.template_list(
-        "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=4, maxrows=8
+        "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=3, maxrows=5
     )
     row = layout.row(align=True)
     row.operator("keymark.jump_to_match", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
@@ -118,8 +127,9 @@ def _draw_matches(layout: bpy.types.UILayout, matching: bpy.types.PropertyGroup)
     row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
 
 
-def _draw_candidates(layout: bpy.types.UILayout, matching: bpy.types.PropertyGroup) -> None:
+def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """What the chosen match's frame may show, each a button, and what else can be done with it."""
+    matching = take.matching
     if matching.active_match >= len(matching.matches):
         return
     match = matching.matches[matching.active_match]
@@ -140,7 +150,9 @@ def _draw_candidates(layout: bpy.types.UILayout, matching: bpy.types.PropertyGro
         said.alignment = "RIGHT"
         said.label(text=percent(candidate.confidence), translate=False)
     row = layout.row(align=True)
-    row.operator("keymark.accept_match", icon="CHECKMARK")
+    accept = row.row(align=True)
+    accept.enabled = state_of(take, match) == "MATCHED"
+    accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
 
 

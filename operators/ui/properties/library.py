@@ -9,20 +9,19 @@ from contextlib import suppress
 
 import bpy
 
-Group = bpy.types.PropertyGroup
 KEPT_DIGITS = 6
 """Of a number that was typed in: single precision has no more."""
 
 
-def _get(exact: str) -> Callable[[Group], float]:
-    def get(group: Group) -> float:
+def _get(exact: str) -> Callable[[bpy.types.PropertyGroup], float]:
+    def get(group: bpy.types.PropertyGroup) -> float:
         return float(getattr(group, exact) or 0.0)
 
     return get
 
 
-def _set(exact: str) -> Callable[[Group, float], None]:
-    def put(group: Group, value: float) -> None:
+def _set(exact: str) -> Callable[[bpy.types.PropertyGroup, float], None]:
+    def put(group: bpy.types.PropertyGroup, value: float) -> None:
         setattr(group, exact, repr(round(value, KEPT_DIGITS) + 0.0))
         _details_changed(group, bpy.context)
 
@@ -33,7 +32,7 @@ def _exact() -> "bpy.types.AnyType":
     return bpy.props.StringProperty(options={"HIDDEN"})
 
 
-def _details_changed(group: Group, context: bpy.types.Context) -> None:
+def _details_changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Let the pose assets say what the library says now."""
     from ....core.errors import InputError
     from ...scene.libraries import details_changed
@@ -42,7 +41,7 @@ def _details_changed(group: Group, context: bpy.types.Context) -> None:
         details_changed(group)
 
 
-def _posture_changed(posture: Group, context: bpy.types.Context) -> None:
+def _posture_changed(posture: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     from ....core.errors import InputError
     from ...scene.libraries import posture_changed
 
@@ -50,7 +49,7 @@ def _posture_changed(posture: Group, context: bpy.types.Context) -> None:
         posture_changed(posture)
 
 
-class KEYMARK_PG_library_line(Group):
+class KEYMARK_PG_library_line(bpy.types.PropertyGroup):
     """A line of text."""
 
     text: bpy.props.StringProperty(
@@ -60,11 +59,14 @@ class KEYMARK_PG_library_line(Group):
     )
 
 
-class KEYMARK_PG_library_posture(Group):
+class KEYMARK_PG_library_posture(bpy.types.PropertyGroup):
     """A posture: its name, and the pose asset that holds it."""
 
     name: bpy.props.StringProperty(
         name="Name", description="The posture's name, unique in its library", update=_posture_changed
+    )
+    selected: bpy.props.BoolProperty(
+        name="Selected", description="Mark the posture, for what is done with marked ones only", default=False
     )
     named: bpy.props.StringProperty(
         name="Named", description="The name that the motions know it by", options={"HIDDEN"}
@@ -82,7 +84,7 @@ class KEYMARK_PG_library_posture(Group):
     )
 
 
-class KEYMARK_PG_library_step(Group):
+class KEYMARK_PG_library_step(bpy.types.PropertyGroup):
     """A posture's place in a motion."""
 
     posture: bpy.props.StringProperty(
@@ -90,8 +92,8 @@ class KEYMARK_PG_library_step(Group):
     )
     time_exact: _exact()
     time_s: bpy.props.FloatProperty(
-        name="Time",
-        description="When, from the motion's beginning, in seconds",
+        name="Time (s)",
+        description="When, from the motion's beginning",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -101,7 +103,7 @@ class KEYMARK_PG_library_step(Group):
     )
 
 
-class KEYMARK_PG_library_motion(Group):
+class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
     """A usual way through postures."""
 
     name: bpy.props.StringProperty(name="Name", description="The motion's name", update=_details_changed)
@@ -112,8 +114,8 @@ class KEYMARK_PG_library_motion(Group):
     )
     duration_exact: _exact()
     duration_s: bpy.props.FloatProperty(
-        name="Duration",
-        description="Seconds that the motion takes; of a cyclic one until the first posture comes again",
+        name="Duration (s)",
+        description="How long the motion takes; of a cyclic one until the first posture comes again",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -153,7 +155,7 @@ class KEYMARK_PG_library_motion(Group):
     )
 
 
-class KEYMARK_PG_library(Group):
+class KEYMARK_PG_library(bpy.types.PropertyGroup):
     """A library that is made in this file."""
 
     identifier: bpy.props.StringProperty(
@@ -177,7 +179,7 @@ class KEYMARK_PG_library(Group):
     license: bpy.props.StringProperty(
         name="License",
         description="Under which terms others may use it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0",
-        default="CC0-1.0",
+        default="CC-BY-4.0",
         update=_details_changed,
     )
     description: bpy.props.StringProperty(

@@ -194,6 +194,12 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         min=-1.0,
         max=1.0,
     )
+    floor_found: bpy.props.FloatProperty(
+        name="Floor Found",
+        description="How high the floor lies that the performer was placed on by the last matching",
+        subtype="DISTANCE",
+        precision=3,
+    )
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(
         name="Match",

@@ -7,8 +7,9 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.body.standing import standing_posture
+from keymark.core.estimate.keyframe_evidence import uncalibrated
 from keymark.core.estimate.placing import place_standing
-from keymark.core.estimate.single_frame import FrameFit, fit_frame, uncalibrated
+from keymark.core.estimate.single_frame import FrameFit, fit_frame
 from keymark.core.estimate.terms.regions import ObservedRegions
 from keymark.core.footage.tracks import RegionTracks
 from keymark.core.prior.belief import (

@@ -12,6 +12,8 @@ from keymark.core.take import read_take
 
 pytestmark = pytest.mark.ui
 
+UNPOSED_MM = 150.0
+"""Error with hips aligned beyond which a motion is no likeness of the performer's."""
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = ("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish")
 """Each leaves at least one picture of this name."""
@@ -31,21 +33,26 @@ def takes(repository: Path) -> dict[str, Path]:
 TAKES = takes(Path(__file__).resolve().parents[3])
 
 
+def run_script(blender: Blender, name: str, *words: Path | str) -> None:
+    """Run a session's script in a Blender with a screen; it must go through."""
+    script = Path(__file__).with_name(name)
+    done = blender.run(
+        *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
+        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--", *words),
+        patience_s=PATIENCE_S,
+    )
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    assert "Traceback" not in done.stdout + done.stderr, done.stdout[-4000:] + done.stderr[-4000:]
+    assert "The script went through" in done.stdout
+
+
 @pytest.mark.parametrize("name", TAKES)
 def test_a_session_leads_to_the_command_lines_motion(
     blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path, name: str
 ) -> None:
     """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does."""
     folder = repository / "build" / "screenshots" / name
-    script = Path(__file__).with_name("session.py")
-    done = blender_on_screen.run(
-        *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
-        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--", TAKES[name], folder),
-        patience_s=PATIENCE_S,
-    )
-    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
-    assert "Traceback" not in done.stdout + done.stderr, done.stdout[-4000:] + done.stderr[-4000:]
-    assert "The script went through" in done.stdout
+    run_script(blender_on_screen, "session.py", TAKES[name], folder)
     pictures = " ".join(file.name for file in folder.glob("*.png"))
     assert [step for step in STEPS if f"_{step}" not in pictures] == []
 
@@ -58,6 +65,16 @@ def test_a_session_leads_to_the_command_lines_motion(
     )
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
+
+
+def test_a_motion_is_reconstructed_without_posing(blender_on_screen: Blender, repository: Path) -> None:
+    """Matching, replacing a match and reconstructing by mouse and keys lead near the truth."""
+    take = repository / "presets" / "demo" / "aerobic"
+    folder = repository / "build" / "screenshots" / "library"
+    run_script(blender_on_screen, "library_session.py", take, folder, "aerobic")
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in ("matched", "replaced", "unposed") if f"_{step}" not in pictures] == []
+    assert _score(folder / "motion.json", take).rooted < UNPOSED_MM
 
 
 def _score(motion: Path, folder: Path) -> Score:

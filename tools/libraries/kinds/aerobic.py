@@ -46,7 +46,7 @@ def library() -> Library:
     return work.library()
 
 
-def _standing(arms: Arm, bend: float = 8.0, trunk: float = 2.0) -> Moment:
+def _standing(arms: Arm, bend: float = 14.0, trunk: float = 2.0) -> Moment:
     return balanced_over(
         moment(arms=arms, legs=HIP_WIDE, bend=bend, pelvis=Turn(bow=trunk), waist=Turn(bow=1.0 + trunk))
     )
@@ -138,7 +138,7 @@ def _step_touches(work: Composer) -> None:
 
 
 def _knee_lifts(work: Composer) -> None:
-    """High knees with the opposite arm, with the arms wide, and marching on the spot."""
+    """High knees with the opposite arm to the front or bent up, and marching on the spot."""
 
     def lifted(hip: float, knee: float, left: Arm, right: Arm, turn: float) -> Moment:
         return balanced_over(
@@ -147,7 +147,7 @@ def _knee_lifts(work: Composer) -> None:
                 right_leg=CARRYING,
                 left_arm=left,
                 right_arm=right,
-                bend=7,
+                bend=14,
                 pelvis=Turn(bow=-0.07 * hip, lean=-0.05 * hip, turn=-0.06 * hip),
                 waist=Turn(bow=0.1 * hip, lean=0.07 * hip, turn=0.14 * turn),
                 neck=Turn(bow=-2),
@@ -158,8 +158,8 @@ def _knee_lifts(work: Composer) -> None:
 
     exercises = {
         "knee lift": (
-            lifted(52, 78, Arm(14, 20, 10, 50), Arm(34, 75, 20, 76), 52),
-            lifted(98, 108, Arm(-20, 110, 10, 68), Arm(70, 78, 24, 84), 98),
+            lifted(52, 78, Arm(30, 4, 12, 62), Arm(52, 70, 20, 60), 52),
+            lifted(98, 108, Arm(50, -12, 6, 80), _raised(88, 70, 42, 20), 98),
         ),
         "knee lift with wide arms": (
             lifted(52, 78, _raised(66, 14, 26), _raised(66, 16, 62, -40), 0),
@@ -190,7 +190,7 @@ def _knee_lifts(work: Composer) -> None:
 
 
 def _arm_raises(work: Composer) -> None:
-    """Arms alone: to the side, to the front, overhead, pressed up from the shoulders, and curled."""
+    """Arms alone: to the side, to the front, overhead, pressed up, drawn in, and curled."""
     for name, arms in (
         ("arms half to the side", _raised(48)),
         ("arms to the side", _raised(90, 6, 10)),
@@ -199,10 +199,11 @@ def _arm_raises(work: Composer) -> None:
         ("arms half forward", _raised(48, 84, 14)),
         ("arms forward", _raised(90, 86, 12)),
         ("hands at the shoulders", Arm(42, 40, -14, 142, 0, 4)),
+        ("elbows drawn in", Arm(20, 14, -48, 90)),
         ("arms half curled", Arm(10, 50, 6, 70, -50)),
         ("arms curled", Arm(16, 70, 6, 138, -60)),
     ):
-        work.pose(name, _standing(arms, bend=10 if "curled" in name else 8), "arms")
+        work.pose(name, _standing(arms, bend=18 if "curled" in name else 14), "arms")
     for name, path, hold in (
         ("side raise", ("arms half to the side", "arms to the side"), 1.0),
         ("front raise", ("arms half forward", "arms forward"), 1.0),
@@ -215,6 +216,8 @@ def _arm_raises(work: Composer) -> None:
     ):
         names = ["standing", *path, *reversed(path[:-1])]
         _counted(work, name, names, [hold * beat for beat in range(len(names) + 1)])
+    for name, top in (("pull down", "arms up and apart"), ("pull in", "arms to the side")):
+        _counted(work, name, ["elbows drawn in", top], (0.0, 1.0, 2.0))
     names = ["hands at the shoulders", "arms up and apart", "arms overhead", "arms up and apart"]
     _counted(work, "overhead press", names, (0.0, 0.5, 1.0, 1.5, 2.0))
 

@@ -52,6 +52,7 @@ def library() -> Library:
     _wobbling(work)
     _leg_away(work)
     _along_a_beam(work)
+    _swaying_step(work)
     _heel_to_toe(work)
     return work.library()
 
@@ -218,6 +219,53 @@ def _along_a_beam(work: Composer) -> None:
         Swing("reaching", 0.72, there, 1.12, 0.02, _out(70), _out(78), 2),
     )
     _steps(work, "beam walk", 0.50, 0.80, swings)
+
+
+def _swaying_step(work: Composer) -> None:
+    """A step of the beam walk that nearly fails: a leg is thrown out, the trunk and an arm against it."""
+    standing = Foot(0.02, -0.5, 5.0)
+
+    def on_left(
+        right: AnyLeg, arms: tuple[Arm, Arm], lean: float, bow: float, bend: float, come: float = 1.0
+    ) -> Moment:
+        weight = -0.5 * come + ALONG_FOOT_M
+        posed = moment(
+            y=weight,
+            left_leg=replace(standing, pitch=28.0 * (come - 1.0)),
+            right_leg=right,
+            left_arm=arms[0],
+            right_arm=arms[1],
+            bend=bend,
+            pelvis=Turn(bow=0.5 * bow, lean=0.5 * lean, turn=-4),
+            waist=Turn(bow=0.5 * bow, lean=0.5 * lean, turn=-4),
+            neck=Turn(bow=8, lean=-0.3 * lean),
+        )
+        return balanced_over(posed, 0.02, weight)
+
+    thrown = Leg(4, 32, 6, 12, 20)
+    for name, posed in (
+        ("leg thrown out", on_left(thrown, (_out(22, 24), _out(118, 30, 74, -40)), 32, 20, 30)),
+        (
+            "leg across",
+            on_left(
+                Foot(0.04, -0.74, 0.0, 10.0, 0.10),
+                (_out(26, 30), Arm(84, 66, 30, 88, 20, 8)),
+                12,
+                16,
+                26,
+                1.05,
+            ),
+        ),
+        (
+            "caught",
+            on_left(Foot(0.0, -0.98, -5.0), (_out(104, 10, 22), Arm(22, 40, 24, 66)), -6, 8, 16, 1.5),
+        ),
+    ):
+        work.pose(f"swaying step: {name}", posed, "beam", "wobble")
+    names = ("leg thrown out", "leg across", "caught")
+    steps = [(f"swaying step: {name}", 0.5 + 0.38 * k) for k, name in enumerate(names)]
+    begin = [("beam walk: both feet, right foot", 0.0), ("beam walk: toe off, right foot", 0.15)]
+    work.motion("swaying step", [*begin, *steps, ("beam walk: both feet, left foot", 1.6)])
 
 
 def _heel_to_toe(work: Composer) -> None:

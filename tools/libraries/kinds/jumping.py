@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-import numpy as np
 from keymark.core.library.library import Library
 
+from .. import hops
 from ..balance import balanced, flight, mass_of, thrown
 from ..composing import Composer
 from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
@@ -21,9 +21,9 @@ SOURCES = (
 )
 APART_M = 0.11
 """Half the distance between the feet of someone about to jump."""
-HIGH_S, FAR_S, ASTRIDE_S, HOP_S, SMALL_S, LEAP_S = 0.50, 0.46, 0.48, 0.22, 0.20, 0.40
+HIGH_S, FAR_S, ASTRIDE_S = 0.50, 0.46, 0.48
 """Times of flight: half a second is a jump of 31 cm."""
-FAR_M, LEAP_M = 1.25, 1.55
+FAR_M = 1.25
 """How far the mass flies."""
 
 HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=15.0)
@@ -38,22 +38,23 @@ def library() -> Library:
     made = Composer(
         "jumping",
         "Jumping",
-        "Jumps straight up, far, and astride with swinging arms; bouncing and hopping on the spot; a leap.",
+        "Jumps up, tucked, astride and far, with swinging arms; bouncing on the spot, hopping, a leap.",
         SOURCES,
         ("jumping",),
     )
     _up(made)
+    _tuck(made)
     _far(made)
     _astride(made)
-    _bounce(made)
-    _hop(made)
-    _leap(made)
+    hops.bounce(made)
+    hops.hop(made)
+    hops.leap(made)
     return made.library()
 
 
-def feet(pitch: float = 0.0, y: float = 0.0, apart_m: float = APART_M) -> Foot:
+def feet(pitch: float = 0.0, y: float = 0.0) -> Foot:
     """Both feet side by side, as the left one's place."""
-    return Foot(apart_m, y, 8.0, pitch)
+    return Foot(APART_M, y, 8.0, pitch)
 
 
 def crouched(
@@ -84,8 +85,18 @@ def on_toes(arms: Arm, y: float = 0.0, **others: float) -> Moment:
     )
 
 
+def leaving_upward() -> Moment:
+    """The last moment on the floor of a jump straight up."""
+    return on_toes(replace(UP, elevation=136.0, girdle=16.0))
+
+
+def landing() -> Moment:
+    """The first moment on the floor again."""
+    return crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+
+
 def _up(made: Composer) -> None:
-    off, on = on_toes(replace(UP, elevation=136.0, girdle=16.0)), crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    off, on = leaving_upward(), landing()
     start, end = mass_of(off), mass_of(on)
     rising = moment(arms=UP, legs=Leg(4.0, 4.0, 4.0, 9.0, 50.0), waist=Turn(-2.0), neck=Turn(-8.0))
     top = moment(
@@ -130,6 +141,36 @@ def _up(made: Composer) -> None:
             ("caught, knees deep", on_s + 0.20),
             ("straightening", on_s + 0.55),
             ("standing", on_s + 0.95),
+        ],
+    )
+
+
+def _tuck(made: Composer) -> None:
+    """Knees to the chest, with the jump up's beginning and end."""
+    tucked = moment(
+        arms=swung_arm(58.0, 26.0, rotation=30.0, elbow=62.0),
+        legs=Leg(104.0, 8.0, 4.0, 112.0, 15.0),
+        pelvis=Turn(6.0),
+        waist=Turn(24.0),
+        neck=Turn(-10.0),
+    )
+    start, end = mass_of(leaving_upward()), mass_of(landing())
+    made.pose("tuck: knees high", thrown(tucked, flight(start, end, HIGH_S, 0.5)))
+    off_s = 1.02
+    made.motion(
+        "tuck jump",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.36),
+            ("crouched, arms back", 0.66),
+            ("pushing off, arms pass", 0.81),
+            ("stretching, arms forward", 0.93),
+            ("toes leave the floor", off_s),
+            ("tuck: knees high", off_s + 0.5 * HIGH_S),
+            ("toes touch the floor", off_s + HIGH_S),
+            ("caught, knees deep", off_s + HIGH_S + 0.20),
+            ("straightening", off_s + HIGH_S + 0.55),
+            ("standing", off_s + HIGH_S + 0.95),
         ],
     )
 
@@ -224,7 +265,7 @@ def _far(made: Composer) -> None:
 def _astride(made: Composer) -> None:
     """A star in the air, with the jump up's beginning and end."""
     off = on_toes(Arm(elevation=62.0, plane=15.0, rotation=10.0, elbow=18.0, girdle=6.0))
-    on = crouched(28.0, 12.0, 10.0, OPEN, pitch=32.0)
+    on = landing()
     start, end = mass_of(off), mass_of(on)
     wide = Arm(elevation=128.0, plane=6.0, rotation=6.0, elbow=8.0, girdle=20.0)
     star = moment(arms=wide, legs=Leg(4.0, 38.0, 8.0, 8.0, 40.0), neck=Turn(-6.0))
@@ -253,171 +294,3 @@ def _astride(made: Composer) -> None:
             ("standing", on_s + 0.90),
         ],
     )
-
-
-def _bounce(made: Composer) -> None:
-    """Small jumps on the balls of both feet, as over a rope."""
-    arms = Arm(elevation=26.0, plane=30.0, rotation=14.0, elbow=58.0)
-
-    def down(bend: float, pitch: float) -> Moment:
-        legs = feet(pitch, apart_m=0.07)
-        return balanced(
-            moment(legs=legs, arms=arms, bend=bend, pelvis=Turn(5.0), waist=Turn(3.0)), ahead_m=0.04
-        )
-
-    low, off = down(34.0, 14.0), down(9.0, 44.0)
-    mass = mass_of(off)
-    air = moment(arms=replace(arms, elevation=31.0), legs=Leg(6.0, 0.0, 5.0, 12.0, 48.0), waist=Turn(3.0))
-    made.pose("bounce: lowest", low)
-    made.pose("bounce: toes leave the floor", off)
-    made.pose("bounce: highest", thrown(air, flight(mass, mass, SMALL_S, 0.5)))
-    made.motion(
-        "bounce on the spot",
-        [
-            ("bounce: lowest", 0.0),
-            ("bounce: toes leave the floor", 0.13),
-            ("bounce: highest", 0.13 + 0.5 * SMALL_S),
-            ("bounce: toes leave the floor", 0.13 + SMALL_S),
-        ],
-        0.26 + SMALL_S,
-        cyclic=True,
-    )
-
-
-def _hop(made: Composer) -> None:
-    """On the left leg, a little forward each time."""
-    ahead_m = 0.42
-
-    def down(bend: float, pitch: float, ahead: float, free: Leg, swing: float) -> Moment:
-        return balanced(
-            moment(
-                left_leg=Foot(0.0, 0.0, 6.0, pitch),
-                right_leg=free,
-                left_arm=swung_arm(swing, 30.0, elbow=52.0),
-                right_arm=swung_arm(0.6 * swing, 34.0, elbow=48.0),
-                bend=bend,
-                pelvis=Turn(9.0, -3.0),
-                waist=Turn(5.0, 4.0),
-                neck=Turn(-8.0),
-            ),
-            ahead_m=ahead,
-        )
-
-    low = down(44.0, 6.0, 0.02, Leg(22.0, 4.0, 0.0, 82.0, 20.0), -16.0)
-    off = down(12.0, 52.0, 0.15, Leg(44.0, 4.0, 0.0, 84.0, 20.0), 24.0)
-    on = down(24.0, 12.0, -0.10, Leg(24.0, 4.0, 0.0, 70.0, 20.0), 10.0)
-    start = mass_of(off)
-    end = mass_of(on) - np.array([0.0, ahead_m, 0.0])
-    air = moment(
-        left_leg=Leg(16.0, 0.0, 6.0, 34.0, 30.0),
-        right_leg=Leg(40.0, 4.0, 0.0, 82.0, 20.0),
-        arms=swung_arm(26.0, 36.0, elbow=50.0),
-        pelvis=Turn(6.0),
-        waist=Turn(4.0),
-    )
-    made.pose("hop: lowest", low)
-    made.pose("hop: toes leave the floor", off)
-    made.pose("hop: highest", thrown(air, flight(start, end, HOP_S, 0.5)))
-    landed = replace(on, y=on.y - ahead_m, legs={**on.legs, "L": Foot(0.0, -ahead_m, 6.0, 12.0)})
-    made.pose("hop: foot lands", landed)
-    made.motion(
-        "hop on the left leg",
-        [
-            ("hop: lowest", 0.0),
-            ("hop: toes leave the floor", 0.18),
-            ("hop: highest", 0.18 + 0.5 * HOP_S),
-            ("hop: foot lands", 0.18 + HOP_S),
-        ],
-        0.30 + HOP_S,
-        cyclic=True,
-        travel=(0.0, -ahead_m, 0.0),
-    )
-
-
-def _leap(made: Composer) -> None:
-    """From a run-up off the left foot over to the right one."""
-    plant = balanced(
-        moment(
-            left_leg=Foot(0.02, 0.0, 5.0, -10.0),
-            right_leg=Leg(-12.0, 0.0, 0.0, 62.0, 30.0),
-            left_arm=swung_arm(-34.0, 16.0, elbow=52.0),
-            right_arm=swung_arm(20.0, 16.0, elbow=70.0),
-            bend=24.0,
-            pelvis=Turn(2.0, 0.0, -6.0),
-            waist=Turn(2.0, 0.0, 12.0),
-        ),
-        ahead_m=-0.34,
-    )
-    drive = balanced(
-        moment(
-            left_leg=Foot(0.02, 0.0, 5.0, 4.0),
-            right_leg=Leg(42.0, 0.0, 0.0, 98.0, 20.0),
-            left_arm=swung_arm(8.0, 18.0, elbow=66.0),
-            right_arm=swung_arm(-8.0, 18.0, elbow=66.0),
-            bend=40.0,
-            pelvis=Turn(5.0),
-            waist=Turn(4.0),
-        ),
-        ahead_m=0.10,
-    )
-    off = balanced(
-        moment(
-            left_leg=Foot(0.02, 0.0, 5.0, 62.0),
-            right_leg=Leg(78.0, 0.0, 0.0, 92.0, 10.0),
-            left_arm=swung_arm(62.0, 20.0, elbow=62.0),
-            right_arm=swung_arm(-30.0, 24.0, elbow=50.0),
-            bend=12.0,
-            pelvis=Turn(6.0, 0.0, 6.0),
-            waist=Turn(2.0, 0.0, -12.0),
-        ),
-        ahead_m=0.44,
-    )
-    land_y = float(mass_of(off)[1]) - LEAP_M - 0.28
-    on = balanced(
-        moment(
-            left_leg=Leg(-6.0, 0.0, 0.0, 60.0, 30.0),
-            right_leg=Foot(-0.03, land_y, -5.0, -8.0),
-            left_arm=swung_arm(40.0, 30.0, elbow=50.0),
-            right_arm=swung_arm(-22.0, 32.0, elbow=44.0),
-            bend=26.0,
-            pelvis=Turn(10.0, 0.0, 4.0),
-            waist=Turn(6.0, 0.0, -8.0),
-        ),
-        ahead_m=-0.26,
-    )
-    caught = balanced(
-        moment(
-            left_leg=Leg(14.0, 0.0, 0.0, 96.0, 30.0),
-            right_leg=Foot(-0.03, land_y, -5.0, 0.0),
-            left_arm=swung_arm(18.0, 30.0, elbow=58.0),
-            right_arm=swung_arm(0.0, 32.0, elbow=52.0),
-            bend=52.0,
-            pelvis=Turn(16.0),
-            waist=Turn(10.0),
-            neck=Turn(-10.0),
-        ),
-        ahead_m=0.05,
-    )
-    start, end = mass_of(off), mass_of(on)
-    high = moment(
-        left_leg=Leg(-26.0, 0.0, 0.0, 42.0, 40.0),
-        right_leg=Leg(72.0, 0.0, 0.0, 58.0, 10.0),
-        left_arm=swung_arm(66.0, 34.0, elbow=44.0),
-        right_arm=swung_arm(-30.0, 48.0, elbow=36.0),
-        pelvis=Turn(8.0, 0.0, 6.0),
-        waist=Turn(4.0, 0.0, -10.0),
-    )
-    names = (
-        "left foot plants",
-        "knee drives up",
-        "toes leave the floor",
-        "highest",
-        "right foot lands",
-        "caught",
-    )
-    moments = (plant, drive, off, thrown(high, flight(start, end, LEAP_S, 0.5)), on, caught)
-    times = (0.0, 0.11, 0.22, 0.22 + 0.5 * LEAP_S, 0.22 + LEAP_S, 0.36 + LEAP_S)
-    steps = []
-    for name, at, time_s in zip(names, moments, times, strict=True):
-        steps.append((made.pose(f"leap: {name}", at), time_s))
-    made.motion("leap", steps)

@@ -1,9 +1,13 @@
-"""Jogging, running, and jogging on the spot."""
+"""Jogging, running, jogging on a belt and on the spot."""
 
 from keymark.core.library.library import Library
 
 from ..composing import Composer
+from ..moment import Moment
+from ..placing import moved
 from ..run import Pace, Run
+
+Phases = tuple[tuple[str, float], ...]
 
 PHASES = (
     ("left foot lands", 0.0),
@@ -19,23 +23,34 @@ PHASES = (
     ("right toe off", 0.88),
     ("flight to the left", 0.94),
 )
+FEWER_PHASES = (
+    ("left foot lands", 0.0),
+    ("left bears", 0.15),
+    ("left heel off", 0.28),
+    ("left toe off", 0.39),
+    ("right foot lands", 0.5),
+    ("right bears", 0.65),
+    ("right heel off", 0.78),
+    ("right toe off", 0.89),
+)
 SOURCES = (
     "Novacheck, T. F. (1998). The biomechanics of running. Gait and Posture 7.",
     "Hinrichs, R. N. (1987). Upper extremity function in running II: angular momentum considerations."
     " International Journal of Sport Biomechanics 3.",
 )
+JOG = Pace(
+    stride_m=1.95,
+    stride_s=0.74,
+    stance=0.38,
+    ahead_m=0.24,
+    hip={0.0: -4.0, 0.1: -5.0, 0.35: 22.0, 0.6: 41.0, 0.78: 44.0, 1.0: 33.0},
+    knee={0.0: 24.0, 0.15: 50.0, 0.42: 92.0, 0.6: 84.0, 0.82: 36.0, 1.0: 17.0},
+    landing_deg=17.0,
+    bow=9.0,
+    arms=26.0,
+)
 PACES = {
-    "jog": Pace(
-        stride_m=1.95,
-        stride_s=0.74,
-        stance=0.38,
-        ahead_m=0.24,
-        hip={0.0: -4.0, 0.1: -5.0, 0.35: 22.0, 0.6: 41.0, 0.78: 44.0, 1.0: 33.0},
-        knee={0.0: 24.0, 0.15: 50.0, 0.42: 92.0, 0.6: 84.0, 0.82: 36.0, 1.0: 17.0},
-        landing_deg=17.0,
-        bow=9.0,
-        arms=26.0,
-    ),
+    "jog": JOG,
     "run": Pace(
         stride_m=2.6,
         stride_s=0.68,
@@ -70,19 +85,30 @@ def library() -> Library:
     made = Composer(
         "running",
         "Running",
-        "Jogging, running, and jogging on the spot.",
+        "Jogging, running, jogging on a treadmill, and jogging on the spot.",
         SOURCES,
         ("running", "jogging"),
     )
     for name, pace in PACES.items():
-        phases = [(phase, _moved(share, pace.stance)) for phase, share in PHASES]
-        made.cycle(name, Run(pace).at, phases, pace.stride_s, (0.0, -pace.stride_m, 0.0))
+        phases = PHASES if pace.stride_m > 0.0 else FEWER_PHASES
+        made.cycle(name, Run(pace).at, _moved(phases, pace), pace.stride_s, (0.0, -pace.stride_m, 0.0))
+    made.cycle("jog on a treadmill", _on_a_belt, _moved(FEWER_PHASES, JOG), JOG.stride_s)
     return made.library()
 
 
-def _moved(share: float, stance: float) -> float:
-    """A phase of a runner whose feet bear for 0.38 of the cycle, for one with another stance."""
-    half, within = divmod(share, 0.5)
-    if within <= 0.38:
-        return float(0.5 * half + within * stance / 0.38)
-    return float(0.5 * half + stance + (within - 0.38) * (0.5 - stance) / 0.12)
+def _on_a_belt(phase: float) -> Moment:
+    """Jogging on a belt that takes back what the jogger gains."""
+    return moved(Run(JOG).at(phase), y=phase * JOG.stride_m)
+
+
+def _moved(phases: Phases, pace: Pace) -> list[tuple[str, float]]:
+    """The phases of a runner whose feet bear for 0.38 of the cycle, for one with another stance."""
+    shares = []
+    for name, share in phases:
+        half, within = divmod(share, 0.5)
+        if within <= 0.38:
+            at = within * pace.stance / 0.38
+        else:
+            at = pace.stance + (within - 0.38) * (0.5 - pace.stance) / 0.12
+        shares.append((name, 0.5 * half + at))
+    return shares

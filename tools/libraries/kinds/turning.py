@@ -31,6 +31,14 @@ PHASES = (
     ("left foot passes", 0.77),
     ("left foot reaches", 0.90),
 )
+SMALL_STEPS = (
+    ("left foot lands", 0.0),
+    ("right foot lifts", 0.13),
+    ("right foot passes", 0.30),
+    ("right foot lands", 0.5),
+    ("left foot lifts", 0.63),
+    ("left foot passes", 0.80),
+)
 ON_THE_SPOT = Style(arms=0.5, elbow=18.0, bow=3.0, toes_out=6.0, apart_m=0.085)
 SPOT_S, SPOT_DEG = 1.16, 90.0
 """A cycle of two steps on the spot, and how far it turns."""
@@ -91,7 +99,7 @@ def planted(
 
 def _on_the_spot(made: Composer) -> None:
     falls = []
-    for step in range(-4, 6):
+    for step in range(-4, 5):
         strike = 0.5 * step * SPOT_S
         heading = (0.5 * step + LEADS) * SPOT_DEG
         side = "L" if step % 2 == 0 else "R"
@@ -100,7 +108,7 @@ def _on_the_spot(made: Composer) -> None:
     made.cycle(
         "turn on the spot",
         lambda phase: leading(walk.at(phase * SPOT_S), 9.0, 16.0),
-        PHASES,
+        SMALL_STEPS,
         SPOT_S,
         (0.0, 0.0, float(np.radians(SPOT_DEG))),
     )
@@ -118,26 +126,28 @@ def _about(made: Composer) -> None:
         planted("R", 1.90, 5.0, 180.0, style, push=0.0),
     ]
     walk = Walk(falls, 0.46, style)
-    ahead = {"standing": (-0.3, 0.0), "looking left": (0.20, 0.8), "left foot turns out": (0.42, 1.0)}
-    ahead |= {
-        "left foot lands": (0.60, 1.0),
-        "right foot follows": (0.86, 1.0),
-        "turned by half": (1.12, 0.9),
+    ahead = {
+        "standing": (-0.3, 0.0),
+        "left foot turns out": (0.40, 1.0),
+        "left foot lands": (0.58, 1.0),
+        "turned by half": (1.06, 0.9),
+        "left foot turns on": (1.30, 0.8),
+        "right foot closes": (1.70, 0.2),
+        "standing again": (1.94, 0.0),
     }
-    ahead |= {"left foot turns on": (1.36, 0.8), "right foot closes": (1.76, 0.2)}
-    ahead |= {"standing again": (2.15, 0.0)}
     steps = [
         (made.pose(f"about: {name}", leading(walk.at(time_s), 10.0 * much, 26.0 * much)), time_s + 0.3)
         for name, (time_s, much) in ahead.items()
     ]
-    made.motion("turn about", steps)
+    first, last = steps[0][0], steps[-1][0]
+    made.motion("turn about", [steps[0], (first, 0.46), *steps[1:], (last, 2.6)])
 
 
 def _along_a_bend(made: Composer) -> None:
     """Walking around a place on the left."""
     radius = BEND_M / np.radians(BEND_DEG)
     falls = []
-    for step in range(-4, 6):
+    for step in range(-4, 5):
         strike = 0.5 * step * BEND_S
         heading = (0.5 * step + LEADS) * BEND_DEG
         angle = np.radians(heading)
@@ -172,15 +182,19 @@ def _about_while_walking(made: Composer) -> None:
     walk = Walk(falls, 0.52, style)
     ahead = {
         "right foot lifts": (0.10, 0.0),
-        "right leg passes": (0.30, 0.3),
-        "right foot lands": (0.56, 0.8),
-    }
-    ahead |= {
-        "left foot turns out": (0.84, 1.0),
+        "right leg swings": (0.25, 0.2),
+        "right leg passes": (0.40, 0.5),
+        "right foot lands": (0.55, 0.8),
+        "weight on the right": (0.70, 1.0),
+        "left foot turns out": (0.86, 1.0),
         "left foot lands": (1.02, 1.0),
-        "right foot comes": (1.30, 0.7),
+        "weight on the left": (1.18, 0.9),
+        "right foot comes": (1.33, 0.7),
+        "right foot leads back": (1.50, 0.3),
+        "left foot lifts": (1.68, 0.1),
+        "left leg passes": (1.86, 0.0),
+        "walks back": (2.04, 0.0),
     }
-    ahead |= {"right foot leads back": (1.52, 0.3), "left leg passes": (1.84, 0.0), "walks back": (2.04, 0.0)}
     steps = [
         (made.pose(f"walk about: {name}", leading(walk.at(time_s), 12.0 * much, 28.0 * much)), time_s - 0.10)
         for name, (time_s, much) in ahead.items()
@@ -191,6 +205,7 @@ def _about_while_walking(made: Composer) -> None:
 def _on_one_foot(made: Composer) -> None:
     """Once around on the ball of the left foot, arms thrown open and drawn in, from standing as above."""
     stand = Foot(ON_THE_SPOT.apart_m, 0.0, ON_THE_SPOT.toes_out)
+    other = replace(stand, x=-stand.x, turn=-stand.turn)
     wound = Arm(elevation=62.0, plane=96.0, rotation=50.0, elbow=64.0, girdle=4.0)
     wide = Arm(elevation=76.0, plane=12.0, rotation=10.0, elbow=22.0, girdle=6.0)
     close = Arm(elevation=54.0, plane=64.0, rotation=52.0, elbow=100.0, pronation=40.0, girdle=4.0)
@@ -211,7 +226,7 @@ def _on_one_foot(made: Composer) -> None:
     wind = balanced(
         moment(
             left_leg=stand,
-            right_leg=Foot(-0.18, 0.22, -18.0, 8.0),
+            right_leg=pivoted(other, -20.0, 20.0),
             left_arm=wide,
             right_arm=wound,
             bend=34.0,
@@ -224,7 +239,7 @@ def _on_one_foot(made: Composer) -> None:
     end = balanced(
         moment(
             left_leg=pivoted(stand, 360.0 + stand.turn, 0.0),
-            right_leg=Foot(-0.15, 0.06, 346.0),
+            right_leg=replace(other, turn=360.0 + other.turn),
             arms=wide,
             bend=28.0,
             pelvis=Turn(5.0, 0.0, 362.0),

@@ -1,0 +1,224 @@
+"""Keyframe libraries: what becomes of footage that nobody posed a keyframe of, and of two keyframes.
+
+Usage: libraries.py [TAKE ...] [--choose] with names or folders of takes. See README.md.
+"""
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from keyframing import exact_postures
+from numpy.typing import NDArray
+from takes import chosen_takes, load_project, write_results
+
+load_project()
+
+from keymark.core.footage.reading import Reading  # noqa: E402
+from keymark.core.library.library import Library  # noqa: E402
+from keymark.core.library.library_file import read_library  # noqa: E402
+from keymark.core.library.shelf import SHIPPED  # noqa: E402
+from keymark.core.match_take import LibraryChoice, match_take, with_matches  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.progress import run  # noqa: E402
+from keymark.core.reconstruct import read_footage, reconstruct  # noqa: E402
+from keymark.core.score import Score, read_truth  # noqa: E402
+from keymark.core.take import Take, read_take  # noqa: E402
+from trials import Trial  # noqa: E402
+
+Array = NDArray[np.float64]
+
+FITTING: dict[str, tuple[str, ...]] = {
+    "walk": ("walking",),
+    "reach": ("reaching",),
+    "aerobic": ("aerobic",),
+    "demo/aerobic": ("aerobic",),
+    "real_balance": ("balance",),
+    "stroll": ("walking", "waving"),
+    "jog": ("running",),
+    "jump": ("jumping",),
+    "kick": ("kicking",),
+    "box": ("punching",),
+    "lift": ("squatting_lifting",),
+    "spin": ("turning",),
+    "star_jumps": ("aerobic", "jumping"),
+}
+"""What the takes show, by name; the first is measured, any is right as a choice. Others fit none."""
+ON_THE_FLOOR = 0.0
+RAISED = ("real_balance",)
+"""Takes whose performer stands on something else than the floor z = 0, which is therefore not stated."""
+NONE = "none"
+COLUMNS = (
+    "library", "course", "no posing", "hips aligned", "coverage", "two alone", "two interpolated",
+    "two and library", "of two alone", "ms a frame",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One take with the library that fits it; errors in mm."""
+
+    library: str
+    course: Score
+    """The match itself, before the estimate."""
+    unposed: Score
+    """Nothing posed."""
+    two: Score
+    """The first and the last frame posed, without a library."""
+    two_interpolated: Score
+    """The better interpolation of the same."""
+    both: Score
+    """The first and the last frame posed, with the library."""
+    matching_ms: float
+    """Process time of matching a frame, reading not counted."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What `auto` makes of a take."""
+
+    ranking: tuple[tuple[str, float], ...]
+    chosen: str
+    right: bool | None
+    """None where none of the shipped libraries fits, and none was chosen or should have been."""
+    reason: str
+    matching_ms: float
+
+
+def read_unposed(folder: Path) -> Trial:
+    """A take read as if nobody had posed anything: keyframes tell nothing of where markers are looked for."""
+    take = replace(read_take(folder), keyframes=())
+    reading = run(read_footage(take))
+    return Trial(
+        take, reading, read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count), ()
+    )
+
+
+def matched(
+    name: str, take: Take, reading: Reading, libraries: Sequence[Library]
+) -> tuple[LibraryChoice, float]:
+    """What matching finds, and its process time [ms a frame]."""
+    begun = time.process_time()
+    choice = run(match_take(take, reading, libraries, None if name in RAISED else ON_THE_FLOOR))
+    return choice, 1e3 * (time.process_time() - begun) / reading.tracks.frame_count
+
+
+def measure(name: str, trial: Trial, library: Library) -> Measured:
+    """A take with one library: nothing posed, and the first and the last frame."""
+    choice, matching_ms = matched(name, trial.take, trial.reading, [library])
+    match = choice.match
+    if match is None:
+        raise RuntimeError(f"{library.identifier}, the only one, was not matched with {name}")
+    body = trial.take.body
+    unposed = replace(trial, take=with_matches(trial.take, match))
+    ends = (0, len(trial.truth) - 1)
+    exact = exact_postures(trial)
+    posed = tuple(Keyframe(index, exact[index]) for index in ends)
+    two = replace(trial, take=replace(trial.take, keyframes=posed), unscored=ends)
+    both = replace(two, take=with_matches(two.take, match))
+    return Measured(
+        library.identifier,
+        trial.score(body.points(body.pose(match.course))),
+        estimated(unposed),
+        estimated(two),
+        two.best_interpolation(),
+        estimated(both),
+        matching_ms,
+    )
+
+
+def estimated(trial: Trial) -> Score:
+    """How far the default method's motion is from the truth."""
+    motion = run(reconstruct(trial.take, "map", trial.reading)).motion
+    return trial.score(motion.points, motion.sigma_m)
+
+
+def choose(name: str, trial: Trial, libraries: Sequence[Library]) -> Chosen:
+    """Which library `auto` takes."""
+    choice, matching_ms = matched(name, trial.take, trial.reading, libraries)
+    ranking = tuple((library.identifier, round(share, 4)) for library, share in choice.ranking)
+    taken = NONE if choice.match is None else choice.match.library.identifier
+    right = taken in FITTING[name] if name in FITTING else None if taken == NONE else False
+    return Chosen(ranking, taken, right, choice.reason, matching_ms)
+
+
+def accuracy_table(results: dict[str, Measured]) -> str:
+    """Errors as Markdown, with their mean."""
+    lines = [
+        "Mean distance from the truth [mm]; two: the first and the last frame posed exactly.",
+        "",
+        "| take | " + " | ".join(COLUMNS) + " |",
+        "|---|---" + "|---:" * (len(COLUMNS) - 1) + "|",
+    ]
+    rows = []
+    for name, found in results.items():
+        row = [
+            found.course.mpjpe, found.unposed.mpjpe, found.unposed.rooted, found.unposed.coverage95 or 0.0,
+            found.two.mpjpe, found.two_interpolated.mpjpe, found.both.mpjpe,
+            found.both.mpjpe / found.two.mpjpe, found.matching_ms,
+        ]  # fmt: skip
+        rows.append(row)
+        lines.append(_line(name, found.library, row))
+    lines.append(_line("**mean**", "", np.mean(rows, axis=0).tolist()))
+    return "\n".join(lines)
+
+
+def _line(name: str, library: str, row: Sequence[float]) -> str:
+    digits = (1, 1, 1, 2, 1, 1, 1, 2, 1)
+    return (
+        f"| {name} | {library} | " + " | ".join(f"{v:.{d}f}" for v, d in zip(row, digits, strict=True)) + " |"
+    )
+
+
+def choice_table(results: dict[str, Chosen]) -> str:
+    """What was chosen, as Markdown."""
+    lines = [
+        "The library chosen among all that are shipped.",
+        "",
+        "| take | shows | chosen | likeliest | next | ms a frame |",
+        "|---|---|---|---|---|---:|",
+    ]
+    for name, found in results.items():
+        shown = [f"{identifier} {share:.2f}" for identifier, share in found.ranking[:2]]
+        mark = {True: "", False: " (wrong)", None: ""}[found.right]
+        lines.append(
+            f"| {name} | {' or '.join(FITTING.get(name, (NONE,)))} | {found.chosen}{mark} | "
+            + " | ".join(shown)
+            + f" | {found.matching_ms:.1f} |"
+        )
+    return "\n".join(lines)
+
+
+def main(arguments: list[str]) -> int:
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
+    parser.add_argument("--choose", action="store_true", help="only see which library is chosen")
+    options = parser.parse_args(arguments)
+    libraries = {path.stem: read_library(path) for path in sorted(SHIPPED.glob("*.json"))}
+    measured: dict[str, Measured] = {}
+    chosen: dict[str, Chosen] = {}
+    for name, folder in chosen_takes(options.takes).items():
+        print(f"{name} ...", file=sys.stderr, flush=True)
+        trial = read_unposed(folder)
+        chosen[name] = choose(name, trial, list(libraries.values()))
+        if name in FITTING and not options.choose:
+            measured[name] = measure(name, trial, libraries[FITTING[name][0]])
+    tables = choice_table(chosen)
+    if measured:
+        tables = f"{accuracy_table(measured)}\n\n{tables}"
+    as_dictionaries: dict[str, Any] = {
+        "accuracy": {name: asdict(one) for name, one in measured.items()},
+        "choice": {name: asdict(one) for name, one in chosen.items()},
+    }
+    write_results("libraries", tables, json.dumps(as_dictionaries, indent=1))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

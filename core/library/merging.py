@@ -1,0 +1,236 @@
+"""What to do with two libraries of one name, or two that shall become one: nothing is overwritten silently.
+
+Names count as the same where people could not tell them apart.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, TypeVar
+
+from ..body.kinematics import Body
+from ..errors import InputError
+from ..files.fields import listed
+from ..files.json_file import shown
+from .applying import applied
+from .library import Library, LibraryMotion, LibraryPosture, MotionStep
+from .library_file import library_to_json
+from .texts import checked_identifier, name_key, told_apart
+
+
+class Choice(Enum):
+    """What shall become of something that both have, and that differs."""
+
+    KEEP = "keep"
+    """Mine stays."""
+    REPLACE = "replace"
+    """Theirs takes its place."""
+
+
+Entry = TypeVar("Entry", bound=LibraryPosture | LibraryMotion)
+Choices = Choice | Mapping[str, Choice] | None
+"""One for all, by name of the posture or motion, or none: then a conflict is an error."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How a library that is offered differs from one that is there, both of the same identifier."""
+
+    newer: bool
+    """Whether the version offered is a later one."""
+    header: bool
+    """Whether title, version, author, licence, description, sources, tags or proportions differ."""
+    added: tuple[str, ...]
+    """Postures and motions that only the library offered has."""
+    missing: tuple[str, ...]
+    """Those that only the one that is there has."""
+    changed: tuple[str, ...]
+    """Those that both have, and that differ."""
+
+    @property
+    def same(self) -> bool:
+        """Whether there is nothing to do."""
+        return not (self.header or self.added or self.missing or self.changed)
+
+
+def compare(mine: Library, theirs: Library) -> Comparison:
+    """How the library offered differs from the one that is there.
+
+    Raises:
+        InputError: They have different identifiers.
+    """
+    _refuse_others(mine, theirs)
+    there, offered = _rows(mine), _rows(theirs)
+    return Comparison(
+        newer=theirs.version > mine.version,
+        header=_header(mine) != _header(theirs),
+        added=tuple(name for key, (name, _) in offered.items() if key not in there),
+        missing=tuple(name for key, (name, _) in there.items() if key not in offered),
+        changed=tuple(
+            name for key, (name, row) in there.items() if key in offered and offered[key][1] != row
+        ),
+    )
+
+
+def chosen(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
+    """One of two libraries of the same identifier, as a whole: mine where they are equal.
+
+    Raises:
+        InputError: They differ and no choice is made, or they have different identifiers.
+    """
+    if compare(mine, theirs).same or choice is Choice.KEEP:
+        return mine
+    if choice is Choice.REPLACE:
+        return theirs
+    raise InputError(
+        f"library {shown(mine.identifier)} is there in version {mine.version} and differs from version "
+        f"{theirs.version}, which is offered; say whether to keep the one or to replace it by the other"
+    )
+
+
+def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
+    """Both libraries in one: what only theirs has is added to mine, fitted to my actor's proportions.
+
+    The header is that of the later version. The result's version is one later than both, unless it equals one
+    of them.
+
+    Args:
+        mine: The library that is there.
+        theirs: One of the same identifier.
+        choices: What to do with postures and motions that both have and that differ.
+
+    Raises:
+        InputError: A choice is missing, or the libraries have different identifiers.
+    """
+    _refuse_others(mine, theirs)
+    fitted = _fitted(theirs, mine)
+    undecided = [name for name in compare(mine, fitted).changed if _choice(choices, name) is None]
+    if undecided:
+        raise InputError(
+            f"library {shown(mine.identifier)}: {listed(map(shown, undecided), 5)} differ between version "
+            f"{mine.version} and version {theirs.version}; say for each which to keep"
+        )
+
+    def pick(name: str) -> bool:
+        return _choice(choices, name) is Choice.REPLACE
+
+    postures = _united(mine.postures, fitted.postures, pick)
+    motions = _united(mine.motions, fitted.motions, pick)
+    spelled = {name_key(posture.name): posture.name for posture in postures}
+    head = fitted if theirs.version > mine.version else mine
+    whole = replace(
+        head, actor=mine.actor, postures=tuple(postures), motions=tuple(_respelled(motions, spelled))
+    )
+    for one in (mine, theirs):
+        if library_to_json(replace(whole, version=one.version)) == library_to_json(one):
+            return one
+    return replace(whole, version=max(mine.version, theirs.version) + 1)
+
+
+def joined(first: Library, second: Library, identifier: str, title: str) -> Library:
+    """A new library with everything of two others, on the proportions of the first.
+
+    What has the same name in both is told apart by a number, unless it is the same. Author, licence, sources
+    and tags of both are named.
+
+    Raises:
+        InputError: The identifier is none.
+    """
+    fitted = _fitted(second, first)
+    rows, others = _rows(first), _rows(fitted)
+    names: dict[str, str] = {}
+    postures, motions = list(first.postures), list(first.motions)
+    for posture in fitted.postures:
+        key = ("posture", name_key(posture.name))
+        if key in rows and rows[key][1] == others[key][1]:
+            names[name_key(posture.name)] = rows[key][0]
+            continue
+        taken = [entry.name for entry in (*postures, *fitted.postures) if entry is not posture]
+        name = told_apart(posture.name, taken)
+        names[name_key(posture.name)] = name
+        postures.append(replace(posture, name=name))
+    for motion in _respelled(fitted.motions, names):
+        if not any(replace(old, name="") == replace(motion, name="") for old in first.motions):
+            motions.append(replace(motion, name=told_apart(motion.name, [entry.name for entry in motions])))
+    return Library(
+        identifier=checked_identifier(identifier, "the identifier of the new library"),
+        title=title,
+        version=1,
+        author=", ".join(_union([first.author], [second.author])),
+        license=_both_licenses(first.license, second.license),
+        actor=first.actor,
+        postures=tuple(postures),
+        motions=tuple(motions),
+        description=" ".join(_union([first.description], [second.description])).strip(),
+        sources=_union(first.sources, second.sources),
+        tags=_union(first.tags, second.tags),
+    )
+
+
+def _both_licenses(first: str, second: str) -> str:
+    """The SPDX expression of something that is under both."""
+    if first == second:
+        return first
+    return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
+
+
+def _refuse_others(mine: Library, theirs: Library) -> None:
+    if mine.identifier != theirs.identifier:
+        raise InputError(
+            f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} are different ones, and stay "
+            "side by side; join them to a new one to have both in one"
+        )
+
+
+def _fitted(library: Library, other: Library) -> Library:
+    """A library on the proportions of another."""
+    body = Body(other.actor)
+    postures = tuple(
+        replace(entry, posture=applied(entry, library.actor, body)) for entry in library.postures
+    )
+    return replace(library, actor=other.actor, postures=postures)
+
+
+def _rows(library: Library) -> dict[tuple[str, str], tuple[str, Any]]:
+    """Name and contents of every posture and motion, as a file has them, by what makes names the same."""
+    value = library_to_json(library)
+    rows: dict[tuple[str, str], tuple[str, Any]] = {}
+    for kind in ("posture", "motion"):
+        for row in value.get(f"{kind}s", []):
+            rows[kind, name_key(row["name"])] = (row["name"], row)
+    return rows
+
+
+def _header(library: Library) -> dict[str, Any]:
+    return {
+        name: item for name, item in library_to_json(library).items() if name not in ("postures", "motions")
+    }
+
+
+def _choice(choices: Choices, name: str) -> Choice | None:
+    if choices is None or isinstance(choices, Choice):
+        return choices
+    return {name_key(other): choice for other, choice in choices.items()}.get(name_key(name))
+
+
+def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: Callable[[str], bool]) -> list[Entry]:
+    """Mine in their order, then what only theirs have."""
+    offered = {name_key(entry.name): entry for entry in theirs}
+    kept = [offered.get(name_key(own.name), own) if replaces(own.name) else own for own in mine]
+    there = {name_key(own.name) for own in mine}
+    return [*kept, *(entry for entry in theirs if name_key(entry.name) not in there)]
+
+
+def _respelled(motions: Sequence[LibraryMotion], names: Mapping[str, str]) -> list[LibraryMotion]:
+    """Motions whose steps name the postures as these are called now."""
+    return [
+        replace(
+            motion,
+            steps=tuple(MotionStep(names[name_key(step.posture)], step.time_s) for step in motion.steps),
+        )
+        for motion in motions
+    ]
+
+
+def _union(first: Sequence[str], second: Sequence[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys([*first, *second]))

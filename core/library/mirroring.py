@@ -1,0 +1,123 @@
+"""Libraries with left and right exchanged, or with both."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+
+from ..body.mirror import mirrored, mirrored_actor
+from ..body.posture import Posture
+from ..errors import InputError
+from ..files.json_file import shown
+from .applying import SAME_M
+from .library import Library, LibraryMotion, LibraryPosture, MotionStep
+from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, told_apart
+
+MIRRORED = "mirrored"
+_SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")
+_OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
+ALIKE = 1e-6
+"""Metres, radians, and elements of rotation matrices."""
+
+
+def mirrored_name(name: str) -> str:
+    """A name with the words left and right, or an L and R behind a dot or space, exchanged."""
+    return _SIDE.sub(lambda found: _as_written(_OPPOSITE[found[0].lower()], found[0]), name)
+
+
+def mirrored_library(library: Library) -> Library:
+    """A library that shows everything on the other side, under an identifier and title of its own.
+
+    Mirrored twice it is the same again.
+    """
+    names: dict[str, str] = {}
+    for entry in library.postures:
+        names[entry.name] = told_apart(mirrored_name(entry.name)[:LONGEST_NAME].strip(), names.values())
+    return replace(
+        library,
+        identifier=_marked(library.identifier, f"_{MIRRORED}", LONGEST_IDENTIFIER),
+        title=_marked(library.title, f" ({MIRRORED})", LONGEST_NAME),
+        actor=mirrored_actor(library.actor),
+        postures=tuple(
+            LibraryPosture(names[entry.name], mirrored(entry.posture), entry.tags)
+            for entry in library.postures
+        ),
+        motions=tuple(_motion(motion, mirrored_name(motion.name), names) for motion in library.motions),
+    )
+
+
+def with_mirrored(library: Library) -> Library:
+    """A library with the mirrored form of every posture and motion added that it lacks.
+
+    What looks the same in a mirror, or has its mirrored form among the others, is not added again. A name
+    without left or right gets `(mirrored)` behind it.
+
+    Raises:
+        InputError: The library's actor has sides of different lengths, whom mirrored postures do not fit.
+    """
+    other = mirrored_actor(library.actor).segments_m
+    if any(abs(other[name] - length) > SAME_M for name, length in library.actor.segments_m.items()):
+        raise InputError(
+            f"library {shown(library.identifier)}: its actor's left and right differ in length, so mirrored "
+            "postures do not fit; mirror the whole library instead, its actor with it"
+        )
+    names: dict[str, str] = {}
+    added: list[LibraryPosture] = []
+    taken = [entry.name for entry in library.postures]
+    there = Posture.stack([entry.posture for entry in library.postures])
+    for entry in library.postures:
+        opposite = mirrored(entry.posture)
+        found = _find(opposite, there)
+        if found is not None:
+            twin = library.postures[found].name
+        else:
+            twin = told_apart(_distinct(entry.name), [*taken, *(new.name for new in added)])
+            added.append(LibraryPosture(twin, opposite, entry.tags))
+        names[entry.name] = twin
+    motions: list[LibraryMotion] = list(library.motions)
+    for motion in library.motions:
+        twin_motion = _motion(motion, _distinct(motion.name), names)
+        if not any(_same_course(old, twin_motion) for old in library.motions):
+            title = told_apart(twin_motion.name, [old.name for old in motions])
+            motions.append(replace(twin_motion, name=title))
+    return replace(library, postures=(*library.postures, *added), motions=tuple(motions))
+
+
+def _as_written(word: str, example: str) -> str:
+    if example.isupper():
+        return word.upper()
+    return word.capitalize() if example[0].isupper() else word
+
+
+def _distinct(name: str) -> str:
+    """The name of a mirrored thing beside the thing itself."""
+    swapped = mirrored_name(name)
+    return swapped if swapped != name else _marked(name, f" ({MIRRORED})", LONGEST_NAME)
+
+
+def _marked(text: str, mark: str, longest: int) -> str:
+    """The text with the mark behind it, or without where it has one."""
+    return text.removesuffix(mark) if text.endswith(mark) else text[: longest - len(mark)].strip() + mark
+
+
+def _motion(motion: LibraryMotion, name: str, names: dict[str, str]) -> LibraryMotion:
+    x, y, heading = motion.travel
+    steps = tuple(MotionStep(names[step.posture], step.time_s) for step in motion.steps)
+    return replace(
+        motion, name=name[:LONGEST_NAME].strip(), steps=steps, travel=(-x + 0.0, y, -heading + 0.0)
+    )
+
+
+def _find(posture: Posture, among: Posture) -> int | None:
+    """Which of a batch looks the same, if any."""
+    far = [
+        np.abs(getattr(among, name) - getattr(posture, name)).reshape(len(among.translation), -1).max(axis=1)
+        for name in ("translation", "rotations", "angles")
+    ]
+    alike = np.flatnonzero(np.max(far, axis=0) < ALIKE)
+    return int(alike[0]) if len(alike) else None
+
+
+def _same_course(first: LibraryMotion, second: LibraryMotion) -> bool:
+    """Whether two motions differ in name only."""
+    return replace(first, name="") == replace(second, name="")

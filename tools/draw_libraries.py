@@ -1,0 +1,50 @@
+"""Draw some postures of every shipped library, for the docs. Usage: draw_libraries.py PICTURE.
+
+`keymark library show NAME --sheet FILE` draws all of one.
+"""
+
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+from keymark.core.body.kinematics import Body
+from keymark.core.library.library import Library, LibraryPosture
+from keymark.core.library.shelf import SHIPPED, shelved
+from keymark.core.report.canvas import GREY, INK, Canvas
+from keymark.core.report.posture_picture import posture_picture
+
+FIGURES, CELL = 8, 116
+TITLE, GAP = 190, 4
+QUALITY = 82
+
+
+def some_postures(library: Library) -> list[LibraryPosture]:
+    """A few postures, evenly chosen in the order in which the library lists them."""
+    places = np.unique(np.linspace(0, len(library.postures) - 1, FIGURES).round().astype(int))
+    return [library.postures[place] for place in places]
+
+
+def main(output: str) -> None:
+    """Draw a row a library."""
+    libraries = [found.library for found in shelved([SHIPPED]) if found.library is not None]
+    row = CELL + GAP
+    canvas = Canvas(TITLE + FIGURES * (CELL + GAP), len(libraries) * row)
+    for number, library in enumerate(libraries):
+        top, body = number * row, Body(library.actor)
+        canvas.text(library.title, GAP, top + 50, 11.0, INK)
+        motions = len(library.motions)
+        words = f"{len(library.postures)} postures, {motions} motion{'' if motions == 1 else 's'}"
+        canvas.text(words, GAP, top + 70, 7.5, GREY)
+        for column, posture in enumerate(some_postures(library)):
+            picture = posture_picture(body, posture.posture)
+            canvas.paste(picture, TITLE + column * (CELL + GAP), top, CELL, CELL)
+    done, data = cv2.imencode(Path(output).suffix, canvas.image(), [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
+    if not done:
+        raise SystemExit(f"{output}: cannot be drawn; end the name in .jpg or .png")
+    Path(output).write_bytes(data.tobytes())
+    print(output)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
