@@ -16,7 +16,7 @@ from .progress import Job, Progress, stretch, within
 from .reconstruct import read_footage
 from .take import Take
 
-TRIED = 4
+TRIED = 5
 """So many libraries at most are matched as a whole where the first look leaves several."""
 HOPELESS = 4.0
 """How much dearer than the best a library's postures may be in the first look, a frame."""
@@ -124,16 +124,23 @@ def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None
 def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Reading | None]:
     """The clip read once more, each marker sought where a match has it; None where that makes no difference.
 
-    Without keyframes a thing of a marker's colour may have been taken for it.
+    Without keyframes a thing of a marker's colour may have been taken for it. A marker that is merely lost
+    where the match has it stays what it was: an arm may do something that the library does not.
     """
     if reading.sightings is None:
         return None
     told = with_matches(replace(take, keyframes=()), match)
     again = yield from read_footage(told, reading)
     first, second = reading.tracks, again.tracks
-    moved = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
-    other = (moved > OTHER_REGION * np.sqrt(np.nan_to_num(second.area))) | (first.visible & ~second.visible)
-    return again if other.mean(axis=0).max() > OFTEN else None
+    apart = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
+    elsewhere = (apart > OTHER_REGION * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > OFTEN
+    if not elsewhere.any():
+        return None
+    names = ("centroid", "second_moment", "area", "quality", "clipped")
+    arrays = {name: np.array(getattr(first, name)) for name in names}
+    for name, array in arrays.items():
+        array[:, elsewhere] = getattr(second, name)[:, elsewhere]
+    return replace(again, tracks=replace(first, **arrays), key="")
 
 
 def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:

@@ -25,7 +25,7 @@ wrong libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 14, 
 
 
 def alternatives(
-    path: Path, share: Single, frame: int, index: int, chosen: Posture, explained: float
+    path: Path, share: Single, frame: int, index: int, chosen: Posture, nearest: int, explained: float
 ) -> MatchedFrame:
     """The chosen posture of a frame and distinct ones beside it, the likelier first.
 
@@ -35,6 +35,7 @@ def alternatives(
         frame: Which of the path's frames.
         index: Its position in the clip.
         chosen: The posture that was chosen there.
+        nearest: Which of the chains' postures that is nearest to.
         explained: How much of the frame it explains, 0 to 1.
     """
     fit = path.fits[frame]
@@ -56,7 +57,8 @@ def alternatives(
     found = []
     for place in kept:
         near = np.linalg.norm(shape - shape[place], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
-        posture = int(fit.states[likely[place]]) // len(path.turned.heading_rad)
+        state = int(fit.states[likely[place]])
+        posture = state // len(path.turned.heading_rad) if place else nearest
         found.append(
             Candidate(
                 chosen if place == 0 else postures[place],
@@ -76,6 +78,7 @@ def confidence(share: float, explained: float) -> float:
 
     Args:
         share: Probability of the posture and those about like it among all of the library.
+        nearest: Which of the chains' postures that is nearest to.
         explained: How much of the frame the match explains, 0 to 1.
     """
     odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *CERTAIN)]

@@ -26,7 +26,7 @@ class Reading:
     height: Array
     """(T,) [m]."""
     way: Array
-    """(T, 3) where the hips are, relative to where they were at the chain's time 0 [m]; on the floor."""
+    """(T, 3) where the hips are, relative to where they were at the chain's time 0 [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +57,7 @@ class CourseTable:
             count = len(chain)
             track = chain.track[count : 2 * count + 1] if chain.cyclic else chain.track
             way[own, :2] = track - track[0]
+            way[own, 2] = self.solids.height[rows[own]] - self.solids.height[rows[own.start]]
             if chain.cyclic:
                 turn = about_up(np.array(chain.turn_rad))
                 middle[own.stop - 1] = middle[own.stop - 1] @ turn.T

@@ -123,10 +123,12 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[Li
     course = _every_frame(table, refined, sampled, tracks.frame_count)
     explained = _explained(refinement, refined, habits)
     likelihood = evidence / (len(sampled) * tempering)
+    nearest = table.nearest(refined.chain, refined.values[:, 0])
     frames = []
     for row in np.searchsorted(sampled, sought.keyframes):
-        index = int(sampled[row])
-        frames.append(alternatives(path, shares[row], int(row), index, course[index], float(explained[row])))
+        index, part = int(sampled[row]), float(explained[row])
+        chosen = course[index]
+        frames.append(alternatives(path, shares[row], int(row), index, chosen, int(nearest[row]), part))
     fit = float(explained.mean())
     return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, course, likelihood)
 

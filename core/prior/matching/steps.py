@@ -119,7 +119,7 @@ def moves(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], fits: tu
         fits: Their states.
     """
     whiten = _whitening(sights, duration_s)
-    first, second = whiten @ fits[0].hips, whiten @ fits[1].hips
+    first, second = whiten @ fits[0].ground, whiten @ fits[1].ground
     states = fits[1].states
     headings = len(roads.heading_rad)
     place = np.full(len(roads.chains) * headings + 1, -1, dtype=np.int32)

@@ -62,6 +62,8 @@ class Fit:
     """(K,) negative logarithm of the likelihood, up to a constant of the footage."""
     hips: Single
     """(3, K) where the hips are [m]."""
+    ground: Single
+    """(3, K) where the floor below them is, by the posture's height above it [m]."""
 
     def row(self, state: int) -> int:
         """Where a state is among the K; the best one's place where it is not among them."""
@@ -93,7 +95,9 @@ def sweep(sight: Sight, turned: Turned) -> Fit:
         cost += _student(_extent_error(sight, turned.spread[marker][:, states], marker, depth), 3)
     cost[nearness < 0.3] += np.float32(1e3)
     kept = _best(cost, DEARER, MOST_STATES)
-    return Fit(states[kept], cost[kept], hips[:, kept])
+    ground = hips[:, kept]
+    ground[2] -= numbers[-2, kept]
+    return Fit(states[kept], cost[kept], hips[:, kept], ground)
 
 
 def _best(cost: Single, dearer: float, most: int) -> Whole:
