@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -137,7 +138,7 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     if not elsewhere.any():
         return None
     names = ("centroid", "second_moment", "area", "quality", "clipped")
-    arrays = {name: np.array(getattr(first, name)) for name in names}
+    arrays: dict[str, Any] = {name: np.array(getattr(first, name)) for name in names}
     for name, array in arrays.items():
         array[:, elsewhere] = getattr(second, name)[:, elsewhere]
     return replace(again, tracks=replace(first, **arrays), key="")

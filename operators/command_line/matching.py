@@ -76,7 +76,7 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
     if choice.match is None:
         raise ConversionError(f"{take.folder}: {choice.reason}; nothing was written")
     take = with_matches(take, choice.match)
-    job = reconstruct(take, method, reading)
+    job = reconstruct(take, method, choice.reading or reading)
     return Solved(take, (yield from stretch(job, MATCHING_SHARE, 1.0)), choice)
 
 

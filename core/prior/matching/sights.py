@@ -40,7 +40,7 @@ class Sight:
     """
 
     place: Array
-    """(V, 3, 3 M + 2) the hips' place in the world [m]: all trusted, the floor doubted, each marker doubted."""
+    """(V, 3, 3 M + 2) the hips' place in the world [m]: all trusted, the floor doubted, then each marker."""
     left: Array
     """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
     weight: Array
