@@ -31,6 +31,8 @@ AGAIN = 0.7
 """Share that the first round is, where the footage is then read again."""
 OTHER_REGION, OFTEN = 1.0, 0.15
 """Another region lies this far off, in sizes; a marker that was another thing is so in so many frames."""
+WELL = 0.9
+"""Where so much of the footage is explained, no marker is another thing."""
 BETTER = 0.04
 """So much more of the footage is explained where what was read again is right."""
 NEAR_FRAMES = 2
@@ -128,7 +130,7 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     Without keyframes a thing of a marker's colour may have been taken for it. A marker that is merely lost
     where the match has it stays what it was: an arm may do something that the library does not.
     """
-    if reading.sightings is None:
+    if reading.sightings is None or match.fit > WELL:
         return None
     told = with_matches(replace(take, keyframes=()), match)
     again = yield from read_footage(told, reading)
