@@ -19,7 +19,7 @@ TRIED = 4
 """So many libraries at most are matched as a whole where the first look leaves several."""
 HOPELESS = 4.0
 """How much dearer than the best a library's postures may be in the first look, a frame."""
-NONE_EVIDENCE = -10.0
+NONE_EVIDENCE = -11.0
 """Logarithm of the evidence of an independent frame for footage that no library was made for."""
 FRAMES_TOLD = 1.6
 """A performer differs from a library all along a clip, which tells as much as so many independent frames."""
@@ -80,7 +80,8 @@ def match_take(
             prepared.append(prepare(sought, library))
         matches = []
         tried = _worth_trying(prepared)
-        floor = float(np.median([one.glance.floor_m for one in tried])) if floor_m is None else floor_m
+        # A floor at z = 0 is believed in as long as any likely library may stand on it.
+        floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
         for index, one in enumerate(tried):
             share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
             part = match_library(sought, one, floor)
