@@ -17,7 +17,7 @@ from .take import Take
 
 TRIED = 4
 """So many libraries at most are matched as a whole where the first look leaves several."""
-HOPELESS = 6.0
+HOPELESS = 4.0
 """How much dearer than the best a library's postures may be in the first look, a frame."""
 NONE_EVIDENCE = -10.0
 """Logarithm of the evidence of an independent frame for footage that no library was made for."""
@@ -80,9 +80,10 @@ def match_take(
             prepared.append(prepare(sought, library))
         matches = []
         tried = _worth_trying(prepared)
+        floor = float(np.median([one.glance.floor_m for one in tried])) if floor_m is None else floor_m
         for index, one in enumerate(tried):
             share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
-            part = match_library(sought, one, floor_m)
+            part = match_library(sought, one, floor)
             matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
     yield Progress("Done", 1.0)
     return _choice(usable, matches)

@@ -1,6 +1,7 @@
 """What a person should know of a take and its result, one sentence each."""
 
 from .estimate.keyframe_evidence import KeyframeEvidence
+from .files.fields import listed
 from .footage.clips.clip import Clip
 from .footage.tracks import RegionTracks
 from .take import Take, rate_note
@@ -12,6 +13,10 @@ DOUBTED_POSING = 2.0
 """In usual errors of posing."""
 DOUBTED_MARKER = 3.0
 """In usual errors of regions."""
+DOUBTED_MATCH = 0.6
+"""Confidence of a matched keyframe below which a person had better pose it."""
+MOST_NAMED = 3
+"""So many frames are named at once."""
 
 
 def clip_notes(take: Take, clip: Clip, tracks: RegionTracks) -> tuple[str, ...]:
@@ -63,4 +68,30 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
                 f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
                 "something else may have its colour"
             )
+    return tuple(notes)
+
+
+def match_notes(take: Take) -> tuple[str, ...]:
+    """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
+    matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
+    if not matched:
+        return ()
+    libraries = " and ".join(sorted({said.library for _, said in matched}))
+    posed = len(take.keyframes) - len(matched)
+    if posed == 0:
+        notes = [
+            f"no keyframe was posed: the motion rests on {len(matched)} postures of the library {libraries}, "
+            "another performer's; what the markers do not show, depth above all, is like that performer's"
+        ]
+    else:
+        notes = [f"{posed} keyframes were posed; {len(matched)} others are matched postures of {libraries}"]
+    doubted = [(keyframe, said) for keyframe, said in matched if said.confidence < DOUBTED_MATCH]
+    if doubted:
+        worst = sorted(doubted, key=lambda one: one[1].confidence)[:MOST_NAMED]
+        frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
+        named = listed([str(frame) for frame in frames], MOST_NAMED)
+        notes.append(
+            f"{len(doubted)} of {len(matched)} matched postures may be wrong; pose frame {named} to set them "
+            "right"
+        )
     return tuple(notes)

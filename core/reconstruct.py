@@ -18,7 +18,7 @@ from .footage.reading import Reading
 from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
-from .notes import clip_notes, evidence_notes, marker_notes
+from .notes import clip_notes, evidence_notes, marker_notes, match_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
@@ -114,7 +114,7 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    notes += reading.notes
+    notes += reading.notes + match_notes(take)
     tracks = reading.tracks
     keyframes, doubt = with_style(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)

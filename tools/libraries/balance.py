@@ -7,7 +7,7 @@ from keymark.core.body.kinematics import Body, Pose
 from numpy.typing import NDArray
 
 from .moment import Foot, Moment
-from .solving import BODY, hips_height, posture_of
+from .solving import BODY, posture_of
 
 Array = NDArray[np.float64]
 
@@ -94,8 +94,3 @@ def flight(start: Array, end: Array, duration_s: float, share: float) -> Array:
     elapsed, left = share * duration_s, (1.0 - share) * duration_s
     rise = np.array([0.0, 0.0, 0.5 * GRAVITY_MPS2 * elapsed * left])
     return np.asarray(start + share * (end - start) + rise)
-
-
-def grounded(moment: Moment) -> Moment:
-    """A moment with the height of its hips written down, so that others can be made of it."""
-    return replace(moment, height=hips_height(moment))

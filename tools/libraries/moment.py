@@ -6,8 +6,8 @@ upright with hanging arms and straight legs.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 SIDES = ("L", "R")
 OTHER = {"L": "R", "R": "L"}
@@ -158,30 +158,6 @@ def mirrored(moment: Moment) -> Moment:
         arms={side: _other_side(moment.arms[OTHER[side]]) for side in SIDES},
         legs={side: _other_side(moment.legs[OTHER[side]]) for side in SIDES},
     )
-
-
-def between(first: Moment, second: Moment, share: float) -> Moment:
-    """A moment on the straight way from one to another; their limbs and heights must be told alike."""
-    return _between(first, second, share)
-
-
-Part = TypeVar("Part")
-
-
-def _between(first: Part, second: Part, share: float) -> Part:
-    if first is None and second is None:
-        return first
-    if isinstance(first, float | int) and isinstance(second, float | int):
-        return first + share * (second - first)  # type: ignore[return-value]
-    if isinstance(first, Mapping) and isinstance(second, Mapping):
-        return {key: _between(first[key], second[key], share) for key in first}  # type: ignore[return-value]
-    if type(first) is not type(second):
-        raise ValueError(f"there is no way from {first} to {second}")
-    values = {
-        item.name: _between(getattr(first, item.name), getattr(second, item.name), share)
-        for item in fields(first)  # type: ignore[arg-type]
-    }
-    return type(first)(**values)
 
 
 def _other_turn(turn: Turn) -> Turn:

@@ -25,7 +25,7 @@ STEP_M = 0.045
 """Points move about so far from one posture of a chain to the next: well below what performers differ by."""
 LEAST_RATE, MOST_RATE = 8.0, 25.0
 """Postures per second of a motion."""
-MOST_POSTURES = 900
+MOST_POSTURES = 450
 """Of a whole library: with more the steps are widened."""
 SAME_M = 0.03
 """A mirror image whose points come this near to those of its motion half a cycle on adds nothing."""

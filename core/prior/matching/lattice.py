@@ -5,7 +5,6 @@ one movement ends and another begins. The likelihoods are tempered: a performer 
 posture is off in the same way for a while.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -41,7 +40,7 @@ class Lattice:
         """(T,) states of the best way through (Viterbi)."""
         score = self._log_likelihood(0)
         sources = []
-        for index, ways, jump in self._steps():
+        for index, ways, jump in self._steps:
             leap = int(score.argmax())
             best = np.full(len(self.fits[index].states), score[leap] + jump)
             source = np.full(len(best), leap, dtype=np.int32)
@@ -60,7 +59,7 @@ class Lattice:
 
     def posterior(self) -> tuple[list[Single], float]:
         """Of each frame the probability of its states, (K,); and the logarithm of the whole evidence."""
-        steps = list(self._steps())
+        steps = self._steps
         forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
         for index, ways, jump in steps:
             total = np.full(len(self.fits[index].states), _log_sum(forward[-1]) + jump, dtype=np.float32)
@@ -91,14 +90,17 @@ class Lattice:
     def _log_likelihood(self, index: int) -> Single:
         return self.fits[index].cost * np.float32(-self.tempering)
 
-    def _steps(self) -> Iterator[tuple[int, list[Move], np.float32]]:
+    @cached_property
+    def _steps(self) -> list[tuple[int, list[Move], np.float32]]:
         """From each frame to the next: its index, the ways there, the logarithm of a jump's probability."""
+        steps = []
         for index in range(1, len(self.sights)):
             duration = float(self.time_s[index] - self.time_s[index - 1])
             sights = self.sights[index - 1], self.sights[index]
             fits = self.fits[index - 1], self.fits[index]
             jump = np.float32(np.log(-np.expm1(-JUMP_RATE * duration)) - np.log(self._count))
-            yield index, moves(self._roads, duration, sights, fits), jump
+            steps.append((index, moves(self._roads, duration, sights, fits), jump))
+        return steps
 
 
 def _share(log_probability: Single) -> Single:

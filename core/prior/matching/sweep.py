@@ -13,11 +13,11 @@ Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 Whole = NDArray[np.intp]
 
-DEARER = 18.0
+DEARER = 15.0
 """What explains a frame so much worse than the best is out of the question there, whatever comes before."""
 EXTENTS_DIFFER = 6.0
 """The markers' extents make up for that much."""
-MOST_STATES = 2500
+MOST_STATES = 1500
 """States of a frame that are kept at most."""
 
 

@@ -68,7 +68,7 @@ def test_joints_stay_in_their_range(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_feet_bear_the_body(name: str) -> None:
-    """Along every motion soles neither sink into the floor nor slide over it, and stand on it at some time."""
+    """Soles neither sink into the floor nor slide over it, and stand on it at some time."""
     library = shipped(name)
     body = Body(library.actor)
     for motion in library.motions:
@@ -116,7 +116,7 @@ def test_the_second_step_mirrors_the_first(name: str, motion: str) -> None:
 
 
 def test_knees_bend_as_gait_laboratories_measure() -> None:
-    """Winter (2009) and Perry & Burnfield (2010): loading 15 to 22, then all but straight, 60 in the swing."""
+    """Winter (2009), Perry & Burnfield (2010): 18 while loading, then all but straight, 60 in the swing."""
     library = shipped("walking")
     body = Body(library.actor)
     walk = library.motions[0]

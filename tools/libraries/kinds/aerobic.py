@@ -190,7 +190,7 @@ def _knee_lifts(work: Composer) -> None:
 
 
 def _arm_raises(work: Composer) -> None:
-    """Arms alone: to the side, to the front, overhead, pressed up from the shoulders, and curled."""
+    """Arms alone: to the side, to the front, overhead, pressed up, drawn in, and curled."""
     for name, arms in (
         ("arms half to the side", _raised(48)),
         ("arms to the side", _raised(90, 6, 10)),
@@ -199,6 +199,7 @@ def _arm_raises(work: Composer) -> None:
         ("arms half forward", _raised(48, 84, 14)),
         ("arms forward", _raised(90, 86, 12)),
         ("hands at the shoulders", Arm(42, 40, -14, 142, 0, 4)),
+        ("elbows drawn in", Arm(20, 14, -48, 90)),
         ("arms half curled", Arm(10, 50, 6, 70, -50)),
         ("arms curled", Arm(16, 70, 6, 138, -60)),
     ):
@@ -215,6 +216,8 @@ def _arm_raises(work: Composer) -> None:
     ):
         names = ["standing", *path, *reversed(path[:-1])]
         _counted(work, name, names, [hold * beat for beat in range(len(names) + 1)])
+    for name, top in (("pull down", "arms up and apart"), ("pull in", "arms to the side")):
+        _counted(work, name, ["elbows drawn in", top], (0.0, 1.0, 2.0))
     names = ["hands at the shoulders", "arms up and apart", "arms overhead", "arms up and apart"]
     _counted(work, "overhead press", names, (0.0, 0.5, 1.0, 1.5, 2.0))
 

@@ -1,0 +1,143 @@
+"""The whole-clip estimate on keyframes that nobody posed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
+from keymark.core.body.posture import Posture
+from keymark.core.body.soles import sole_heights_m
+from keymark.core.estimate.calibration import placement_values
+from keymark.core.estimate.footing import SHOE_M, lower_ankle_m
+from keymark.core.estimate.keyframe_trust import read_trust
+from keymark.core.estimate.match_error import (
+    PLACE_DEPTH_STD_M,
+    PLACE_STD_M,
+    depth_std_m,
+    joint_std_rad,
+    match_covariance,
+)
+from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.observation.depths import DEPTH_STD_M
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import run
+
+FRAMES = 60
+TRUTH = exercise(FRAMES)
+INDEX = np.arange(0, FRAMES, 8)
+TRACKS = film(TRUTH, 0.3)
+
+
+def off(seed: int = 2) -> Posture:
+    """The true postures at the keyframes as a library has them: of another style, and each a little off."""
+    rng = np.random.default_rng(seed)
+    covariance = match_covariance(TRUTH[INDEX], CAMERA, INDEX)
+    factor = np.linalg.cholesky(covariance)
+    error = 0.4 * rng.normal(size=(1, BODY.skeleton.dof_count)) + 0.3 * rng.normal(size=(len(INDEX), 34))
+    return TRUTH[INDEX].plus((factor @ error[..., None])[..., 0])
+
+
+def estimate(postures: Posture, doubt: np.ndarray | None) -> WholeClipResult:
+    """The estimate through keyframes at `INDEX`."""
+    keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
+    prior = interpolate(keyframes, FRAMES)
+    return run(
+        estimate_whole_clip(BODY, CAMERA, TRACKS, SEGMENTS, prior, tuple(int(i) for i in INDEX), doubt=doubt)
+    )
+
+
+def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
+    """Believed as another performer's they end nearer to the truth, and more doubt is stated."""
+    postures = off()
+    as_posed, as_matched = estimate(postures, None), estimate(postures, np.ones(len(INDEX)))
+    errors = [point_error_m(found.posture, TRUTH).mean() for found in (as_posed, as_matched)]
+    assert errors[1] < 0.9 * errors[0]
+    stated = [
+        np.sqrt(np.trace(found.covariance[:, :3, :3], axis1=1, axis2=2)).mean()
+        for found in (as_posed, as_matched)
+    ]
+    assert stated[1] > 1.25 * stated[0]
+
+
+def test_nothing_is_calibrated_on_keyframes_that_nobody_posed() -> None:
+    """Markers sit as on an average performer, and the lens is as stated."""
+    evidence = estimate(off(), np.ones(len(INDEX))).evidence
+    np.testing.assert_array_equal(
+        placement_values(evidence.model.placements), placement_values(MODEL.placements)
+    )
+    assert evidence.model.camera.lens_mm == CAMERA.lens_mm
+
+
+def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
+    """The model found from posed keyframes is the same whatever else is matched."""
+    doubt = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
+    postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
+    width = limb_widths(MODEL, postures.translation, INDEX)
+    mixed = run(read_trust(MODEL, RegionNoise(), observed, width, postures, INDEX, doubt))
+    posed = np.flatnonzero(doubt == 0.0)
+    alone = run(
+        read_trust(
+            MODEL,
+            RegionNoise(),
+            observed[posed],
+            width[posed],
+            postures[posed],
+            INDEX[posed],
+            np.zeros(len(posed)),
+        )
+    )
+    np.testing.assert_array_equal(
+        placement_values(mixed.model.placements), placement_values(alone.model.placements)
+    )
+    np.testing.assert_array_equal(mixed.information[posed], alone.information)
+    covariance = np.linalg.inv(mixed.information[1])
+    assert covariance[10, 10] == pytest.approx(0.49 * joint_std_rad(BODY.skeleton)[10] ** 2)
+
+
+def test_the_place_is_less_known_along_the_line_of_sight() -> None:
+    """Across it markers tell, along it they do not."""
+    place = match_covariance(TRUTH[INDEX], CAMERA, INDEX)[0, :3, :3]
+    values = np.sqrt(np.linalg.eigvalsh(place))
+    np.testing.assert_allclose(values, [PLACE_STD_M, PLACE_STD_M, PLACE_DEPTH_STD_M])
+
+
+def test_depths_count_near_posed_keyframes_only() -> None:
+    """Between both kinds there is a transition."""
+    noise = depth_std_m(np.array([0, 10]), np.array([False, True]), 12)
+    assert noise[0] == pytest.approx(DEPTH_STD_M)
+    assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
+
+
+def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:
+    """A library's lowest soles are the floor; what is higher in between is a leap."""
+    standing = TRUTH[np.zeros(6, dtype=np.intp)]
+    lift = np.zeros((6, BODY.skeleton.dof_count))
+    lift[:, 2] = -float(sole_heights_m(BODY, BODY.pose(standing))[0].min())
+    lift[3, 2] += 0.4
+    heights = lower_ankle_m(BODY, standing.plus(lift), np.arange(0, 30, 5), 30)
+    rest = Posture.rest(BODY.skeleton)
+    ankle = BODY.points(BODY.pose(rest))[BODY.skeleton.point_names.index("ankle.L"), 2]
+    high = float(ankle - sole_heights_m(BODY, BODY.pose(rest)).min()) + SHOE_M
+    assert heights[0] == pytest.approx(high, abs=1e-6)
+    assert heights[15] == pytest.approx(high + 0.4, abs=1e-6)
+
+
+def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
+    """To begin with an earlier estimate of matched keyframes changes nothing."""
+    postures, doubt = off(), np.ones(len(INDEX))
+    first = estimate(postures, doubt)
+    again = run(
+        estimate_whole_clip(
+            BODY,
+            CAMERA,
+            TRACKS,
+            SEGMENTS,
+            first.problem.prior,
+            tuple(int(i) for i in INDEX),
+            doubt=doubt,
+            earlier=replace(first),
+        )
+    )
+    assert point_error_m(first.posture, again.posture).max() == 0.0
