@@ -12,6 +12,7 @@ from .body.posture import Posture
 from .errors import InputError
 from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
+from .estimate.match_error import undecided_covariance
 from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
@@ -122,7 +123,7 @@ def _reconstruct(
     motion, model, solution = baseline, _average_model(take), None
     if method == "map":
         solution = yield from _whole_clip(take, reading, prior, doubt, begun, _usable(earlier, reading))
-        motion, model = _solved(take, tracks, solution), solution.evidence.model
+        motion, model = _solved(take, tracks, solution, doubt), solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
@@ -226,7 +227,7 @@ def _whole_clip(
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
-def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult) -> Motion:
+def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Array) -> Motion:
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -235,7 +236,12 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult) -> Motion
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
     }
-    return _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    if not doubt.any():
+        return motion
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    undecided = undecided_covariance(motion.points, take.camera, index, doubt)
+    return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

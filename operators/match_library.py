@@ -45,7 +45,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
     """Find the postures of a library in the footage, and key the actor with them; what you posed stays"""
 
     bl_idname = "keymark.match_library"
-    bl_label = "Match"
+    bl_label = "Match Library"
     bl_options = {"REGISTER", "UNDO"}
 
     library: bpy.props.StringProperty(

@@ -30,6 +30,12 @@ JOINT_STD_DEG = {
 """Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
 PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
 """Usual error of the place across and along the line of sight [m]."""
+UNDECIDED_DEPTH_M = 0.10
+"""How far points may lie off along the line of sight beyond what the estimate knows of itself [m].
+
+A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
+like one turned to the other: what a library decides there is right or wrong, and no covariance about what was
+decided tells. About what takes with truth show where nothing was posed."""
 POINT_DEPTH_STD_M = 2.0
 """What the depths of the points count as observations of their own (paper, eq. 9) near a matched posture [m]:
 next to nothing, since place and joints, which are believed as far as they deserve, tell them."""
@@ -65,3 +71,20 @@ def depth_std_m(index: NDArray[np.intp], matched: NDArray[np.bool_], frames: int
     """
     share = np.interp(np.arange(frames), index, matched.astype(np.float64))
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
+
+
+def undecided_covariance(points: Array, camera: Camera, index: NDArray[np.intp], doubt: Array) -> Array:
+    """What matched keyframes leave open of points (F, P, 3), as covariance (F, P, 3, 3) [m²].
+
+    Args:
+        points: Places in the world [m].
+        camera: The camera.
+        index: (K,) the keyframes' places in the clip, in order.
+        doubt: (K,) how far matched ones are off, in usual differences; 0 for posed ones.
+    """
+    frame = np.arange(len(points))
+    _, eye = camera.pose(frame)
+    sight = points - np.asarray(eye).reshape(-1, 1, 3)
+    sight = sight / np.linalg.norm(sight, axis=-1, keepdims=True)
+    std_m = UNDECIDED_DEPTH_M * np.interp(frame, index, doubt)
+    return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])

@@ -77,6 +77,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         takes=[],
         floors=[],
         error=None,
+        meanwhile=lambda: None,
     )
 
     def match(take, reading, libraries, floor_m=None, keyframe_count=None):  # noqa: ANN001, ANN202
@@ -84,6 +85,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         asked.floors.append(floor_m)
         for step in range(3):
             yield Progress("Matching Waves", step / 3)
+        asked.meanwhile()
         if asked.error:
             raise asked.error
         return asked.choice
@@ -180,6 +182,16 @@ def test_footage_that_fits_nothing_says_so(matched: Group, given: SimpleNamespac
     assert keyframes_of(take) == () and len(take.matching.matches) == 0
     assert take.matching.reason == "None of the 2 libraries fits"
     assert len(take.matching.ranking) == 2
+
+
+def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: SimpleNamespace) -> None:
+    """The user interface stays alive meanwhile: the match of that frame comes too late."""
+    before = shown(unposed, 7)
+    given.meanwhile = bpy.ops.keymark.store_keyframe
+    bpy.ops.keymark.match_library()
+    take = active_take(bpy.context.scene)
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-5)
 
 
 def test_the_floor_is_handed_on(unposed: Group, given: SimpleNamespace) -> None:

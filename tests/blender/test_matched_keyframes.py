@@ -12,6 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take import Take, read_take, write_take
+from keymark.operators.bridge import posing
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose
@@ -200,3 +201,23 @@ def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
     """The posture that the actor shows at a frame."""
     bpy.context.scene.frame_set(frame)
     return read_posture(take.armature, body_of(take)).posture
+
+
+def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
+    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A matched keyframe says where the body is about, yet nothing of where its sleeves sit."""
+    asked: list[int] = []
+    original = posing.calibrated
+
+    def calibrated(model, seen, posture, frames):  # noqa: ANN001, ANN202
+        asked.append(len(frames))
+        return original(model, seen, posture, frames)
+
+    monkeypatch.setattr(posing, "calibrated", calibrated)
+    bpy.ops.keymark.propose_keyframes()  # reads the clip
+    bpy.context.scene.frame_set(4)
+    assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
+    take_over(take.armature, take.keyframe_action, HUMAN, (7.0,))
+    assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
+    assert asked == [2, 3]

@@ -13,9 +13,11 @@ from keymark.core.estimate.keyframe_trust import read_trust
 from keymark.core.estimate.match_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
+    UNDECIDED_DEPTH_M,
     depth_std_m,
     joint_std_rad,
     match_covariance,
+    undecided_covariance,
 )
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
@@ -108,6 +110,17 @@ def test_depths_count_near_posed_keyframes_only() -> None:
     noise = depth_std_m(np.array([0, 10]), np.array([False, True]), 12)
     assert noise[0] == pytest.approx(DEPTH_STD_M)
     assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
+
+
+def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_keyframes() -> None:
+    """A posed keyframe decides, a matched one leaves depth open."""
+    points = BODY.points(BODY.pose(TRUTH[:11]))
+    spread = undecided_covariance(points, CAMERA, np.array([0, 10]), np.array([0.0, 1.0]))
+    assert np.abs(spread[0]).max() == 0.0
+    assert np.trace(spread[10, 4]) == pytest.approx(UNDECIDED_DEPTH_M**2)
+    sight = points[10, 4] - CAMERA.pose()[1]
+    along = sight @ spread[10, 4] @ sight / (sight @ sight)
+    assert along == pytest.approx(UNDECIDED_DEPTH_M**2)
 
 
 def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:

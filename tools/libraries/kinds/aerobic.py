@@ -138,7 +138,7 @@ def _step_touches(work: Composer) -> None:
 
 
 def _knee_lifts(work: Composer) -> None:
-    """High knees with the opposite arm, with the arms wide, and marching on the spot."""
+    """High knees with the opposite arm to the front or bent up, and marching on the spot."""
 
     def lifted(hip: float, knee: float, left: Arm, right: Arm, turn: float) -> Moment:
         return balanced_over(
@@ -158,8 +158,8 @@ def _knee_lifts(work: Composer) -> None:
 
     exercises = {
         "knee lift": (
-            lifted(52, 78, Arm(14, 20, 10, 50), Arm(34, 75, 20, 76), 52),
-            lifted(98, 108, Arm(-20, 110, 10, 68), Arm(70, 78, 24, 84), 98),
+            lifted(52, 78, Arm(30, 4, 12, 62), Arm(52, 70, 20, 60), 52),
+            lifted(98, 108, Arm(50, -12, 6, 80), _raised(88, 70, 42, 20), 98),
         ),
         "knee lift with wide arms": (
             lifted(52, 78, _raised(66, 14, 26), _raised(66, 16, 62, -40), 0),

@@ -194,12 +194,12 @@ def _aside(work: Composer) -> None:
 
 def _to_the_floor(work: Composer) -> None:
     """Before the feet, beside the right foot and before the left, by bending knees and back alike."""
-    balancing = Arm(72, 76, 10, 26)
+    balancing = Arm(46, 66, 10, 30)
     for name, posed in (
         ("floor: bowing", _reaching(Arm(30, 80, 14, 26), HANGING, bow=18, waist=14, bend=26, head=(4, 0))),
         (
             "floor: low",
-            _reaching(Arm(54, 84, 10, 16), Arm(48, 76, 10, 22), bow=36, waist=28, bend=60, head=(-6, 0)),
+            _reaching(Arm(54, 84, 10, 16), Arm(34, 66, 10, 24), bow=36, waist=28, bend=60, head=(-6, 0)),
         ),
         (
             "floor",
