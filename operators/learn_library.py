@@ -84,7 +84,6 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
             title = self.title.strip() or take.name
             taken = {found.identifier for found in shelved(folders())}
             taken |= {library.identifier for library in context.scene.keymark.libraries}
-            taken.discard(self.learned_as)
             library = library_from_action(
                 take.armature,
                 take.finish.action or take.motion_action,
@@ -93,7 +92,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
                     title=title,
                     author=self.author.strip() or "Unknown",
                     license=self.license.strip(),
-                    identifier=identifier_from(title, taken),
+                    identifier=self.learned_as or identifier_from(title, taken),
                 ),
                 self.count or None,
             )
