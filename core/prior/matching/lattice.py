@@ -52,10 +52,10 @@ class Lattice:
                 source[rows] = way.origin[better]
             sources.append(source)
             score = best + self._log_likelihood(index)
-        rows = [int(score.argmax())]
+        last = [int(score.argmax())]
         for source in reversed(sources):
-            rows.append(int(source[rows[-1]]))
-        return np.array([fit.states[row] for fit, row in zip(self.fits, rows[::-1], strict=True)])
+            last.append(int(source[last[-1]]))
+        return np.array([fit.states[row] for fit, row in zip(self.fits, last[::-1], strict=True)])
 
     def posterior(self) -> tuple[list[Single], float]:
         """Of each frame the probability of its states, (K,); and the logarithm of the whole evidence."""

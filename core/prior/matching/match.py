@@ -59,8 +59,8 @@ class LibraryMatch:
     """The frames proposed for keyframes, in order."""
     fit: float
     """How well the footage is explained, 0 to 1."""
-    floor_m: float | None
-    """Height of the floor that the performer was placed on; None where none was believed in."""
+    floor_m: float
+    """Height of the floor that the performer was placed on."""
     course: Posture
     """(F,) what the match says of every frame of the clip."""
     log_evidence: float
@@ -90,47 +90,45 @@ def prepare(sought: Sought, library: Library) -> Prepared:
     return Prepared(library, chains, solids, states, sampled, first)
 
 
-def match_library(sought: Sought, prepared: Prepared, floor_m: float | None) -> Part[LibraryMatch]:
+def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[LibraryMatch]:
     """Find a library's postures in footage.
 
     Args:
         sought: The take.
         prepared: The library, see `prepare`.
-        floor_m: Height of the floor; where None, z = 0 if that agrees with the markers' sizes, else what
-            they say.
+        floor_m: Height of the floor.
 
     Yields:
         The fraction that is done.
     """
     tracks, sampled = sought.tracks, prepared.sampled
     chains, states = prepared.chains, prepared.states
-    floor = prepared.glance.floor_m if floor_m is None else floor_m
     time_s = tracks.time_s[sampled]
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
     table = CourseTable(chains, prepared.solids)
     habits = Habits.unknown(len(sought.segments))
     for look in (0, 1):  # the second look knows how the performer differs from the library
-        seen = sights(sought.camera, tracks, sought.segments, sampled, floor, FLOOR_STD_M, habits)
+        seen = sights(sought.camera, tracks, sought.segments, sampled, floor_m, FLOOR_STD_M, habits)
         fits = [sweep(sight, states) for sight in seen]
         yield 0.2 + 0.4 * look
         lattice = Lattice(chains, states, seen, fits, tempering, time_s)
         path = Path(chains, states, seen, fits, lattice.best_path(), time_s)
         yield 0.4 + 0.4 * look
-        refinement = Refinement(table, seen, time_s, tempering, floor, FLOOR_STD_M)
+        refinement = Refinement(table, seen, time_s, tempering, floor_m, FLOOR_STD_M)
         refined = refinement.refined(path.course())
         if look == 0:
             habits = refinement.habits(refined)
     shares, evidence = lattice.posterior()
     yield 0.95
     course = _every_frame(table, refined, sampled, tracks.frame_count)
-    frames = tuple(
-        alternatives(path, shares[row], int(row), int(sampled[row]), course[int(sampled[row])])
-        for row in np.searchsorted(sampled, sought.keyframes)
-    )
+    explained = _explained(refinement, refined, habits)
     likelihood = evidence / (len(sampled) * tempering)
-    return LibraryMatch(
-        prepared.library, frames, _fit(refinement, refined, habits.middle), floor, course, likelihood
-    )
+    frames = []
+    for row in np.searchsorted(sampled, sought.keyframes):
+        index = int(sampled[row])
+        frames.append(alternatives(path, shares[row], int(row), index, course[index], float(explained[row])))
+    fit = float(explained.mean())
+    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, course, likelihood)
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
@@ -149,16 +147,16 @@ def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count:
     return interpolate(tuple(keyframes), frame_count)
 
 
-def _fit(refinement: Refinement, course: Course, usual: Array) -> float:
-    """Mean weight of the markers' middles, of which one weighs less the farther it is off.
+def _explained(refinement: Refinement, course: Course, habits: Habits) -> Array:
+    """(T,) mean weight of the markers' middles in each frame: one weighs less the farther it is off.
 
     Args:
         refinement: What the course was refined by.
         course: The course.
-        usual: (M,) what the usual deviations were multiplied by there.
+        habits: Of the performer, as the refinement has them.
     """
-    size = np.ones(len(usual))
-    off, _, _ = refinement.residuals(course.chain, course.values, size)
-    squared = ((off * usual[:, None]) ** 2).sum(axis=-1)
+    off, _, _ = refinement.residuals(course.chain, course.values, np.ones(len(habits.size)))
+    squared = ((off * habits.middle[:, None]) ** 2).sum(axis=-1)
     seen = np.array([sight.seen for sight in refinement.sights])
-    return float((1.0 / (1.0 + squared / DEGREES))[seen].mean())
+    weight = seen / (1.0 + squared / DEGREES)
+    return np.asarray(weight.sum(axis=1) / np.maximum(seen.sum(axis=1), 1))

@@ -110,7 +110,9 @@ class Refinement:
         weight, _, _, whole, *_ = self._seen
         size = self._sizes(course.chain, course.values)
         off, extent, _ = self.residuals(course.chain, course.values, size)
-        return Habits(scale(off, weight > 0.0, self.tempering), scale(extent, whole, self.tempering), size)
+        return Habits(
+            scale(off, weight > 0.0, self.tempering), scale(extent, whole > 0.0, self.tempering), size
+        )
 
     def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
         """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T,) of the floor."""
