@@ -86,7 +86,6 @@ def match_take(
             share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
             part = match_library(sought, one, floor)
             matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
-    yield Progress("Done", 1.0)
     return _choice(usable, matches)
 
 

@@ -71,13 +71,13 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
     if not libraries:
         return Solved(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
-    job = match_take(take, reading, libraries, floor_m)
-    choice = yield from stretch(job, READING_SHARE, MATCHING_SHARE)
+    matching = match_take(take, reading, libraries, floor_m)
+    choice = yield from stretch(matching, READING_SHARE, MATCHING_SHARE)
     if choice.match is None:
         raise ConversionError(f"{take.folder}: {choice.reason}; nothing was written")
     take = with_matches(take, choice.match)
-    job = reconstruct(take, method, reading)
-    return Solved(take, (yield from stretch(job, MATCHING_SHARE, 1.0)), choice)
+    solving = reconstruct(take, method, reading)
+    return Solved(take, (yield from stretch(solving, MATCHING_SHARE, 1.0)), choice)
 
 
 def match_summary(take: Take, choice: LibraryChoice) -> dict[str, Any]:
