@@ -20,8 +20,8 @@ ABOUT_RIGHT_M = 0.10
 CERTAIN = 0.02, 0.98
 """No probability is believed to be outside these."""
 BASE, SHARE_COUNTS = -3.3, 1.0 / 3.0
-"""Logistic regression, rounded, of being about right, on 23 matches of 15 takes with truth and right and wrong
-libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 14, 33, 67 and 95 % were."""
+"""Logistic regression, rounded, of being about right, on 23 matches of 15 takes with truth, with right and
+wrong libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 14, 33, 67 and 95 % were."""
 
 
 def alternatives(
