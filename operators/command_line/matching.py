@@ -15,6 +15,8 @@ from ...core.take import Take, read_take
 from .libraries import library_folders
 
 AUTOMATIC = "auto"
+NAMED = 3
+"""So many libraries are named where none fits."""
 READING_SHARE, MATCHING_SHARE = 0.5, 0.6
 """How far the whole job is when the footage is read, and when it is matched."""
 
@@ -74,7 +76,8 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
     matching = match_take(take, reading, libraries, floor_m)
     choice = yield from stretch(matching, READING_SHARE, MATCHING_SHARE)
     if choice.match is None:
-        raise ConversionError(f"{take.folder}: {choice.reason}; nothing was written")
+        likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
+        raise ConversionError(f"{take.folder}: {choice.reason}; likeliest are {likely}; nothing was written")
     take = with_matches(take, choice.match)
     solving = reconstruct(take, method, reading)
     return Solved(take, (yield from stretch(solving, MATCHING_SHARE, 1.0)), choice)
