@@ -26,9 +26,10 @@ PROBE = 5e-3
 """By which derivatives are taken [s, rad, m]."""
 LARGEST = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
 """No unknown moves farther at once."""
-EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 0.35])
-"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's."""
-CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 0.5])
+EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
+"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's: upwards
+the floor tells it, and who jumps or crouches otherwise is fast."""
+CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
 """Of what these change by in a second, as the square root of time."""
 MOST_SIZE = 1.5
 """No marker is larger or smaller than on an average body by more."""
@@ -115,7 +116,7 @@ class Refinement:
         )
 
     def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
-        """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T,) of the floor."""
+        """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T, 1) of the floor."""
         weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
         turn = about_up(values[:, 1])
@@ -127,8 +128,9 @@ class Refinement:
         extent = (shown - root * depth[..., None]) / deviation[..., None] * np.array([1.0, np.sqrt(2.0), 1.0])
         extent = np.where(whole[..., None], extent, 0.0)
         if self.floor_m is None:
-            return off, extent, np.zeros(len(values))
-        return off, extent, (values[:, 4] - read.height - self.floor_m) / self.floor_std_m
+            return off, extent, np.zeros((len(values), 1))
+        over = values[:, 4] - read.height - self.floor_m
+        return off, extent, over[:, None] / self.floor_std_m
 
     def _footage(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
@@ -146,11 +148,11 @@ class Refinement:
     def _weighted(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
         """(T, R) residuals, weighted as Student's t has it with what they are at some place."""
         rows = []
-        for value, now in zip(values[:2], at[:2], strict=True):
+        for value, now in zip(values, at, strict=True):
             squared = (now**2).sum(axis=-1)
             trust = np.sqrt((DEGREES + now.shape[-1]) / (DEGREES + squared))
             rows.append((value * trust[..., None]).reshape(len(value), -1))
-        return np.asarray(np.sqrt(self.tempering) * np.concatenate([*rows, values[2][:, None]], axis=1))
+        return np.asarray(np.sqrt(self.tempering) * np.concatenate(rows, axis=1))
 
     def _evenness(self, course: Course, values: Array, matrix: Array, gradient: Array) -> None:
         """Add that motions go on at a usual speed and change it little."""
