@@ -81,7 +81,7 @@ def fitted(trial: Trial, index: int, posed: tuple[Keyframe, ...]) -> Fit:
     """The fit of one frame with some keyframes posed, as the operator makes it, held against the truth."""
     take = trial.take
     body, segments = take.body, take.marker_segments
-    model = RegionModel(body, take.camera, tuple(MarkerPlacement(segment) for segment in segments))
+    model = RegionModel(body, take.camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
     observed = ObservedRegions.from_tracks(trial.tracks)
     results: list[tuple[Belief, FrameFit]] = []
 

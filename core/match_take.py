@@ -36,7 +36,7 @@ WELL = 0.9
 BETTER = 0.04
 """So much more of the footage is explained where what was read again is right."""
 NEAR_FRAMES = 2
-"""A posed keyframe this near makes a matched one needless."""
+"""No matched keyframe comes so near to a posed one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,16 +154,32 @@ def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:
 
 
 def with_matches(take: Take, match: LibraryMatch) -> Take:
-    """The take with a match's keyframes: posed ones stay, matched ones come where no posed one is near."""
-    posed = [keyframe for keyframe in take.keyframes if keyframe.matched is None]
-    keyframes = list(posed)
+    """The take with a match's keyframes: posed ones stay, and matched ones near them move beside them.
+
+    Beside a posed keyframe a matched one tells how the performer differs from the library (`prior/style`).
+    """
+    posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
+    keyframes = {keyframe.index: keyframe for keyframe in take.keyframes if keyframe.matched is None}
     for frame in match.frames:
-        if any(abs(keyframe.index - frame.index) <= NEAR_FRAMES for keyframe in posed):
+        index = _beside(frame.index, posed, match.course.batch[0])
+        if index is None or index in keyframes:
             continue
         chosen = frame.candidates[0]
+        posture = chosen.posture if index == frame.index else match.course[index]
         said = Matched(match.library.identifier, chosen.name, chosen.mirrored, chosen.confidence)
-        keyframes.append(Keyframe(frame.index, chosen.posture, matched=said))
-    return replace(take, keyframes=tuple(sorted(keyframes, key=lambda keyframe: keyframe.index)))
+        keyframes[index] = Keyframe(index, posture, matched=said)
+    return replace(take, keyframes=tuple(keyframes[index] for index in sorted(keyframes)))
+
+
+def _beside(index: int, posed: Sequence[int], frames: int) -> int | None:
+    """The frame itself or, near a posed keyframe, the nearest that is not; None where there is none."""
+    reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
+    free = [
+        index + step
+        for step in sorted(reach, key=abs)
+        if 0 <= index + step < frames and all(abs(index + step - other) > NEAR_FRAMES for other in posed)
+    ]
+    return free[0] if free else None
 
 
 def _choice(libraries: Sequence[Library], ranked: Sequence[LibraryMatch]) -> LibraryChoice:

@@ -84,7 +84,10 @@ def match_notes(take: Take) -> tuple[str, ...]:
             "another performer's; what the markers do not show, depth above all, is like that performer's"
         ]
     else:
-        notes = [f"{posed} keyframes were posed; {len(matched)} others are matched postures of {libraries}"]
+        notes = [
+            f"{posed} of {len(take.keyframes)} keyframes were posed; the others are postures of the library "
+            f"{libraries}, changed the way the posed ones differ from it"
+        ]
     doubted = [(keyframe, said) for keyframe, said in matched if said.confidence < DOUBTED_MATCH]
     if doubted:
         worst = sorted(doubted, key=lambda one: one[1].confidence)[:MOST_NAMED]

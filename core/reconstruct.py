@@ -196,7 +196,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
 
 def _average_model(take: Take) -> RegionModel:
     """The markers as they sit on an average performer."""
-    placements = tuple(MarkerPlacement(segment) for segment in take.marker_segments)
+    placements = tuple(MarkerPlacement.usual(segment) for segment in take.marker_segments)
     return RegionModel(take.body, take.camera, placements)
 
 

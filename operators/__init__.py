@@ -41,6 +41,7 @@ MODULES = (
     "new_library",
     "edit_library",
     "gather_library",
+    "keep_library",
     "remove_library",
     "add_posture",
     "edit_postures",

@@ -40,6 +40,12 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         default=True,
     )
 
+    learned_as: bpy.props.StringProperty(
+        name="Learned As",
+        description="Identifier that the library was given, so that doing it again replaces it",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a motion."""
@@ -76,8 +82,8 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
 
             take, render = active_take(context.scene), context.scene.render
             title = self.title.strip() or take.name
-            taken = [found.identifier for found in shelved(folders())]
-            taken += [library.identifier for library in context.scene.keymark.libraries]
+            taken = {found.identifier for found in shelved(folders())}
+            taken |= {library.identifier for library in context.scene.keymark.libraries}
             library = library_from_action(
                 take.armature,
                 take.finish.action or take.motion_action,
@@ -86,11 +92,12 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
                     title=title,
                     author=self.author.strip() or "Unknown",
                     license=self.license.strip(),
-                    identifier=identifier_from(title, taken),
+                    identifier=self.learned_as or identifier_from(title, taken),
                 ),
                 self.count or None,
             )
             library_from_json(library_to_json(library), f"library '{title}'")  # checks what was typed
+            self.learned_as = library.identifier
             if self.for_matching:
                 write_library(library_path(own_folder(), library.identifier), library)
                 fill(library.identifier)

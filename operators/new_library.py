@@ -20,8 +20,9 @@ class KEYMARK_OT_new_library(bpy.types.Operator):
     author: bpy.props.StringProperty(name="Author", description="Who makes it")
     license: bpy.props.StringProperty(
         name="License",
-        description="Under which terms others may use it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0",
-        default="CC-BY-4.0",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
     )
 
     @classmethod

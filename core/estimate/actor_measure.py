@@ -186,7 +186,7 @@ class _Problem:
 
     def model(self, x: Array) -> RegionModel:
         """The markers on that body."""
-        average = tuple(MarkerPlacement(segment) for segment in self.segments)
+        average = tuple(MarkerPlacement.usual(segment) for segment in self.segments)
         change = x[HUMAN.dof_count + len(MEASURED) :].reshape(len(average), -1)
         values = np.clip(placement_values(average) + change, SMALLEST, LARGEST)
         return RegionModel(self.body(x), self.camera, placements_from(average, values))

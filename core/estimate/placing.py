@@ -62,7 +62,7 @@ def place_standing(
     known = _usable(regions, segments)
     if regions is None or not known.any():
         return _in_the_middle(body, camera, frame, standing)
-    model = RegionModel(body, camera, tuple(MarkerPlacement(segment) for segment in segments))
+    model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
     centroid = _centre(regions.centroid[0], known)
     _, direction = camera.rays(centroid, frame)
     distance = _usual_distance(body, camera)

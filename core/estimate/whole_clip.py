@@ -104,7 +104,7 @@ def estimate_whole_clip(
     """
     options = options or WholeClipOptions()
     observed = ObservedRegions.from_tracks(tracks)
-    model = RegionModel(body, camera, tuple(MarkerPlacement(name) for name in segments))
+    model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     index = np.array(keyframe_indices, dtype=np.intp)
     doubt = np.zeros(len(index)) if doubt is None else doubt

@@ -24,7 +24,7 @@ def headings_rad(posture: Posture) -> Array:
     return np.where(level > np.sqrt(0.5), ahead, across)
 
 
-def moved(posture: Posture, angle_rad: Array, shift: Array) -> Posture:
+def moved(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
     """Postures turned about the world's vertical axis, then shifted.
 
     Args:

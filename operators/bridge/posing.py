@@ -135,7 +135,7 @@ def fit_to_frame(
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
-    model = RegionModel(body, camera, tuple(MarkerPlacement(segment) for segment in frame.segments))
+    model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in frame.segments))
     if start == "POSE":
         belief = belief_from_pose(read_posture(armature_object, body).posture)
     elif start == "KEYFRAMES" and keyframes:

@@ -15,6 +15,8 @@ from ...core.take import Take, read_take
 from .libraries import library_folders
 
 AUTOMATIC = "auto"
+NAMED = 3
+"""So many libraries are named where none fits."""
 READING_SHARE, MATCHING_SHARE = 0.5, 0.6
 """How far the whole job is when the footage is read, and when it is matched."""
 
@@ -71,13 +73,14 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
     if not libraries:
         return Solved(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
-    job = match_take(take, reading, libraries, floor_m)
-    choice = yield from stretch(job, READING_SHARE, MATCHING_SHARE)
+    matching = match_take(take, reading, libraries, floor_m)
+    choice = yield from stretch(matching, READING_SHARE, MATCHING_SHARE)
     if choice.match is None:
-        raise ConversionError(f"{take.folder}: {choice.reason}; nothing was written")
+        likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
+        raise ConversionError(f"{take.folder}: {choice.reason}; likeliest are {likely}; nothing was written")
     take = with_matches(take, choice.match)
-    job = reconstruct(take, method, choice.reading or reading)
-    return Solved(take, (yield from stretch(job, MATCHING_SHARE, 1.0)), choice)
+    solving = reconstruct(take, method, choice.reading or reading)
+    return Solved(take, (yield from stretch(solving, MATCHING_SHARE, 1.0)), choice)
 
 
 def match_summary(take: Take, choice: LibraryChoice) -> dict[str, Any]:

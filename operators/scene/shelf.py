@@ -7,6 +7,7 @@ what was found then.
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
+from zlib import crc32
 
 import bpy
 from bpy.app import timers
@@ -69,13 +70,18 @@ def library_items(_properties: object, context: bpy.types.Context | None) -> lis
     automatic = "Choose the library that fits the footage best, and say how sure that is"
     found: list[Item] = [(AUTOMATIC, "Automatic", automatic, "VIEWZOOM", 0)]
     found += [
-        (library.name, library.title, library.description, "ASSET_MANAGER", number)
-        for number, library in enumerate(manager.keymark_shelf.libraries, start=1)
+        (library.name, library.title, library.description, "ASSET_MANAGER", _number(library.name))
+        for library in manager.keymark_shelf.libraries
         if not library.problem
     ]
     if found != _items:
         _items[:] = found
     return _items
+
+
+def _number(identifier: str) -> int:
+    """What a file keeps of a choice among menu entries: the same for a library, whatever others there are."""
+    return 1 + crc32(identifier.encode()) % (2**31 - 2)
 
 
 def fill(choose: str = "") -> None:

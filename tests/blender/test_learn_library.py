@@ -87,6 +87,15 @@ def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup
     assert [library.identifier for library in bpy.context.scene.keymark.libraries] == ["swing", "swing_2"]
 
 
+def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup, own: Path) -> None:
+    """The redo panel goes back and does it anew: the file is the one it wrote before."""
+    assert bpy.ops.keymark.learn_library(title="Swing") == {"FINISHED"}
+    bpy.context.scene.keymark.libraries.clear()
+    assert bpy.ops.keymark.learn_library(title="Swing", count=14, learned_as="swing") == {"FINISHED"}
+    assert [file.name for file in own.iterdir()] == ["swing.json"]
+    assert len(read_library(own / "swing.json").postures) == 14
+
+
 def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, own: Path) -> None:
     """A licence that is none, or more postures than frames: one sentence, no file, no asset."""
     actions = len(bpy.data.actions)

@@ -1,5 +1,6 @@
 """Keyframe libraries as pose assets: to files, to other armatures, and back."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -162,6 +163,43 @@ def test_nonsense_in_an_asset_is_one_sentence(library: Library, name: str, value
     with pytest.raises(InputError, match=sentence) as raised:
         library_from_assets([action])
     assert "\n" not in str(raised.value)
+
+
+WRONG = (None, True, -1, 10**14, 1e308, "", "x" * 5000, "\u202e", [], [[]], {}, {"a": 1}, [None] * 3)
+
+
+def _spoiled(value: object, rng: np.random.Generator) -> object:
+    """A JSON value with one thing in it, however deep, exchanged for something else or left out."""
+    if not isinstance(value, dict | list) or not value or rng.random() < 0.15:
+        return WRONG[rng.integers(len(WRONG))]
+    keys = list(value) if isinstance(value, dict) else list(range(len(value)))
+    key = keys[rng.integers(len(keys))]
+    spoiled = dict(value) if isinstance(value, dict) else list(value)
+    if rng.random() < 0.2:
+        del spoiled[key]
+    else:
+        spoiled[key] = _spoiled(value[key], rng)
+    return spoiled
+
+
+def test_spoiled_texts_of_an_asset_are_refused_or_read(library: Library) -> None:
+    """Many ways to spoil what an asset says: a library, or one sentence; never anything else."""
+    actions = add_assets(library)[:2]
+    first = actions[0]
+    texts = {name: first[name] for name in (HEADER, POSTURE)}
+    rng = np.random.default_rng(5)
+    refused = 0
+    for turn in range(160):
+        name = (HEADER, POSTURE)[turn % 2]
+        for own, text in texts.items():
+            first[own] = text
+        first[name] = json.dumps(_spoiled(json.loads(texts[name]), rng))
+        try:
+            assert library_from_assets(actions)
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error)
+    assert refused > 80
 
 
 def test_nonsense_in_curves_is_passed_over(library: Library) -> None:

@@ -13,6 +13,8 @@ from keymark.core.library.library_file import write_library
 from keymark.core.library.shelf import shelved
 from keymark.operators.bridge.library_blend import read_library_blend, write_library_blend
 from keymark.operators.scene import shelf
+from keymark.operators.scene.libraries import add_library
+from keymark.operators.scene.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
 
@@ -164,6 +166,28 @@ def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) ->
     imported_again = bpy.ops.keymark.import_library(filepath=str(path), existing="BOTH")
     assert imported_again == {"FINISHED"}
     assert titles(own) == [("small", "Small", 2, 2), ("small_2", "Small 2", 2, 1)]
+
+
+def test_a_library_of_this_file_is_kept_for_matching(own: Path, library: Library) -> None:
+    """As it is now; after a change, the older one is not replaced unasked."""
+    add_library(bpy.context.scene, library)
+    bpy.ops.keymark.keep_library()
+    assert titles(own) == [("small", "Small", 2, 2)]
+    bpy.ops.keymark.remove_posture()
+    with pytest.raises(RuntimeError, match="same version, but not the same"):
+        bpy.ops.keymark.keep_library()
+    bpy.ops.keymark.keep_library(existing="REPLACE")
+    assert titles(own) == [("small", "Small", 2, 1)]
+
+
+def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
+    """What a file keeps of the choice means the same library after another has come before it in the menu."""
+    take = add_take(bpy.context.scene, "Take")
+    imported(library, tmp_path)
+    take.matching.library = "small"
+    imported(replace(library, identifier="another", title="Another"), tmp_path)
+    assert [item[0] for item in shelf.library_items(None, bpy.context)] == ["auto", "another", "small"]
+    assert take.matching.library == "small"
 
 
 def test_a_file_on_the_shelf_that_is_damaged_is_listed_as_such(own: Path) -> None:

@@ -135,13 +135,13 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
 
     def nothing_fits(_take: object, _reading: object, given: Any, _floor_m: object) -> Any:
         yield from ()
-        return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits: Swaying 50%")
+        return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits")
 
     monkeypatch.setattr(matching, "match_take", nothing_fits)
     monkeypatch.setattr(libraries, "SHIPPED", tmp_path)
     assert convert(take, tmp_path / "out", "--library", "auto", "--quiet") == 1
     said = capsys.readouterr().err
-    assert "none of them fits: Swaying 50%" in said and len(said.splitlines()) == 1
+    assert "none of them fits; likeliest are Swaying 50%" in said and len(said.splitlines()) == 1
     assert not (tmp_path / "out").exists()
 
 

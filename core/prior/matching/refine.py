@@ -26,9 +26,10 @@ PROBE = 5e-3
 """By which derivatives are taken [s, rad, m]."""
 LARGEST = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
 """No unknown moves farther at once."""
-EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 0.35])
-"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's."""
-CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 0.5])
+EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
+"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's: upwards
+the floor tells it, and who jumps or crouches otherwise is fast."""
+CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
 """Of what these change by in a second, as the square root of time."""
 MOST_SIZE = 1.5
 """No marker is larger or smaller than on an average body by more."""
@@ -128,7 +129,8 @@ class Refinement:
         extent = np.where(whole[..., None], extent, 0.0)
         if self.floor_m is None:
             return off, extent, np.zeros((len(values), 1))
-        return off, extent, (values[:, 4:] - read.height[:, None] - self.floor_m) / self.floor_std_m
+        over = values[:, 4] - read.height - self.floor_m
+        return off, extent, over[:, None] / self.floor_std_m
 
     def _footage(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""

@@ -27,7 +27,7 @@ ROOT_STD_M = 0.025
 LEAST_QUALITY = 0.05
 DOUBTED = 0.15
 """Share of its weight that a marker keeps in finding the place, where another performer holds that limb
-otherwise, or the floor's height, where one crouches deeper: among all places tried the likeliest counts."""
+otherwise: among all places tried the likeliest counts."""
 FAR_M = 1e3
 """Holds the place of a body of which too little is seen; of no weight beside any marker."""
 
@@ -40,7 +40,8 @@ class Sight:
     """
 
     place: Array
-    """(V, 3, 3 M + 2) the hips' place in the world [m]: all trusted, the floor doubted, then each marker."""
+    """(V, 3, 3 M + 2) the hips' place in the world [m], with all trusted, then with each marker
+    doubted, then the floor."""
     left: Array
     """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
     weight: Array
@@ -128,8 +129,10 @@ def _sight(
         by_place[-1, 2] = 1.0 / floor_std_m
         by_posture[-1, -2] = -1.0 / floor_std_m
         by_posture[-1, -1] = (location[2] - floor_m) / floor_std_m
-    doubts = [[], [rows - 1], *([2 * marker, 2 * marker + 1] for marker in np.flatnonzero(seen))]
-    place = np.stack([_solved(by_place, by_posture, doubted) for doubted in doubts])
+    doubts: list[slice | None] = [None, *(slice(2 * m, 2 * m + 2) for m in np.flatnonzero(seen))]
+    if floor_m is not None:
+        doubts.append(slice(2 * markers, None))  # who jumps higher than the library
+    place = np.stack([_solved(by_place, by_posture, rows) for rows in doubts])
     left = by_posture + by_place @ place
     place[:, :, -1] += location
     pixel = 1.0 / camera.focal_px
@@ -154,10 +157,11 @@ def _sight(
     )
 
 
-def _solved(by_place: Array, by_posture: Array, doubted: list[int]) -> Array:
+def _solved(by_place: Array, by_posture: Array, doubted: slice | None) -> Array:
     """(3, 3 M + 2) the place, relative to the camera, that leaves least where some rows hardly count."""
     trust = np.ones(len(by_place))
-    trust[doubted] = DOUBTED
+    if doubted is not None:
+        trust[doubted] = DOUBTED
     weighted = by_place.T * trust**2
     return np.asarray(-np.linalg.solve(weighted @ by_place + np.eye(3) / FAR_M**2, weighted @ by_posture))
 

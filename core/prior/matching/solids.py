@@ -45,7 +45,7 @@ def marker_solids(body: Body, segments: tuple[str, ...], posture: Posture) -> So
     middle = np.empty((len(posture.translation), len(segments), 3))
     spread = np.empty((*middle.shape, 3))
     for marker, segment in enumerate(segments):
-        pieces = PieceStack.of(MarkerPlacement(segment).pieces(body))
+        pieces = PieceStack.of(MarkerPlacement.usual(segment).pieces(body))
         start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)  # (N, Q, 3)
         axis = end - start
         width = pieces.half_widths.mean(axis=1)  # (Q, 2)

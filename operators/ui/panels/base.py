@@ -74,5 +74,6 @@ def draw_sentence(
     letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
     lines = layout.column(align=True)
     lines.scale_y = 0.8
-    for number, line in enumerate(wrap(sentence, letters)):
+    kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
+    for number, line in enumerate(wrap(kept, letters)):
         lines.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)

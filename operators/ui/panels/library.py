@@ -153,7 +153,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         """Draw the list, what is known of the chosen one, and what is done with it."""
         shelf, layout = context.window_manager.keymark_shelf, self.layout
         row = layout.row()
-        row.template_list("KEYMARK_UL_shelf", "", shelf, "libraries", shelf, "active", rows=4, maxrows=8)
+        row.template_list("KEYMARK_UL_shelf", "", shelf, "libraries", shelf, "active", rows=4, maxrows=6)
         buttons = row.column(align=True)
         buttons.operator("keymark.import_library", text="", icon="IMPORT")
         buttons.operator("keymark.discard_library", text="", icon="REMOVE")
@@ -202,7 +202,7 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
         row.menu("KEYMARK_MT_library", text="", icon="DOWNARROW_HLT")
         row = layout.row()
         row.template_list(
-            "KEYMARK_UL_library_postures", "", group, "postures", group, "active_posture", rows=5, maxrows=12
+            "KEYMARK_UL_library_postures", "", group, "postures", group, "active_posture", rows=5, maxrows=8
         )
         buttons = row.column(align=True)
         buttons.operator("keymark.add_posture", text="", icon="ADD").replace = False
@@ -216,6 +216,7 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
             row = column.row(align=True)
             row.operator("keymark.apply_posture", icon="POSE_HLT").mirrored = False
             row.operator("keymark.apply_posture", text="", icon="MOD_MIRROR").mirrored = True
+        column.operator("keymark.keep_library", icon="USER")
         row = column.row(align=True)
         row.operator("keymark.export_library", text="Export", icon="EXPORT").library = ""
         row.operator("keymark.install_library", text="Install", icon="ASSET_MANAGER").library = ""

@@ -12,8 +12,6 @@ from .base import TakePanel, draw_progress, draw_sentence
 
 WORTH_NAMING = 0.005
 """Probability below which the second best kind of motion is none."""
-CLEAR = 0.6
-"""Probability of a kind of motion above which nothing needs to be thought over."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
 NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
@@ -98,7 +96,7 @@ def _draw_choice(
     if not len(matching.ranking):
         return
     best, *others = matching.ranking
-    sure = min(best.probability, matching.fit) >= CLEAR
+    sure = best.probability >= SURE and matching.fit >= DOUBTFUL
     icon = "CHECKMARK" if sure else "QUESTION"
     if others and others[0].probability < WORTH_NAMING:
         words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)

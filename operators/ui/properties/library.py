@@ -178,8 +178,9 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
     )
     license: bpy.props.StringProperty(
         name="License",
-        description="Under which terms others may use it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0",
-        default="CC-BY-4.0",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
         update=_details_changed,
     )
     description: bpy.props.StringProperty(

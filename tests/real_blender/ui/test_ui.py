@@ -12,7 +12,7 @@ from keymark.core.take import read_take
 
 pytestmark = pytest.mark.ui
 
-UNPOSED_MM = 150.0
+UNPOSED_MM = 200.0
 """Error with hips aligned beyond which a motion is no likeness of the performer's."""
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = ("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish")
