@@ -29,7 +29,7 @@ LOOKING = 0.3
 AGAIN = 0.7
 """Share that the first round is, where the footage is then read again."""
 OTHER_REGION, OFTEN = 1.0, 0.15
-"""Another region lies this far off, in sizes; a marker that was another thing is so in that share of frames."""
+"""Another region lies this far off, in sizes; a marker that was another thing is so in so many frames."""
 BETTER = 0.04
 """So much more of the footage is explained where what was read again is right."""
 NEAR_FRAMES = 2

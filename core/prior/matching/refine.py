@@ -115,7 +115,7 @@ class Refinement:
         )
 
     def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
-        """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T,) of the floor."""
+        """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T, 1) of the floor."""
         weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
         turn = about_up(values[:, 1])
@@ -127,8 +127,8 @@ class Refinement:
         extent = (shown - root * depth[..., None]) / deviation[..., None] * np.array([1.0, np.sqrt(2.0), 1.0])
         extent = np.where(whole[..., None], extent, 0.0)
         if self.floor_m is None:
-            return off, extent, np.zeros(len(values))
-        return off, extent, (values[:, 4] - read.height - self.floor_m) / self.floor_std_m
+            return off, extent, np.zeros((len(values), 1))
+        return off, extent, (values[:, 4:] - read.height[:, None] - self.floor_m) / self.floor_std_m
 
     def _footage(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
@@ -146,11 +146,11 @@ class Refinement:
     def _weighted(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
         """(T, R) residuals, weighted as Student's t has it with what they are at some place."""
         rows = []
-        for value, now in zip(values[:2], at[:2], strict=True):
+        for value, now in zip(values, at, strict=True):
             squared = (now**2).sum(axis=-1)
             trust = np.sqrt((DEGREES + now.shape[-1]) / (DEGREES + squared))
             rows.append((value * trust[..., None]).reshape(len(value), -1))
-        return np.asarray(np.sqrt(self.tempering) * np.concatenate([*rows, values[2][:, None]], axis=1))
+        return np.asarray(np.sqrt(self.tempering) * np.concatenate(rows, axis=1))
 
     def _evenness(self, course: Course, values: Array, matrix: Array, gradient: Array) -> None:
         """Add that motions go on at a usual speed and change it little."""

@@ -27,7 +27,7 @@ ROOT_STD_M = 0.025
 LEAST_QUALITY = 0.05
 DOUBTED = 0.15
 """Share of its weight that a marker keeps in finding the place, where another performer holds that limb
-otherwise: among all places tried the likeliest counts."""
+otherwise, or the floor's height, where one crouches deeper: among all places tried the likeliest counts."""
 FAR_M = 1e3
 """Holds the place of a body of which too little is seen; of no weight beside any marker."""
 
@@ -40,7 +40,7 @@ class Sight:
     """
 
     place: Array
-    """(V, 3, 3 M + 2) the hips' place in the world [m], with all markers trusted, then with each doubted."""
+    """(V, 3, 3 M + 2) the hips' place in the world [m], with all trusted, with the floor doubted, then each marker."""
     left: Array
     """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
     weight: Array
@@ -128,7 +128,8 @@ def _sight(
         by_place[-1, 2] = 1.0 / floor_std_m
         by_posture[-1, -2] = -1.0 / floor_std_m
         by_posture[-1, -1] = (location[2] - floor_m) / floor_std_m
-    place = np.stack([_solved(by_place, by_posture, doubted) for doubted in (None, *np.flatnonzero(seen))])
+    doubts = [[], [rows - 1], *([2 * marker, 2 * marker + 1] for marker in np.flatnonzero(seen))]
+    place = np.stack([_solved(by_place, by_posture, doubted) for doubted in doubts])
     left = by_posture + by_place @ place
     place[:, :, -1] += location
     pixel = 1.0 / camera.focal_px
@@ -153,11 +154,10 @@ def _sight(
     )
 
 
-def _solved(by_place: Array, by_posture: Array, doubted: int | None) -> Array:
-    """(3, 3 M + 2) the place, relative to the camera, that leaves least where one marker hardly counts."""
+def _solved(by_place: Array, by_posture: Array, doubted: list[int]) -> Array:
+    """(3, 3 M + 2) the place, relative to the camera, that leaves least where some rows hardly count."""
     trust = np.ones(len(by_place))
-    if doubted is not None:
-        trust[2 * doubted : 2 * doubted + 2] = DOUBTED
+    trust[doubted] = DOUBTED
     weighted = by_place.T * trust**2
     return np.asarray(-np.linalg.solve(weighted @ by_place + np.eye(3) / FAR_M**2, weighted @ by_posture))
 

@@ -74,7 +74,7 @@ def sweep(sight: Sight, turned: Turned) -> Fit:
     """Find the states that explain a frame, each at the best place for it."""
     left = sight.left.astype(np.float32) @ turned.numbers  # (V, 2 M + 1, N H)
     left *= left
-    costs = np.float32(0.5) * left[:, -1] + np.float32(sight.constant)
+    costs = _student(left[:, -1], 1) + np.float32(sight.constant)
     for marker in np.flatnonzero(sight.seen):
         costs += _student(left[:, 2 * marker] + left[:, 2 * marker + 1], 2)
     cost = costs.min(axis=0)
