@@ -55,7 +55,7 @@ RAISED = ("real_balance",)
 NONE = "none"
 COLUMNS = (
     "library", "course", "no posing", "hips aligned", "coverage", "two alone", "two interpolated",
-    "two and library", "of two alone", "ms a frame",
+    "two and library", "of two alone", "of interpolated", "ms a frame",
 )  # fmt: skip
 
 
@@ -114,6 +114,8 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
     match = choice.match
     if match is None:
         raise RuntimeError(f"{library.identifier}, the only one, was not matched with {name}")
+    if choice.reading is not None:
+        trial = replace(trial, reading=choice.reading)
     body = trial.take.body
     unposed = replace(trial, take=with_matches(trial.take, match))
     ends = (0, len(trial.truth) - 1)
@@ -160,7 +162,8 @@ def accuracy_table(results: dict[str, Measured]) -> str:
         row = [
             found.course.mpjpe, found.unposed.mpjpe, found.unposed.rooted, found.unposed.coverage95 or 0.0,
             found.two.mpjpe, found.two_interpolated.mpjpe, found.both.mpjpe,
-            found.both.mpjpe / found.two.mpjpe, found.matching_ms,
+            found.both.mpjpe / found.two.mpjpe, found.both.mpjpe / found.two_interpolated.mpjpe,
+            found.matching_ms,
         ]  # fmt: skip
         rows.append(row)
         lines.append(_line(name, found.library, row))
@@ -169,7 +172,7 @@ def accuracy_table(results: dict[str, Measured]) -> str:
 
 
 def _line(name: str, library: str, row: Sequence[float]) -> str:
-    digits = (1, 1, 1, 2, 1, 1, 1, 2, 1)
+    digits = (1, 1, 1, 2, 1, 1, 1, 2, 2, 1)
     return (
         f"| {name} | {library} | " + " | ".join(f"{v:.{d}f}" for v, d in zip(row, digits, strict=True)) + " |"
     )
