@@ -12,7 +12,8 @@ from .library.library import Library
 from .prior.keyframes import Keyframe, Matched
 from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library, prepare
 from .prior.speed import marker_speed, propose_keyframes
-from .progress import Job, Progress, within
+from .progress import Job, Progress, stretch, within
+from .reconstruct import read_footage
 from .take import Take
 
 TRIED = 4
@@ -25,6 +26,12 @@ FRAMES_TOLD = 1.6
 """A performer differs from a library all along a clip, which tells as much as so many independent frames."""
 LOOKING = 0.3
 """Share of the work that the first look is."""
+AGAIN = 0.7
+"""Share that the first round is, where the footage is then read again."""
+OTHER_REGION, OFTEN = 1.0, 0.15
+"""Another region lies this far off, in sizes; a marker that was another thing is so in that share of frames."""
+BETTER = 0.04
+"""So much more of the footage is explained where what was read again is right."""
 NEAR_FRAMES = 2
 """No matched keyframe comes so near to a posed one."""
 
@@ -40,6 +47,9 @@ class LibraryChoice:
     """The likeliest library's match; None where none fits."""
     reason: str
     """For people: which, how sure, or why none."""
+    reading: Reading | None = None
+    """The clip as it was read again with the match to tell where each marker is; None where that changed
+    nothing, and what was given holds."""
 
 
 def match_take(
@@ -62,31 +72,68 @@ def match_take(
     Yields:
         Progress.
 
+    Returns:
+        The choice. Where the first match shows that another thing of its colour was taken for a marker, the
+        clip is read again (from what was seen, see `read_footage`) and matched once more.
+
     Raises:
         InputError: There is no library, none has a posture, or no marker is seen in the footage.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to match with")
-    tracks = reading.tracks
-    if not tracks.visible.any():
+    if not reading.tracks.visible.any():
         raise InputError(f"{take.folder}: no marker is seen in the footage, so no posture can be matched")
-    keyframes = propose_keyframes(marker_speed(tracks), keyframe_count)
-    sought = Sought(take.body, take.camera, tracks, take.marker_segments, keyframes)
     with threadpool_limits(limits=1, user_api="blas"):
-        prepared = []
-        for index, library in enumerate(usable):
-            yield Progress(f"Looking for {library.title}", LOOKING * index / len(usable))
-            prepared.append(prepare(sought, library))
-        matches = []
-        tried = _worth_trying(prepared)
-        # A floor at z = 0 is believed in as long as any likely library may stand on it.
-        floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
-        for index, one in enumerate(tried):
-            share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
-            part = match_library(sought, one, floor)
-            matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
+        first = _matches(_sought(take, reading, keyframe_count), usable, floor_m)
+        matches = yield from stretch(first, 0.0, AGAIN)
+        better = yield from stretch(_read_again(take, reading, matches[0]), AGAIN, AGAIN)
+        if better is not None:
+            found = [match.library for match in matches]
+            second = _matches(_sought(take, better, keyframe_count), found, floor_m)
+            again = yield from stretch(second, AGAIN, 1.0)
+            if again[0].fit > matches[0].fit + BETTER:
+                yield Progress("Done", 1.0)
+                return replace(_choice(usable, again), reading=better)
+    yield Progress("Done", 1.0)
     return _choice(usable, matches)
+
+
+def _sought(take: Take, reading: Reading, keyframe_count: int | None) -> Sought:
+    keyframes = propose_keyframes(marker_speed(reading.tracks), keyframe_count)
+    return Sought(take.body, take.camera, reading.tracks, take.marker_segments, keyframes)
+
+
+def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None) -> Job[list[LibraryMatch]]:
+    """The matches of the libraries that are worth it, the likeliest first."""
+    prepared = []
+    for index, library in enumerate(libraries):
+        yield Progress(f"Looking for {library.title}", LOOKING * index / len(libraries))
+        prepared.append(prepare(sought, library))
+    tried = _worth_trying(prepared)
+    # A floor at z = 0 is believed in as long as any likely library may stand on it.
+    floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
+    matches = []
+    for index, one in enumerate(tried):
+        share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
+        part = match_library(sought, one, floor)
+        matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
+    return sorted(matches, key=lambda match: -match.log_evidence)
+
+
+def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Reading | None]:
+    """The clip read once more, each marker sought where a match has it; None where that makes no difference.
+
+    Without keyframes a thing of a marker's colour may have been taken for it.
+    """
+    if reading.sightings is None:
+        return None
+    told = with_matches(replace(take, keyframes=()), match)
+    again = yield from read_footage(told, reading)
+    first, second = reading.tracks, again.tracks
+    moved = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
+    other = (moved > OTHER_REGION * np.sqrt(np.nan_to_num(second.area))) | (first.visible & ~second.visible)
+    return again if other.mean(axis=0).max() > OFTEN else None
 
 
 def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:
@@ -125,8 +172,7 @@ def _beside(index: int, posed: Sequence[int], frames: int) -> int | None:
     return free[0] if free else None
 
 
-def _choice(libraries: Sequence[Library], matches: Sequence[LibraryMatch]) -> LibraryChoice:
-    ranked = sorted(matches, key=lambda match: -match.log_evidence)
+def _choice(libraries: Sequence[Library], ranked: Sequence[LibraryMatch]) -> LibraryChoice:
     best = ranked[0]
     title, explained = best.library.title, f"{best.fit:.0%}"
     if len(libraries) == 1:

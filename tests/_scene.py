@@ -14,7 +14,7 @@ BODY = Body(Actor.from_stature(1.75))
 CAMERA = Camera(
     40.0, 36.0, (320, 240), np.array([[1.0, 0, 0, 0], [0, 0, -1, -4.2], [0, 1, 0, 1.0], [0, 0, 0, 1]])
 )
-MODEL = RegionModel(BODY, CAMERA, tuple(MarkerPlacement(name) for name in SEGMENTS))
+MODEL = RegionModel(BODY, CAMERA, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
 
 
 def exercise(frames: int, arm_phase: float = 0.0) -> Posture:

@@ -55,7 +55,7 @@ def squatting(repository: Path) -> Library:
 
 
 def performed(library: Library, heading_rad: float, style_rad: float = 0.08, floor_m: float = 0.0) -> Posture:
-    """The library's first motion as this performer does it: a little faster, every joint a little otherwise."""
+    """The library's first motion as this performer does it: a little faster, every joint turned a little."""
     rng = np.random.default_rng(3)
     time = 0.2 + 1.1 * np.arange(FRAMES) / FPS
     led = course(library, library.motions[0], BODY, time)

@@ -26,7 +26,7 @@ def measured(body: Body, step: np.ndarray, stretched: bool = False) -> tuple[Mea
     """Measure a body that stands a tangent step from the standing posture."""
     lowered = 0.0 if stretched else 1.3
     posture = standing_posture(body, PLACE, 0.0, lowered).plus(step)
-    model = RegionModel(body, CAMERA, tuple(MarkerPlacement(name) for name in SEGMENTS))
+    model = RegionModel(body, CAMERA, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     regions = film(Posture.stack([posture]), noise_px=0.2, seed=1, model=model)
     height = standing_height_m(body)
     pixels, _ = CAMERA.project(np.stack([PLACE + [0.0, 0.0, height], PLACE]))

@@ -49,7 +49,7 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     near = standing_posture(BODY, np.array([0.0, -0.35, 0.2]))  # what the same body too near looks like
     from keymark.core.observation.regions import MarkerPlacement, RegionModel
 
-    model = RegionModel(BODY, camera, tuple(MarkerPlacement(name) for name in SEGMENTS))
+    model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([near]), model=model), SEGMENTS)
     assert abs(soles_m(found)) < 0.05
     error = np.linalg.norm(found.translation - true.translation)
@@ -63,7 +63,7 @@ def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
     bent[BODY.skeleton.dof_names.index("waist.rotation_x")] = 1.3
     found = place_standing(BODY, CAMERA, 0, film(Posture.stack([true.plus(bent)])), SEGMENTS)
     depth = [float(CAMERA.depth(posture.translation)) for posture in (true, found)]
-    assert depth[1] == pytest.approx(depth[0], rel=0.12)
+    assert depth[1] == pytest.approx(depth[0], rel=0.15)
 
 
 def test_a_ground_elsewhere_is_left_alone() -> None:
@@ -72,7 +72,7 @@ def test_a_ground_elsewhere_is_left_alone() -> None:
     true = standing_posture(BODY, np.array([0.0, 0.0, 2.0]))
     from keymark.core.observation.regions import MarkerPlacement, RegionModel
 
-    model = RegionModel(BODY, camera, tuple(MarkerPlacement(name) for name in SEGMENTS))
+    model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([true]), model=model), SEGMENTS)
     assert abs(soles_m(found) - 2.0) < 0.1
 

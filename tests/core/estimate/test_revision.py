@@ -93,7 +93,9 @@ def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> No
     assert estimated_frames(shown) < 0.5 * FRAMES
     assert largest_mm(again.posture, fresh.posture) < TOLERANCE_MM
     assert 1e3 * point_error_m(again.posture, fresh.posture).mean() < 0.4
-    assert np.allclose(again.covariance, fresh.covariance, rtol=0.1, atol=1e-4)
+    std = np.sqrt(np.diagonal(fresh.covariance, axis1=-2, axis2=-1))
+    differ = np.abs(again.covariance - fresh.covariance) / (std[:, :, None] * std[:, None, :])
+    assert differ.max() < 0.15
     assert largest_mm(first().posture, fresh.posture) > 2.0 * TOLERANCE_MM
     back, _ = estimate(posed(), again)
     assert largest_mm(back.posture, first().posture) < TOLERANCE_MM

@@ -60,7 +60,7 @@ def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
         found = fit(belief, tracks, frame)
         before.append(error_mm(belief.posture, frame))
         after.append(error_mm(found.posture, frame))
-    assert np.mean(after) < 0.6 * np.mean(before)
+    assert np.mean(after) < 0.65 * np.mean(before)
 
 
 @pytest.mark.parametrize("seed", range(6))
