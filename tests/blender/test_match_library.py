@@ -51,6 +51,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
     """A match with the true postures at some frames, each of a confidence, and another one each may show."""
     return SimpleNamespace(
         library=library(motion),
+        course=motion.posture,
         fit=0.75,
         floor_m=0.02,
         frames=tuple(
