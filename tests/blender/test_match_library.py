@@ -160,7 +160,8 @@ def test_what_is_posed_stays_and_is_handed_to_matching(matched: Group, given: Si
     assert (handed.index, handed.matched) == (6, None)
     assert handed.posture.minus(before) == pytest.approx(0.0, abs=1e-5)
     assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    beside = 4.0  # tells how the performer differs from the library
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, beside, 13.0))
     assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
 
 
