@@ -162,7 +162,7 @@ def test_what_is_posed_stays_and_is_handed_to_matching(matched: Group, given: Si
     assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     beside = 4.0  # tells how the performer differs from the library
     assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, beside, 13.0))
-    assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
+    assert [match.frame for match in take.matching.matches] == [1.0, beside, 13.0]
 
 
 def test_matching_again_replaces_what_matching_gave(
