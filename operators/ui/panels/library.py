@@ -308,7 +308,7 @@ def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.typ
     column = layout.column(align=True)
     column.scale_y = 0.85
     counts = label(
-        "{postures} postures, {motions} motions", postures=len(item.postures), motions=item.motions
+        "Postures: {postures}, motions: {motions}", postures=len(item.postures), motions=item.motions
     )
     column.label(text=counts, icon="INFO", translate=False)
     by = label("Version {version} by {author}", version=item.version, author=item.author)
