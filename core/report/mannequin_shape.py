@@ -36,11 +36,11 @@ class Surface:
 
     joint: NDArray[np.intp]
     """(N,) the joint that moves each point."""
-    place: Array
+    place: NDArray[np.float32]
     """(N, 3) in that joint's frame [m]."""
-    normal: Array
+    normal: NDArray[np.float32]
     """(N, 3) unit directions outwards."""
-    color: Array
+    color: NDArray[np.float32]
     """(N, 3) blue, green, red."""
 
     @cached_property
@@ -70,7 +70,7 @@ def mannequin_surface(body: Body, spacing_m: float) -> Surface:
     """The skin of a body, its points about `spacing_m` apart."""
     parts = [_points(tube, spacing_m) for tube in _tubes(body, spacing_m)]
     joint = np.concatenate([np.full(len(place), tube) for tube, place, _, _ in parts])
-    place, normal, color = (np.concatenate([part[i] for part in parts]) for i in (1, 2, 3))
+    place, normal, color = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in (1, 2, 3))
     return Surface(joint, place, normal, color)
 
 

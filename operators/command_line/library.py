@@ -12,6 +12,7 @@ from ...core.library.shelf import find_library, shelved
 from ...core.report.canvas import write_png
 from .console import arguments_console
 from .libraries import library_folders
+from .line_parser import UsageError
 
 
 def list_command(arguments: argparse.Namespace) -> None:
@@ -40,7 +41,13 @@ def list_command(arguments: argparse.Namespace) -> None:
 
 
 def show_command(arguments: argparse.Namespace) -> None:
-    """Say what a library holds; draw it where that is wanted."""
+    """Say what a library holds; draw it where that is wanted.
+
+    Raises:
+        UsageError: The picture is no .png: a library named there by mistake must not become one.
+    """
+    if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
+        raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
         lines = described(library)

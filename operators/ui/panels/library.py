@@ -5,6 +5,7 @@ import bpy
 from ...running.say import counted, label
 from ...scene.libraries import active_motion, active_posture, find_library_here, library_here
 from ...scene.shelf import chosen
+from ...scene.takes import find_take
 from .base import SubPanel, draw_progress, draw_sentence
 
 MOST_LINES = 4
@@ -35,7 +36,7 @@ class KEYMARK_UL_shelf(bpy.types.UIList):
             facts = row.row()
             facts.alignment = "RIGHT"
             facts.active = False
-            facts.label(text=str(len(item.postures)), translate=False, icon="ARMATURE_DATA")
+            facts.label(text=str(len(item.postures)), translate=False)
 
 
 class KEYMARK_UL_library_postures(bpy.types.UIList):
@@ -167,9 +168,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop_search(shelf, "posture", item, "postures", icon="ARMATURE_DATA")
         column.prop(shelf, "mirrored")
-        row = column.row()
-        row.enabled = shelf.posture in item.postures
-        apply = row.operator("keymark.apply_posture", icon="POSE_HLT")
+        apply = column.operator("keymark.apply_posture", icon="POSE_HLT")
         apply.library, apply.posture, apply.mirrored = item.name, shelf.posture, shelf.mirrored
         if not draw_progress(column, context, "keymark.install_"):
             column.operator("keymark.install_library", icon="ASSET_MANAGER").library = item.name
@@ -213,6 +212,9 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
             row = column.row(align=True)
             row.operator("keymark.apply_posture", icon="POSE_HLT").mirrored = False
             row.operator("keymark.apply_posture", text="", icon="MOD_MIRROR").mirrored = True
+        if entry is None:
+            _draw_begin(column, context)
+            return
         column.operator("keymark.keep_library", icon="USER")
         row = column.row(align=True)
         row.operator("keymark.export_library", text="Export", icon="EXPORT").library = ""
@@ -286,6 +288,16 @@ class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
             row.prop(line, "text", text="", icon="HELP" if not line.text else "BOOKMARKS")
             row.operator("keymark.remove_source", text="", icon="REMOVE").line = number
         lines.operator("keymark.add_source", icon="ADD")
+
+
+def _draw_begin(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What an empty library waits for; without a take there is no other button to build an actor."""
+    take = find_take(context.scene)
+    if take is None or take.armature is None:
+        draw_sentence(layout, context, label("Build an actor to pose; no footage is needed"), "FORWARD")
+        layout.operator("keymark.build_actor", icon="OUTLINER_OB_ARMATURE")
+    else:
+        draw_sentence(layout, context, label("Pose the actor, and add its pose with the plus"), "FORWARD")
 
 
 def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.PropertyGroup) -> None:

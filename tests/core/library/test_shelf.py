@@ -76,3 +76,11 @@ def test_a_librarys_file_stays_in_its_folder(tmp_path: Path, identifier: str) ->
     assert library_path(tmp_path, "walk.2_b-c") == tmp_path / "walk.2_b-c.json"
     with pytest.raises(InputError, match="identifier"):
         library_path(tmp_path, identifier)
+
+
+def test_a_name_counts_before_a_title(folders: list[Path]) -> None:
+    """A stranger's library may be titled as another is named, and a damaged file may have any name."""
+    write_library(folders[0] / "a.json", replace(LIBRARY, identifier="zebra", title="walk"))
+    (folders[0] / "walk.json").write_text("{")
+    assert find_library("walk", folders).identifier == "walk"
+    assert find_library("A walk", folders).identifier == "walk"
