@@ -12,10 +12,10 @@ from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 SOURCES = (
     "Bobbert, M. F. & van Ingen Schenau, G. J. (1988). Coordination in vertical jumping. Journal of"
     " Biomechanics 21.",
-    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances performance"
-    " in the vertical jump. Journal of Biomechanics 37.",
-    "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human Movement"
-    " Science 24.",
+    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances"
+    " performance in the vertical jump. Journal of Biomechanics 37.",
+    "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human"
+    " Movement Science 24, 81-96.",
     "Hay, J. G. (1993). The Biomechanics of Sports Techniques, 4th ed.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )

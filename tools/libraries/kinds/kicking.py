@@ -11,13 +11,13 @@ from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 SOURCES = (
     "Robertson, D. G. E. & Mosher, R. E. (1985). Work and power of the leg muscles in soccer kicking."
     " Biomechanics IX-B.",
-    "Sorensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the"
+    "Sørensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the"
     " martial arts high front kick. Journal of Sports Sciences 14.",
-    "Wasik, J. (2011). Kinematics and kinetics of taekwon-do side kick. Journal of Human Kinetics 30.",
+    "Wąsik, J. (2011). Kinematics and kinetics of taekwon-do side kick. Journal of Human Kinetics 30, 13-20.",
     "Kim, Y. K., Kim, Y. H. & Im, S. J. (2011). Inter-joint coordination in producing kicking velocity of"
-    " taekwondo kicks. Journal of Sports Science and Medicine 10.",
+    " taekwondo kicks. Journal of Sports Science and Medicine 10, 31-38.",
     "Kellis, E. & Katis, A. (2007). Biomechanical characteristics and determinants of instep soccer kick."
-    " Journal of Sports Science and Medicine 6.",
+    " Journal of Sports Science and Medicine 6, 154-165.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 GUARD = Arm(elevation=34.0, plane=58.0, rotation=26.0, elbow=120.0, pronation=30.0, girdle=3.0)

@@ -13,12 +13,14 @@ from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Moment, Turn, mirrored, moment
 
 SOURCES = (
-    "Stanley, E. et al. (2018). An analysis of the three-dimensional kinetics and kinematics of maximal"
-    " effort punches among amateur boxers. International Journal of Performance Analysis in Sport 18.",
+    "Stanley, E., Thomson, E., Smith, G. & Lamb, K. L. (2018). An analysis of the three-dimensional"
+    " kinetics and kinematics of maximal effort punches among amateur boxers. International Journal of"
+    " Performance Analysis in Sport 18.",
     "Piorkowski, B. A., Lees, A. & Barton, G. J. (2011). Single maximal versus combination punch"
     " kinematics. Sports Biomechanics 10.",
-    "Dinu, D. & Louis, J. (2020). Biomechanical analysis of the cross, hook, and uppercut in junior vs. elite"
-    " boxers. Frontiers in Sports and Active Living 2.",
+    "Dinu, D. & Louis, J. (2020). Biomechanical analysis of the cross, hook, and uppercut in junior vs."
+    " elite boxers: implications for training and talent identification. Frontiers in Sports and Active"
+    " Living 2, 598861.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 Path = tuple[tuple[str, float], ...]

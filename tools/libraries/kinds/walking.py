@@ -31,12 +31,12 @@ FEWER_PHASES = (
 SOURCES = (
     "Perry, J. & Burnfield, J. M. (2010). Gait Analysis: Normal and Pathological Function, 2nd ed.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
-    "Kadaba, M. P., Ramakrishnan, H. K. & Wootten, M. E. (1990). Measurement of lower extremity kinematics"
-    " during level walking. Journal of Orthopaedic Research 8.",
-    "Murray, M. P., Drought, A. B. & Kory, R. C. (1964). Walking patterns of normal men. Journal of Bone and"
-    " Joint Surgery 46-A.",
-    "Murray, M. P., Sepic, S. B. & Barnard, E. J. (1967). Patterns of sagittal rotation of the upper limbs in"
-    " walking. Physical Therapy 47.",
+    "Kadaba, M. P., Ramakrishnan, H. K. & Wootten, M. E. (1990). Measurement of lower extremity"
+    " kinematics during level walking. Journal of Orthopaedic Research 8.",
+    "Murray, M. P., Drought, A. B. & Kory, R. C. (1964). Walking patterns of normal men. Journal of Bone"
+    " and Joint Surgery 46-A.",
+    "Murray, M. P., Sepic, S. B. & Barnard, E. J. (1967). Patterns of sagittal rotation of the upper"
+    " limbs in walking. Physical Therapy 47.",
 )
 USUAL = Style()
 WALK = (1.42, 1.08, USUAL)
