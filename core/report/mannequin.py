@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .canvas import Image
+from .mannequin_feet import drawn_frames
 from .mannequin_shape import mannequin_surface
 
 Array = NDArray[np.float64]
@@ -81,18 +82,18 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     height, width = image.shape[:2]
     size = (height * FINER, width * FINER)
     surface = mannequin_surface(body, _spacing_m(view))
-    pose = body.pose(posture)
+    rotations, origins = drawn_frames(body, body.pose(posture))
     place, towards = [], []
-    for joint, skin in surface.parts:
-        place.append(pose.origin[joint] + surface.place[skin] @ pose.rotation[joint].T)
-        towards.append(surface.normal[skin] @ (pose.rotation[joint].T @ view.axes[2]) < 0.0)
+    for frame, skin in surface.parts:
+        place.append(origins[frame] + surface.place[skin] @ rotations[frame].T)
+        towards.append(surface.normal[skin] @ (rotations[frame].T @ view.axes[2]) < 0.0)
     places, facing = np.concatenate(place), np.flatnonzero(np.concatenate(towards))
     nearest, depth = _nearest(view, places[facing], size)
     seen = nearest >= 0
     point = facing[nearest[seen]]
     large = cv2.resize(image, size[::-1], interpolation=cv2.INTER_NEAREST).astype(np.float32)
     large *= 1.0 - SHADOW * _shadow(view, places, size)[..., None]
-    turn = pose.rotation[surface.joint[point]]
+    turn = rotations[surface.frame[point]]
     large[seen] = _shaded(surface.color[point], np.einsum("nij,nj->ni", turn, surface.normal[point]), view)
     large[_edges(depth)] = EDGE_COLOR
     reduced = cv2.resize(np.clip(large, 0.0, 255.0), (width, height), interpolation=cv2.INTER_AREA)
