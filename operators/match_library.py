@@ -103,7 +103,8 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         choice = yield from stretch(match_take(posed, reading, libraries, floor_m, count), READ, 1.0)
         found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
         matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
-        return Outcome(identifier, frames, reading, choice, matched, notes)
+        # The match may have found that another thing of its colour had been taken for a marker.
+        return Outcome(identifier, frames, choice.reading or reading, choice, matched, notes)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Key what was found beside what is posed; what earlier matching gave goes."""

@@ -19,8 +19,8 @@ IDENTIFIER_RULE = (
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
-_NOT_NAMES = re.compile(r"auto|.*\.json", re.ASCII)
-"""Where a library is named, these mean something else: any library, and a file."""
+_FILE = re.compile(r".*\.json", re.ASCII)
+"""Where a library is named, this means a file."""
 _JOINERS = "\u200c\u200d"
 """Zero-width, but letters of several scripts need them between them."""
 
@@ -33,7 +33,7 @@ def is_identifier(text: object) -> bool:
         and text != EVERY_LIBRARY
         and _IDENTIFIER.fullmatch(text) is not None
         and _DEVICES.fullmatch(text) is None
-        and _NOT_NAMES.fullmatch(text) is None
+        and _FILE.fullmatch(text) is None
     )
 
 
