@@ -125,7 +125,8 @@ def _pixels(at: Single, size: tuple[int, int]) -> NDArray[np.int32]:
 def _shadow(view: View, place: Single, size: tuple[int, int]) -> Single:
     """How much of the light from above is missing, 0 to 1, on the floor z = 0."""
     mask = np.zeros(size[0] * size[1] + 1, dtype=np.float32)
-    mask[_pixels(view.project(place * np.float32([1.0, 1.0, 0.0]))[0], size)] = 1.0
+    below = place * np.array([1.0, 1.0, 0.0], dtype=np.float32)
+    mask[_pixels(view.project(below)[0].astype(np.float32), size)] = 1.0
     return np.asarray(cv2.GaussianBlur(mask[:-1].reshape(size), (0, 0), SOFTNESS_M * view.scale))
 
 

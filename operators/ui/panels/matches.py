@@ -101,10 +101,10 @@ def _draw_choice(
     if not others:
         draw_sentence(layout, context, matching.reason, icon)
         return
-    words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+    words = label("{best} {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
     if others[0].probability >= WORTH_NAMING:
         words = label(
-            "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
+            "{best} {percent:.0f} %, {other} {less:.0f} %",
             best=best.name,
             percent=100.0 * best.probability,
             other=others[0].name,
