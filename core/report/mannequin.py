@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .canvas import Image
+from .mannequin_feet import drawn_frames
 from .mannequin_shape import mannequin_surface
 
 Array = NDArray[np.float64]
@@ -88,11 +89,11 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     height, width = image.shape[:2]
     size = (height * FINER, width * FINER)
     surface = mannequin_surface(body, _spacing_m(view))
-    pose = body.pose(posture)
+    rotations, origins = drawn_frames(body, body.pose(posture))
     onto = view.axes * np.array([[view.scale], [-view.scale], [1.0]])
     facing, shown, thrown = [], [], []
-    for joint, skin in surface.parts:
-        turn, origin = pose.rotation[joint], pose.origin[joint]
+    for frame, skin in surface.parts:
+        turn, origin = rotations[frame], origins[frame]
         towards = surface.normal[skin] @ (turn.T @ view.axes[2]).astype(np.float32) < 0.0
         facing.append(np.flatnonzero(towards) + skin.start)
         shown.append(_moved(surface.place[facing[-1]], onto @ turn, onto @ origin + [*view.centre, 0.0]))
@@ -105,8 +106,8 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     large = cv2.resize(
         image * (1.0 - SHADOW * shadow[..., None]), size[::-1], interpolation=cv2.INTER_NEAREST
     )
-    light = (LIGHT / np.linalg.norm(LIGHT) @ view.axes @ pose.rotation).astype(np.float32)  # by joint
-    lit = np.sum(surface.normal[point] * light[surface.joint[point]], axis=-1)
+    light = (LIGHT / np.linalg.norm(LIGHT) @ view.axes @ rotations).astype(np.float32)  # by frame
+    lit = np.sum(surface.normal[point] * light[surface.frame[point]], axis=-1)
     large[seen] = _shaded(surface.color[point], lit)
     large[_edges(depth)] = EDGE_COLOR
     reduced = cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)
@@ -127,8 +128,8 @@ def _pixels(at: Single, size: tuple[int, int]) -> NDArray[np.int32]:
 def _shadow(view: View, place: Single, size: tuple[int, int]) -> Single:
     """How much of the light from above is missing, 0 to 1, on the floor z = 0."""
     mask = np.zeros(size[0] * size[1] + 1, dtype=np.float32)
-    below = place * np.array([1.0, 1.0, 0.0], dtype=np.float32)
-    mask[_pixels(view.project(below)[0].astype(np.float32), size)] = 1.0
+    at, _ = view.project(place * np.array([1.0, 1.0, 0.0], dtype=np.float32))
+    mask[_pixels(at.astype(np.float32), size)] = 1.0
     return np.asarray(cv2.GaussianBlur(mask[:-1].reshape(size), (0, 0), SOFTNESS_M * view.scale))
 
 
@@ -153,7 +154,7 @@ def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Si
     for row, column in zip(*np.nonzero(depth - level > HOLE_M), strict=True):
         around = slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2)
         nearest[row, column] = nearest[around].flat[np.argmin(depth[around])]
-    return nearest, level
+    return nearest, np.asarray(level, dtype=np.float32)
 
 
 def _shaded(color: Single, lit: Single) -> Single:

@@ -1,18 +1,15 @@
 """Keyframe libraries: those at hand, and the one that is made in this file."""
 
-from textwrap import wrap
-
 import bpy
 
-from ...running.say import label
+from ...running.say import counted, label
 from ...scene.libraries import active_motion, active_posture, find_library_here, library_here
 from ...scene.shelf import chosen
 from ...scene.takes import find_take
 from .base import SubPanel, draw_progress, draw_sentence
 
-CHARACTER_WIDTH = 6.2
-MARGIN = 60.0
 MOST_LINES = 4
+"""Of what a library says of itself, or what is wrong with it."""
 
 
 class KEYMARK_UL_shelf(bpy.types.UIList):
@@ -163,7 +160,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         if item is None:
             return
         if item.problem:
-            _lines(layout, context, item.problem, "ERROR")
+            draw_sentence(layout, context, item.problem, "ERROR", MOST_LINES)
             return
         _facts(layout, context, item)
         column = layout.column()
@@ -307,27 +304,14 @@ def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.typ
     """What is known of a library at hand."""
     column = layout.column(align=True)
     column.scale_y = 0.85
-    counts = label(
-        "Postures: {postures}, motions: {motions}", postures=len(item.postures), motions=item.motions
-    )
-    column.label(text=counts, icon="INFO", translate=False)
+    postures = counted("1 posture", "{count} postures", len(item.postures))
+    motions = counted("1 motion", "{count} motions", item.motions)
+    column.label(text=f"{postures}, {motions}", icon="INFO", translate=False)
     by = label("Version {version} by {author}", version=item.version, author=item.author)
     column.label(text=by, icon="BLANK1", translate=False)
     column.label(text=item.license, icon="BLANK1", translate=False)
     if item.description:
-        _lines(layout, context, item.description, "TEXT")
-
-
-def _lines(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """A text on as many lines as the sidebar's width asks for, but few."""
-    room = context.region.width / context.preferences.system.ui_scale - MARGIN
-    lines = wrap(text, max(int(room / CHARACTER_WIDTH), 20))
-    if len(lines) > MOST_LINES:
-        lines = [*lines[: MOST_LINES - 1], f"{lines[MOST_LINES - 1]} ..."]
-    column = layout.column(align=True)
-    column.scale_y = 0.85
-    for number, line in enumerate(lines):
-        column.label(text=line, icon="BLANK1" if number else icon, translate=False)
+        draw_sentence(layout, context, item.description, "TEXT", MOST_LINES)
 
 
 register, unregister = bpy.utils.register_classes_factory(
