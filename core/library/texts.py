@@ -3,6 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 from ..errors import InputError
 from ..files.json_file import shown
@@ -12,7 +13,7 @@ LONGEST_NAME = 60
 """Characters; the name of a Blender data-block holds 63 bytes."""
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
-    "and the last of them a letter or digit; not auto, no ending .json, no name that Windows keeps for devices"
+    "and the last of them a letter or digit; not auto, no ending .json, no name of a device of Windows"
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
@@ -68,6 +69,7 @@ def text_fault(text: object, longest: int) -> str:
     return ""
 
 
+@lru_cache(maxsize=4096)
 def name_key(name: str) -> str:
     """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
