@@ -32,7 +32,7 @@ def list_command(arguments: argparse.Namespace) -> None:
         ]
         width = max((len(entry.identifier) for entry in found), default=0)
         lines = [
-            f"{entry.identifier:{width}}  {entry.title}, {_counted(entry.library)}"
+            f"{entry.identifier:{width}}  {entry.title}, {entry.library.size}"
             if entry.library
             else f"{entry.identifier:{width}}  cannot be used: {entry.problem}"
             for entry in found
@@ -78,7 +78,7 @@ def check_command(arguments: argparse.Namespace) -> None:
                 problems.append(str(error))
                 continue
             good.append({"file": str(file), **library_summary(library)})
-            lines.append(f"{file}: {library.title}, version {library.version}, {_counted(library)}")
+            lines.append(f"{file}: {library.title}, version {library.version}, {library.size}")
         if problems:
             raise InputError("; ".join(problems))
         console.finish({"libraries": good}, "\n".join(lines))
@@ -116,7 +116,7 @@ def described(library: Library) -> list[str]:
         f"{library.title} ({library.identifier}, version {library.version})",
         *([library.description] if library.description else []),
         f"By {library.author}; license {library.license}; posed on {100.0 * library.actor.stature_m:.0f} cm",
-        f"{_counted(library)}:",
+        f"{library.size}:",
         *(f"  {_motion(motion)}" for motion in library.motions),
     ]
     steps = Counter(step.posture for motion in library.motions for step in motion.steps)
@@ -132,8 +132,3 @@ def _motion(motion: LibraryMotion) -> str:
     way = (x * x + y * y) ** 0.5
     travel = f", {way:.2f} m on" if way >= 0.01 else ""
     return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
-
-
-def _counted(library: Library) -> str:
-    motions = f"{len(library.motions)} motion{'' if len(library.motions) == 1 else 's'}"
-    return f"{len(library.postures)} postures, {motions}"
