@@ -37,11 +37,11 @@ class Surface:
 
     frame: NDArray[np.intp]
     """(N,) the frame that moves each point: a joint's, or a foot's, of `mannequin_feet`."""
-    place: Array
+    place: NDArray[np.float32]
     """(N, 3) in that frame [m]."""
-    normal: Array
+    normal: NDArray[np.float32]
     """(N, 3) unit directions outwards."""
-    color: Array
+    color: NDArray[np.float32]
     """(N, 3) blue, green, red."""
 
     @cached_property
@@ -71,7 +71,7 @@ def mannequin_surface(body: Body, spacing_m: float) -> Surface:
     """The skin of a body, its points about `spacing_m` apart."""
     parts = [_points(tube, spacing_m) for tube in _tubes(body, spacing_m)]
     frame = np.concatenate([np.full(len(place), tube) for tube, place, _, _ in parts])
-    place, normal, color = (np.concatenate([part[i] for part in parts]) for i in (1, 2, 3))
+    place, normal, color = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in (1, 2, 3))
     return Surface(frame, place, normal, color)
 
 
