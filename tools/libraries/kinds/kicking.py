@@ -29,8 +29,8 @@ def library() -> Library:
     made = Composer(
         "kicking",
         "Kicking",
-        "Left kicks: front, side and around from a guard, front and side from standing, a ball with and without"
-        " run-up, a straight swing.",
+        "Left kicks: front, side and around from a guard, front and side from standing, a ball with or"
+        " without a run-up, a straight swing.",
         SOURCES,
         ("kicking", "martial arts", "football"),
     )
