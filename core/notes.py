@@ -71,6 +71,15 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
+    """A sentence on matched keyframes that tell less than the posed ones around them."""
+    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
+    if count == 0:
+        return ()
+    which = "the library was" if count == matched else f"{count} of {matched} matched keyframes were"
+    return (f"{which} left out: the posed keyframes tell more where they enclose what was matched",)
+
+
 def match_notes(take: Take) -> tuple[str, ...]:
     """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
     matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
