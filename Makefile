@@ -103,7 +103,7 @@ package: .venv-test/ready ## build the extension's zips for every platform into 
 	@.venv-test/bin/python tools/build_package.py
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, the workflow and speed
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow and speed
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean

@@ -122,7 +122,10 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
     exact = exact_postures(trial)
     posed = tuple(Keyframe(index, exact[index]) for index in ends)
     two = replace(trial, take=replace(trial.take, keyframes=posed), unscored=ends)
-    both = replace(two, take=with_matches(two.take, match))
+    known, _ = matched(name, two.take, trial.reading, [library])  # what is posed steers the match
+    both = replace(two, take=with_matches(two.take, known.match or match))
+    if known.reading is not None:
+        both = replace(both, reading=known.reading)
     return Measured(
         library.identifier,
         trial.score(body.points(body.pose(match.course))),

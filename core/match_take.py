@@ -8,9 +8,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from .errors import InputError
+from .files.digest import digest
 from .footage.reading import Reading
 from .library.library import Library
 from .prior.keyframes import Keyframe, Matched
+from .prior.matching.anchors import Anchors
 from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library, prepare
 from .prior.speed import marker_speed, propose_keyframes
 from .progress import Job, Progress, stretch, within
@@ -65,7 +67,7 @@ def match_take(
     """Find postures of a library in a take's footage.
 
     Args:
-        take: The take; its keyframes are not used.
+        take: The take; posed keyframes tell where the performer is there, matched ones are not used.
         reading: What `read_footage` has read of its clip.
         libraries: One library, which is matched however badly it fits, or several, of which the one that fits
             best is chosen.
@@ -104,7 +106,8 @@ def match_take(
 
 def _sought(take: Take, reading: Reading, keyframe_count: int | None) -> Sought:
     keyframes = propose_keyframes(marker_speed(reading.tracks), keyframe_count)
-    return Sought(take.body, take.camera, reading.tracks, take.marker_segments, keyframes)
+    anchors = Anchors.of(take.body, take.keyframes)
+    return Sought(take.body, take.camera, reading.tracks, take.marker_segments, keyframes, anchors)
 
 
 def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None) -> Job[list[LibraryMatch]]:
@@ -114,6 +117,8 @@ def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None
         yield Progress(f"Looking for {library.title}", LOOKING * index / len(libraries))
         prepared.append(prepare(sought, library))
     tried = _worth_trying(prepared)
+    if floor_m is None:
+        floor_m = sought.anchors.floor_m()
     # A floor at z = 0 is believed in as long as any likely library may stand on it.
     floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
     matches = []
@@ -143,7 +148,10 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     arrays: dict[str, Any] = {name: np.array(getattr(first, name)) for name in names}
     for name, array in arrays.items():
         array[:, elsewhere] = getattr(second, name)[:, elsewhere]
-    return replace(again, tracks=replace(first, **arrays), key="")
+    # Known again by both readings that it is made of.
+    footage = again.key.rpartition("-")[0]
+    key = f"{footage}-{digest(reading.key, again.key, elsewhere)}" if footage else ""
+    return replace(again, tracks=replace(first, **arrays), key=key)
 
 
 def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:

@@ -54,7 +54,7 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
             if not self._found:
                 return self.execute(context)
             self.existing = "KEEP"
-            return context.window_manager.invoke_props_dialog(self, width=WIDTH)
+            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Import")
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -46,7 +46,7 @@ def catalog_of(library: Library, posture: LibraryPosture) -> str:
 
 
 def draw_pictures(library: Library) -> Iterator[Image]:
-    """The picture of each posture, in order; one takes about a tenth of a second."""
+    """The picture of each posture, in order; one takes a few hundredths of a second."""
     return (posture_picture(_body(library), posture.posture) for posture in library.postures)
 
 

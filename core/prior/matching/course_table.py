@@ -94,6 +94,17 @@ class CourseTable:
         way = self._carried(between(ways), chain, cycle)
         return Reading(middle, spread, between(self.solids.height[rows]), way)
 
+    def points(self, chain: Whole, time_s: Array) -> Array:
+        """(T, P, 3) the body's points at some times, relative to the hips [m], in the axes of `read`."""
+        rows, start = self._rows
+        points = self.solids.points[rows]
+        for index, entry in enumerate(self.chains.chains):
+            points[start[index + 1] - 1] = points[start[index + 1] - 1] @ about_up(np.array(entry.turn_rad)).T
+        first, second, share, cycle = self._between(chain, time_s)
+        weight = share[:, None, None]
+        between = (1.0 - weight) * points[first] + weight * points[second]
+        return np.asarray(between @ np.swapaxes(self._turn(chain, cycle), -1, -2))
+
     def posture(self, chain: Whole, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
         """(T,) postures at some times, with headings of the motion's beginning and places of the hips [m]."""
         rows, start = self._rows

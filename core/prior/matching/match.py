@@ -15,6 +15,7 @@ from ...progress import Part
 from ..interpolation import interpolate
 from ..keyframes import Keyframe
 from .alternatives import alternatives
+from .anchors import Anchors
 from .candidate import MatchedFrame
 from .chains import Chains, library_chains
 from .course_table import CourseTable
@@ -48,6 +49,8 @@ class Sought:
     """The segment of each marker."""
     keyframes: Whole
     """(K,) frames to be told the posture of."""
+    anchors: Anchors
+    """What is posed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +85,8 @@ class Prepared:
 
 def prepare(sought: Sought, library: Library) -> Prepared:
     """Put a library on the performer's body and look at a few frames with it."""
-    sampled = sampled_frames(sought.tracks, sought.keyframes)
+    told = np.concatenate([sought.keyframes, sought.anchors.frames])
+    sampled = sampled_frames(sought.tracks, told)
     chains = library_chains(library, sought.body)
     solids = marker_solids(sought.body, sought.segments, chains.posture)
     states = turned(solids, HEADINGS)
@@ -107,14 +111,18 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[Li
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
     table = CourseTable(chains, prepared.solids)
     habits = Habits.unknown(len(sought.segments))
+    anchors, anchored = sought.anchors, np.searchsorted(sampled, sought.anchors.frames)
+    like = [anchors.cost(int(frame), prepared.solids.points, states.heading_rad) for frame in sampled]
+    # The footage is tempered, as frames say much the same; what is posed is said once.
+    posed = [None if cost is None else cost / np.float32(tempering) for cost in like]
     for look in (0, 1):  # the second look knows how the performer differs from the library
-        seen = sights(sought.camera, tracks, sought.segments, sampled, floor_m, FLOOR_STD_M, habits)
-        fits = [sweep(sight, states) for sight in seen]
+        seen = sights(sought.camera, tracks, sought.segments, sampled, floor_m, FLOOR_STD_M, habits, anchors)
+        fits = [sweep(sight, states, cost) for sight, cost in zip(seen, posed, strict=True)]
         yield 0.2 + 0.4 * look
         lattice = Lattice(chains, states, seen, fits, tempering, time_s)
         path = Path(chains, states, seen, fits, lattice.best_path(), time_s)
         yield 0.4 + 0.4 * look
-        refinement = Refinement(table, seen, time_s, tempering, floor_m, FLOOR_STD_M)
+        refinement = Refinement(table, seen, time_s, tempering, floor_m, FLOOR_STD_M, anchors, anchored)
         refined = refinement.refined(path.course())
         if look == 0:
             habits = refinement.habits(refined)

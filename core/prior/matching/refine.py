@@ -4,13 +4,14 @@ Gauss-Newton over all frames looked at, at once. What the footage says is weighe
 on, turns and travels evenly; markers that are far off count less, as performers hold a limb otherwise.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from .anchors import POINTS_COUNT, Anchors
 from .course_table import CourseTable, Reading
 from .habits import DEGREES, Habits, scale
 from .placing import about_up
@@ -27,8 +28,8 @@ PROBE = 5e-3
 LARGEST = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
 """No unknown moves farther at once."""
 EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
-"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's: the
-floor tells the height, and who jumps or crouches otherwise is fast."""
+"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's:
+upwards the floor tells it, and who jumps or crouches otherwise is fast."""
 CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
 """Of what these change by in a second, as the square root of time."""
 MOST_SIZE = 1.5
@@ -61,6 +62,10 @@ class Refinement:
     tempering: float
     floor_m: float | None
     floor_std_m: float
+    anchors: Anchors | None = None
+    """What is posed; each of its frames is one of the T."""
+    anchored: Whole = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    """(K,) which of the T frames those are."""
 
     def refined(self, course: Course) -> Course:
         """The course that explains the footage best, nearby."""
@@ -68,6 +73,7 @@ class Refinement:
         for _ in range(ITERATIONS):
             size = self._sizes(course.chain, values)
             matrix, gradient = self._footage(course.chain, values, size)
+            self._posed(course.chain, values, matrix, gradient)
             self._evenness(course, values, matrix, gradient)
             step = solveh_banded(_banded(matrix), -gradient.ravel()).reshape(values.shape)
             values = values + np.clip(step, -LARGEST, LARGEST)
@@ -144,6 +150,30 @@ class Refinement:
         matrix = np.zeros((3, len(values), UNKNOWNS, UNKNOWNS))
         matrix[0] = np.swapaxes(jacobian, -1, -2) @ jacobian + HELD * np.eye(UNKNOWNS)
         return matrix, np.einsum("tri,tr->ti", jacobian, rows)
+
+    def _posed(self, chain: Whole, values: Array, matrix: Array, gradient: Array) -> None:
+        """Add what posed keyframes say; not tempered, as nothing else says the same again."""
+        if self.anchors is None or not len(self.anchored):
+            return
+        rows, own = self.anchored, chain[self.anchored]
+
+        def left(at: Array) -> tuple[Array, Array]:
+            points = self.table.points(own, at[:, 0]) @ np.swapaxes(about_up(at[:, 1]), -1, -2)
+            return self.anchors.residuals(points, at[:, 2:]) if self.anchors else (at, at)
+
+        now = left(values[rows])
+        trust = np.ones((len(rows), now[0].shape[1] + now[1].shape[1]))
+        # A posture that the library does not hold says little of the time; the place holds all the same.
+        spread = (now[1] ** 2).sum(axis=1, keepdims=True)
+        trust[:, 3:] = np.sqrt((DEGREES + POINTS_COUNT * 3.0) / (DEGREES + spread))
+        residual = np.concatenate(now, axis=1) * trust
+        jacobian = np.empty((*residual.shape, UNKNOWNS))
+        for unknown in range(UNKNOWNS):
+            probe = values[rows].copy()
+            probe[:, unknown] += PROBE
+            jacobian[..., unknown] = (np.concatenate(left(probe), axis=1) * trust - residual) / PROBE
+        np.add.at(matrix[0], rows, np.swapaxes(jacobian, -1, -2) @ jacobian)
+        np.add.at(gradient, rows, np.einsum("tri,tr->ti", jacobian, residual))
 
     def _weighted(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
         """(T, R) residuals, weighted as Student's t has it with what they are at some place."""

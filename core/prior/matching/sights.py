@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
+from .anchors import HIPS_STD_M, Anchors
 from .habits import Habits
 
 Array = NDArray[np.float64]
@@ -43,7 +44,8 @@ class Sight:
     """(V, 3, 3 M + 2) the hips' place in the world [m], with all trusted, then with each marker
     doubted, then the floor."""
     left: Array
-    """(V, 2 M + 1, 3 M + 2) residuals in standard deviations: two a marker, and the floor's."""
+    """(V, 2 M + 4, 3 M + 2) residuals in standard deviations: two a marker, three of the hips where they are
+    posed, and the floor's."""
     weight: Array
     """(M,) of each marker's middle, one over its standard deviation [1/m]; 0 where it is not seen."""
     information: Array
@@ -76,6 +78,7 @@ def sights(
     floor_m: float | None,
     floor_std_m: float,
     habits: Habits | None = None,
+    anchors: Anchors | None = None,
 ) -> list[Sight]:
     """The sights of some frames.
 
@@ -87,10 +90,15 @@ def sights(
         floor_m: Height of the floor; None where it is not known.
         floor_std_m: How far a posture's height above it may be off.
         habits: What is known of the performer.
+        anchors: What is posed.
     """
     known = habits or Habits.unknown(len(segments))
     deviation = known.middle * [_deviation(segment) for segment in segments]
-    return [_sight(camera, tracks, int(frame), deviation, floor_m, floor_std_m, known) for frame in frames]
+    posed = [None if anchors is None else anchors.place_at(int(frame)) for frame in frames]
+    return [
+        _sight(camera, tracks, int(frame), deviation, floor_m, floor_std_m, known, hips)
+        for frame, hips in zip(frames, posed, strict=True)
+    ]
 
 
 def _deviation(segment: str) -> float:
@@ -106,6 +114,7 @@ def _sight(
     floor_m: float | None,
     floor_std_m: float,
     habits: Habits,
+    hips: Array | None,
 ) -> Sight:
     markers = len(deviation)
     seen = tracks.visible[frame] & (tracks.quality[frame] > LEAST_QUALITY)
@@ -119,19 +128,22 @@ def _sight(
     seen, x, y = seen & ~lost, np.where(lost, 0.0, x), np.where(lost, 0.0, y)
     lines = np.stack([right + x[:, None] * back, up + y[:, None] * back], axis=1)  # (M, 2, 3)
     weight = np.where(seen, np.sqrt(np.clip(tracks.quality[frame], LEAST_QUALITY, 1.0)) / deviation, 0.0)
-    rows = 2 * markers + 1
+    rows = 2 * markers + 4
     by_place, by_posture = np.zeros((rows, 3)), np.zeros((rows, 3 * markers + 2))
     for marker in range(markers):
         pair = weight[marker] * lines[marker]
         by_place[2 * marker : 2 * marker + 2] = pair
         by_posture[2 * marker : 2 * marker + 2, 3 * marker : 3 * marker + 3] = pair
+    if hips is not None:
+        by_place[-4:-1] = np.eye(3) / HIPS_STD_M
+        by_posture[-4:-1, -1] = (location - hips) / HIPS_STD_M
     if floor_m is not None:
         by_place[-1, 2] = 1.0 / floor_std_m
         by_posture[-1, -2] = -1.0 / floor_std_m
         by_posture[-1, -1] = (location[2] - floor_m) / floor_std_m
     doubts: list[slice | None] = [None, *(slice(2 * m, 2 * m + 2) for m in np.flatnonzero(seen))]
     if floor_m is not None:
-        doubts.append(slice(2 * markers, None))  # who jumps higher than the library
+        doubts.append(slice(rows - 1, None))  # who jumps higher than the library
     place = np.stack([_solved(by_place, by_posture, rows) for rows in doubts])
     left = by_posture + by_place @ place
     place[:, :, -1] += location

@@ -31,6 +31,8 @@ class Solids:
     """(N, M, 3, 3) second central moments [m²]."""
     height: Array
     """(N,) of the hips' midpoint above the floor [m]."""
+    points: Array
+    """(N, P, 3) the body's points relative to the hips' midpoint [m]."""
 
 
 def marker_solids(body: Body, segments: tuple[str, ...], posture: Posture) -> Solids:
@@ -59,7 +61,8 @@ def marker_solids(body: Body, segments: tuple[str, ...], posture: Posture) -> So
         own += _outer(centre - middle[:, marker, None])
         spread[:, marker] = np.einsum("nq,nqij->nij", share, own)
     middle -= posture.translation[:, None]
-    return Solids(middle, spread, np.asarray(posture.translation[:, 2]))
+    points = np.asarray(body.points(pose) - posture.translation[:, None])
+    return Solids(middle, spread, np.asarray(posture.translation[:, 2]), points)
 
 
 def _outer(vector: Array) -> Array:

@@ -72,13 +72,21 @@ class Fit:
         return row if known else int(self.cost.argmin())
 
 
-def sweep(sight: Sight, turned: Turned) -> Fit:
-    """Find the states that explain a frame, each at the best place for it."""
-    left = sight.left.astype(np.float32) @ turned.numbers  # (V, 2 M + 1, N H)
+def sweep(sight: Sight, turned: Turned, posed: Single | None = None) -> Fit:
+    """Find the states that explain a frame, each at the best place for it.
+
+    Args:
+        sight: What the footage says.
+        turned: The states.
+        posed: (N H,) what a posed keyframe costs them; None where the frame is not posed.
+    """
+    left = sight.left.astype(np.float32) @ turned.numbers  # (V, 2 M + 4, N H)
     left *= left
     costs = _student(left[:, -1], 1) + np.float32(sight.constant)
     for marker in np.flatnonzero(sight.seen):
         costs += _student(left[:, 2 * marker] + left[:, 2 * marker + 1], 2)
+    if posed is not None:
+        costs += _student(left[:, -4:-1].sum(axis=1), 3) + posed
     cost = costs.min(axis=0)
     states = _best(cost, DEARER + EXTENTS_DIFFER, 2 * MOST_STATES)
     cost, doubted = cost[states], costs[:, states].argmin(axis=0)
