@@ -1,9 +1,9 @@
 """Which matched keyframes say more than the posed ones do: between two posed keyframes a library may do harm.
 
 Both ways of filling the time between posed keyframes show how far they are off. The library is held against
-each posed keyframe, after the others have told how the performer differs from it (leave-one-out;
-Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the line of sight, where
-the footage cannot make it good. The posed keyframes' interpolation is held against the regions seen: what it
+each posed keyframe, after the others have told how the performer differs from it (leave-one-out; Rasmussen
+& Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the line of sight, where the
+footage cannot make it good. The posed keyframes' interpolation is held against the regions seen: what it
 misses across the line of sight it misses along it too. The library is left out where it does worse.
 """
 
