@@ -20,7 +20,7 @@ from .footage.reading import Reading
 from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
-from .notes import clip_notes, evidence_notes, left_out_notes, marker_notes, match_notes
+from .notes import clip_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
@@ -131,6 +131,7 @@ def _reconstruct(
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
+        notes += filter_notes(take)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
     return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model, solution)
