@@ -141,6 +141,9 @@ def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNames
     assert next_step(unposed) == "Next: match a library, or pose"
     bpy.ops.keymark.match_library()
     take = active_take(bpy.context.scene)
+    assert next_step(take) == "Next: check matches, reconstruct"
+    for match in take.matching.matches:
+        match.by_hand = True
     assert next_step(take) == "Next: reconstruct the motion"
     take.method = "interpolation"
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
