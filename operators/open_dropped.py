@@ -7,6 +7,9 @@ import bpy
 from .running.failures import reported
 from .running.requirements import all_met, idle
 
+TAKE_FILE = "take.json"
+"""A take is opened by its folder: a file of another name there would not be the one that is read."""
+
 
 class KEYMARK_OT_open_dropped(bpy.types.Operator):
     """Open a take, or import a keyframe library, as the file turns out to be"""
@@ -40,8 +43,10 @@ class KEYMARK_OT_open_dropped(bpy.types.Operator):
             value = read_json(path, LARGEST_BYTES)
             if "schema" in value:
                 opened = bpy.ops.keymark.import_library
-            elif "clip" in value or path.name == "take.json":
+            elif path.name == TAKE_FILE:
                 opened = bpy.ops.keymark.open_take
+            elif "clip" in value:
+                raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")
             else:
                 raise InputError(f"{path}: is neither a take's take.json nor a keyframe library")
             try:

@@ -62,7 +62,7 @@ def ensure_catalog(file: Path, catalog: str) -> str:
         InputError: The catalog's path or the file is unusable.
         ConversionError: The file cannot be written.
     """
-    content = _read(file)
+    content = read_catalogs(file)
     known = _catalogs(content)
     names = _clean(catalog).split("/")
     paths = ["/".join(names[: depth + 1]) for depth in range(len(names))]
@@ -98,7 +98,12 @@ def _clean(catalog: str) -> str:
     return path
 
 
-def _read(file: Path) -> str:
+def read_catalogs(file: Path) -> str:
+    """The text of a file of catalogs; empty where there is none.
+
+    Raises:
+        InputError: It cannot be read, or is of another kind.
+    """
     try:
         content = file.read_text("utf-8")
     except FileNotFoundError:

@@ -12,7 +12,7 @@ from ...core.files.output_folder import output_folder
 from ...core.library.library import Library
 from ...core.library.library_fields import MOST_POSTURES
 from ...core.report.canvas import Image
-from .asset_catalogs import NAME, ensure_catalog
+from .asset_catalogs import NAME, ensure_catalog, read_catalogs
 from .library_assets import add_assets, catalog_of, is_posture, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
@@ -43,6 +43,7 @@ def write_library_blend(
     root = root or path.parent
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
         raise InputError(f"{path}: is the open file, of which only pose assets would be left; name another")
+    read_catalogs(root / NAME)  # a sentence on its copy would name a file that is gone by then
     with output_folder(root) as new, bpy.data.temp_data() as data:
         if (root / NAME).exists():
             shutil.copyfile(root / NAME, new / NAME)

@@ -111,6 +111,9 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
     (tmp_path / "take.json").write_text('{"clip": "no.mp4"}')
     with pytest.raises(RuntimeError, match="is missing"):
         bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json"))
+    (tmp_path / "mine.json").write_text('{"clip": "no.mp4"}')  # beside a take.json, which was not meant
+    with pytest.raises(RuntimeError, match=r"mine\.json: a take's file is called take\.json"):
+        bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "mine.json"))
     (tmp_path / "other.json").write_text("{}")
     with pytest.raises(RuntimeError, match="neither a take's take.json nor a keyframe library"):
         bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "other.json"))
@@ -290,3 +293,14 @@ def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library,
     with pytest.raises(RuntimeError, match="is the open file"):
         bpy.ops.keymark.export_library(format="BLEND", filepath=str(path))
     assert path.read_bytes() == before
+
+
+def test_a_damaged_file_of_catalogs_is_named_where_it_is(own: Path, assets: Path, library: Library) -> None:
+    """And left as it is; nothing is installed beside it."""
+    write_library(own / "small.json", library)
+    assets.mkdir()
+    (assets / "blender_assets.cats.txt").write_bytes(b"\xff\xfe")
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.keymark.install_library(library="small")
+    assert str(assets / "blender_assets.cats.txt") in str(caught.value)
+    assert [file.name for file in assets.iterdir()] == ["blender_assets.cats.txt"]

@@ -24,6 +24,7 @@ from keymark.operators import match_library
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.scene import results
+from keymark.operators.scene.matches import known_matches
 from keymark.operators.scene.posed_frames import keyframes_of, matched_frames, posed_frames
 from keymark.operators.scene.takes import active_take
 from keymark.operators.ui.next_step import next_step
@@ -335,3 +336,29 @@ def test_footage_is_matched_with_a_library_file(
         apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
         assert apart.mean() < 0.15
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+
+
+def test_matches_come_back_with_the_file(matched: Group, tmp_path: Path) -> None:
+    """Frames, candidates as Blender keeps them, what was said, and that nobody has touched them."""
+    before, reason = known_matches(matched), matched.matching.reason
+    place = [tuple(one.place) for match in matched.matching.matches for one in match.candidates]
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    take = active_take(bpy.context.scene)
+    assert known_matches(take) == before and len(before) == 3 and take.matching.reason == reason
+    assert [tuple(one.place) for match in take.matching.matches for one in match.candidates] == place
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", "ZYX"])
+def test_matches_are_keyed_in_any_rotation_mode(
+    unposed: Group, given: SimpleNamespace, mode: str, wave_motion: Motion
+) -> None:
+    """On an actor that is scaled, too: it shows what was found, and that counts as matched."""
+    for bone in unposed.armature.pose.bones:
+        bone.rotation_mode = mode
+    unposed.armature.scale = (1.5, 1.5, 1.5)
+    bpy.context.view_layer.update()
+    assert bpy.ops.keymark.match_library() == {"FINISHED"}
+    take = active_take(bpy.context.scene)
+    assert len(matched_frames(take)) == 3 and not posed_frames(take)
+    assert np.abs(shown(take, 7).minus(wave_motion.posture[6])[6:]).max() < 1e-4
