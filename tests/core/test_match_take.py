@@ -194,6 +194,23 @@ def test_confidence_follows_what_is_explained(walking: Library, squatting: Libra
     assert sure[0] > sure[1] + 0.2
 
 
+def test_posed_keyframes_steer_the_match(walking: Library) -> None:
+    """They tell of a floor that the footage does not, and where and how the performer stands."""
+    truth = performed(walking, np.radians(35.0), style_rad=0.15, floor_m=0.2)
+    take, reading = filmed(truth, camera())
+    ends = tuple(Keyframe(index, truth[index]) for index in (0, FRAMES - 1))
+    alone = run(match_take(take, reading, [walking]))
+    steered = run(match_take(replace(take, keyframes=ends), reading, [walking]))
+    assert alone.match is not None
+    assert steered.match is not None
+    assert alone.match.floor_m == 0.0
+    assert steered.match.floor_m == pytest.approx(0.2, abs=0.05)
+    assert errors_m(steered, truth)[1] < 0.8 * errors_m(alone, truth)[1]
+    for end in ends:
+        off = steered.match.course.translation[end.index] - end.posture.translation
+        assert np.linalg.norm(off) < 0.05
+
+
 def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:
     """A matched keyframe comes where no posed one is near; what was matched before goes."""
     take, reading = filmed(performed(walking, 0.6), camera())
