@@ -5,7 +5,7 @@
 
 OUTPUT ?= out/demo
 TESTS ?=
-BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity libraries posing suggestions finishing again speed
+BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing again speed
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
@@ -103,7 +103,7 @@ package: .venv-test/ready ## build the extension's zips for every platform into 
 	@.venv-test/bin/python tools/build_package.py
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, the workflow and speed
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow and speed
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean

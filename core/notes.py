@@ -71,6 +71,16 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
+    """A sentence on matched keyframes that tell less than the posed ones around them."""
+    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
+    if count == 0:
+        return ()
+    were = "was" if count == 1 else "were"
+    which = "the library was" if count == matched else f"{count} of {matched} matched keyframes {were}"
+    return (f"{which} left out: the posed keyframes tell more where they enclose what was matched",)
+
+
 def match_notes(take: Take) -> tuple[str, ...]:
     """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
     matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
@@ -98,3 +108,13 @@ def match_notes(take: Take) -> tuple[str, ...]:
             "right"
         )
     return tuple(notes)
+
+
+def filter_notes(take: Take) -> tuple[str, ...]:
+    """A sentence on what the paper's filter does not know of matched keyframes."""
+    if all(keyframe.matched is None for keyframe in take.keyframes):
+        return ()
+    return (
+        "method ekf holds on to matched keyframes as if they had been posed; method map knows how far they "
+        "may be off",
+    )

@@ -13,13 +13,14 @@ from .errors import InputError
 from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
 from .estimate.match_error import undecided_covariance
+from .estimate.match_worth import worthwhile
 from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
 from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
 from .motion import Motion
-from .notes import clip_notes, evidence_notes, marker_notes, match_notes
+from .notes import clip_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .observation.regions import MarkerPlacement, RegionModel
 from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
@@ -115,8 +116,11 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    notes += reading.notes + match_notes(take)
     tracks = reading.tracks
+    worth = worthwhile(take.keyframes, _average_model(take), tracks, take.fps)
+    notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
+    take = replace(take, keyframes=worth)
+    notes += match_notes(take)
     keyframes, doubt = with_style(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
@@ -127,6 +131,7 @@ def _reconstruct(
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
+        notes += filter_notes(take)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
     return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model, solution)

@@ -53,7 +53,7 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the name."""
-        return context.window_manager.invoke_props_dialog(self)
+        return context.window_manager.invoke_props_dialog(self, confirm_text="Add")
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what counts for the chosen source."""

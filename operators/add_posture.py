@@ -40,7 +40,9 @@ class KEYMARK_OT_add_posture(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the name."""
-        return self.execute(context) if self.replace else context.window_manager.invoke_props_dialog(self)
+        if self.replace:
+            return self.execute(context)
+        return context.window_manager.invoke_props_dialog(self, confirm_text="Add")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the pose, level it, and make it a pose asset."""

@@ -6,7 +6,7 @@ import bpy
 
 from .running.failures import reported
 from .running.requirements import a_shelved_library, all_met, idle
-from .running.say import say
+from .running.say import label, say
 from .scene.shelf import chosen, fill
 
 
@@ -24,7 +24,11 @@ class KEYMARK_OT_discard_library(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask."""
-        return context.window_manager.invoke_confirm(self, event)
+        item = chosen(context)
+        message = label("'{title}' goes for good", title=item.title if item is not None else "")
+        return context.window_manager.invoke_confirm(
+            self, event, message=message, confirm_text="Delete", icon="WARNING"
+        )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete it."""

@@ -28,7 +28,9 @@ class KEYMARK_OT_export_library(bpy.types.Operator):
         description="Identifier of a library at hand; empty: the one that is made in this file",
         options={"SKIP_SAVE"},
     )
-    format: bpy.props.EnumProperty(name="Format", description="The kind of file", items=FORMATS)
+    format: bpy.props.EnumProperty(
+        name="Format", description="The kind of file, where its name does not end in either", items=FORMATS
+    )
     only_selected: bpy.props.BoolProperty(
         name="Selected Postures Only",
         description="Write only postures that are marked in the list; motions keep the steps to these",
@@ -84,7 +86,9 @@ class KEYMARK_OT_export_library(bpy.types.Operator):
             if self.only_selected and not self.library:
                 postures = library_here(context.scene).postures
                 library = only_postures(library, [entry.name for entry in postures if entry.selected])
-            path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ENDINGS[self.format]))
+            path = Path(bpy.path.abspath(self.filepath))
+            if path.suffix.lower() not in ENDINGS.values():  # a script's file tells its format itself
+                path = path.with_name(path.name + ENDINGS[self.format])
             write_to(path, library)
             count = len(library.postures)
             say(self, "INFO", "Wrote {count} postures to {path}", count=count, path=path)

@@ -6,6 +6,7 @@ from .running.failures import reported
 from .running.requirements import actor, all_met, idle, motion
 from .running.say import say, warn_if_outdated
 from .scene.takes import active_take
+from .ui.licenses import suggest
 
 DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
@@ -26,6 +27,8 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         description="What others may do with it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
         "by default nothing",
         default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
     )
     count: bpy.props.IntProperty(
         name="Postures",
@@ -58,7 +61,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
             self.title = take.name
         if not self.author:
             self.author = take.finish.author
-        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH)
+        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the dialog."""

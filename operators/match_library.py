@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ..core.library.texts import EVERY_LIBRARY
 from .running.job_operator import JobOperator
 from .running.requirements import actor, all_colors, all_met, camera, footage, idle, markers
 from .running.say import say
@@ -13,7 +14,7 @@ from .scene.marker_styles import marker_styles
 from .scene.matches import keep_choice, known_matches
 from .scene.results import keep_reading, reading_of
 from .scene.takes import active_take, footage_of, take_called
-from .ui.properties.match import AUTOMATIC, FLOORS
+from .ui.properties.match import FLOORS
 
 if TYPE_CHECKING:
     from ..core.footage.reading import Reading
@@ -51,7 +52,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
     library: bpy.props.StringProperty(
         name="Library",
         description="What the library is known by, or its file; auto tries all and chooses",
-        default=AUTOMATIC,
+        default=EVERY_LIBRARY,
     )
     floor: bpy.props.EnumProperty(
         name="Floor", description="What is known of the floor, which settles the distance", items=FLOORS
@@ -137,7 +138,7 @@ def _libraries(name: str) -> "Sequence[Library]":
     from ..core.library.shelf import find_library, shelved
     from .scene.shelf import folders
 
-    if name != AUTOMATIC:
+    if name != EVERY_LIBRARY:
         return [find_library(name, folders())]
     usable = [each.library for each in shelved(folders()) if each.library is not None]
     if not usable:

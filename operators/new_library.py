@@ -5,6 +5,7 @@ import bpy
 from .running.failures import reported
 from .running.requirements import all_met, idle
 from .running.say import say
+from .ui.licenses import suggest
 
 
 class KEYMARK_OT_new_library(bpy.types.Operator):
@@ -23,6 +24,8 @@ class KEYMARK_OT_new_library(bpy.types.Operator):
         description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
         "by default none",
         default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
     )
 
     @classmethod
@@ -32,7 +35,7 @@ class KEYMARK_OT_new_library(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the title."""
-        return context.window_manager.invoke_props_dialog(self)
+        return context.window_manager.invoke_props_dialog(self, confirm_text="Begin")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add it, without postures yet."""

@@ -33,9 +33,7 @@ def main(output: str) -> None:
     for number, library in enumerate(libraries):
         top, body = number * row, Body(library.actor)
         canvas.text(library.title, GAP, top + 50, 11.0, INK)
-        motions = len(library.motions)
-        words = f"{len(library.postures)} postures, {motions} motion{'' if motions == 1 else 's'}"
-        canvas.text(words, GAP, top + 70, 7.5, GREY)
+        canvas.text(library.size, GAP, top + 70, 7.5, GREY)
         for column, posture in enumerate(some_postures(library)):
             picture = posture_picture(body, posture.posture)
             canvas.paste(picture, TITLE + column * (CELL + GAP), top, CELL, CELL)

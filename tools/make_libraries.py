@@ -37,7 +37,7 @@ def main(arguments: list[str]) -> int:
     for name in options.names or NAMES:
         library = composed(name)
         write_library(FOLDER / f"{name}.json", library)
-        print(f"{name}: {len(library.postures)} postures, {len(library.motions)} motions")
+        print(f"{name}: {library.size}")
         if options.sheet:
             cv2.imwrite(str(options.sheet / f"{name}.png"), library_sheet(library))
     return 0

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .kinematics import Body, Pose
+from .posture import Posture
 from .skeleton import SIDES
 
 Array = NDArray[np.float64]
@@ -32,3 +33,8 @@ def sole_places(body: Body, pose: Pose) -> Array:
 def sole_heights_m(body: Body, pose: Pose) -> Array:
     """(..., 2) height of the lowest place of the left and the right sole [m]."""
     return np.asarray(sole_places(body, pose)[..., 2].min(axis=-1))
+
+
+def lower_sole_m(body: Body, posture: Posture) -> Array:
+    """(...,) height of the lower one of the soles [m]."""
+    return np.asarray(sole_heights_m(body, body.pose(posture)).min(axis=-1))

@@ -112,10 +112,13 @@ def shown(value: Any, longest: int = 60) -> str:
 def _read_text(path: Path, largest_bytes: int) -> str:
     valid = "it must be a JSON file in UTF-8"
     try:
-        if path.stat().st_size > largest_bytes:
-            size = path.stat().st_size / 2**20
-            raise InputError(f"{path}: has {size:.1f} MiB; at most {largest_bytes / 2**20:g} MiB are read")
-        return path.read_bytes().decode("utf-8-sig")
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            content = file.read(largest_bytes + 1)  # a device or a pipe has no size beforehand, or no end
+        if len(content) > largest_bytes:
+            found = f"{size / 2**20:.1f} MiB" if size > largest_bytes else "no end in sight"
+            raise InputError(f"{path}: has {found}; at most {largest_bytes / 2**20:g} MiB are read")
+        return content.decode("utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(f"{path}: no such file; {valid}") from error
     except (OSError, ValueError) as error:

@@ -7,7 +7,7 @@ from ..body.actor import Actor
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..body.soles import sole_heights_m
+from ..body.soles import lower_sole_m
 from .library import LibraryPosture
 
 Array = NDArray[np.float64]
@@ -35,9 +35,9 @@ def applied(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Post
         return given
     scale = leg_length_m(body.actor) / leg_length_m(actor)
     moved = given.translation * scale
-    height = scale * _lowest_m(Body(actor, given.skeleton), given)
+    height = scale * lower_sole_m(Body(actor, given.skeleton), given)
     placed = Posture(given.skeleton, moved, given.rotations, given.angles)
-    lift = height - _lowest_m(body, placed)
+    lift = height - lower_sole_m(body, placed)
     return Posture(
         given.skeleton, moved + lift[..., None] * np.array([0.0, 0.0, 1.0]), given.rotations, given.angles
     )
@@ -50,7 +50,3 @@ def leg_length_m(actor: Actor) -> float:
 
 def _same(first: Actor, second: Actor) -> bool:
     return all(abs(first.segments_m[name] - second.segments_m[name]) < SAME_M for name in first.segments_m)
-
-
-def _lowest_m(body: Body, posture: Posture) -> Array:
-    return np.asarray(sole_heights_m(body, body.pose(posture)).min(axis=-1))

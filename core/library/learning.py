@@ -117,7 +117,7 @@ def learn_library(
 
 
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
-    """The motion over a floor at height 0: where its lower foot usually rests."""
+    """The motion, F frames at times (F,) [s], with the floor, where its lower foot usually rests, at 0."""
     lower = ankle_heights(body, posture).min(axis=-1)
     slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))

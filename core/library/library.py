@@ -67,6 +67,14 @@ class Library:
     """Literature and whatever else the postures are drawn from."""
     tags: tuple[str, ...] = ()
 
+    @property
+    def size(self) -> str:
+        """How many postures and motions, in words."""
+        postures, motions = len(self.postures), len(self.motions)
+        return (
+            f"{postures} posture{'' if postures == 1 else 's'}, {motions} motion{'' if motions == 1 else 's'}"
+        )
+
     @cached_property
     def by_name(self) -> Mapping[str, LibraryPosture]:
         """The postures by name."""

@@ -17,7 +17,8 @@ MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000
 MOST_TAGS, MOST_SOURCES = 30, 100
 LONGEST_TAG, LONGEST_LICENSE, LONGEST_LINE, LONGEST_TEXT = 40, 100, 200, 2000
 FARTHEST_M = 100.0
-LONGEST_S = 600.0
+SHORTEST_S, LONGEST_S = 0.001, 600.0
+"""Of a motion: a shorter one would come again without end between two frames."""
 HIGHEST_VERSION = 10**6
 SPDX = re.compile(r"[A-Za-z0-9.+:() -]+", re.ASCII)
 HEADER = (
@@ -137,7 +138,7 @@ def _motion(row: Fields, known: set[str], most_steps: int) -> LibraryMotion:
     cyclic = row.required("cyclic", "true or false")
     if not isinstance(cyclic, bool):
         raise InputError(f"{row.where}: cyclic is {shown(cyclic)}; it must be true or false")
-    duration_s = row.number("duration_s", 0.0, LONGEST_S, "s")
+    duration_s = row.number("duration_s", SHORTEST_S, LONGEST_S, "s")
     steps = _steps(row, known, most_steps)
     last_s = steps[-1].time_s
     if duration_s < last_s or duration_s <= (last_s if cyclic else 0.0):

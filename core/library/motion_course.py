@@ -7,7 +7,7 @@ from ..body import rotations
 from ..body.course import smooth_course, stretches
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.soles import sole_heights_m
+from ..body.soles import lower_sole_m
 from .applying import applied
 from .library import Library, LibraryMotion
 
@@ -82,8 +82,8 @@ def _led(library: Library, posed: Posture, knots: Array, at: Array) -> Posture:
     led = smooth_course(posed, knots, at)
     body = Body(library.actor, posed.skeleton)
     stretch, _ = stretches(knots, at)
-    given = sole_heights_m(body, body.pose(posed)).min(axis=-1)
-    height = sole_heights_m(body, body.pose(led)).min(axis=-1)
+    given = lower_sole_m(body, posed)
+    height = lower_sole_m(body, led)
     low = np.minimum(given[:-1], given[1:])[stretch]
     high = np.maximum(given[:-1], given[1:])[stretch]
     lift = np.clip(height, low, high) - height

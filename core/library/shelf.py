@@ -79,11 +79,14 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
     if isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING):
         return read_library(Path(name_or_path))
     shelf = shelved(folders)
-    for entry in shelf:
-        if text.casefold() in (entry.identifier.casefold(), entry.title.casefold()):
-            if entry.library is None:
-                raise InputError(entry.problem)
-            return entry.library
+    wanted = text.casefold()
+    called = [entry for entry in shelf if entry.identifier.casefold() == wanted]
+    titled = [entry for entry in shelf if entry.title.casefold() == wanted]
+    # What can be used counts first: a damaged file may have any name, and a stranger's library any title.
+    for entry in sorted([*called, *titled], key=lambda entry: entry.library is None):
+        if entry.library is None:
+            raise InputError(entry.problem)
+        return entry.library
     names = [entry.identifier for entry in shelf if entry.library]
     close = get_close_matches(text[:100], names, n=1, cutoff=0.6)
     hint = f" (is {shown(close[0])} meant?)" if close else ""

@@ -3,6 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 from ..errors import InputError
 from ..files.json_file import shown
@@ -10,12 +11,17 @@ from ..files.json_file import shown
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60
 """Characters; the name of a Blender data-block holds 63 bytes."""
+EVERY_LIBRARY = "auto"
+"""Stands where a library is asked for, and means all of them; no library is called that."""
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
-    "and the last of them a letter or digit, and no name that Windows keeps for devices"
+    "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "
+    f"devices and not '{EVERY_LIBRARY}', which stands for all libraries"
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
+_FILE = re.compile(r".*\.json", re.ASCII)
+"""Where a library is named, this means a file."""
 _JOINERS = "\u200c\u200d"
 """Zero-width, but letters of several scripts need them between them."""
 
@@ -25,8 +31,10 @@ def is_identifier(text: object) -> bool:
     return (
         isinstance(text, str)
         and len(text) <= LONGEST_IDENTIFIER
+        and text != EVERY_LIBRARY
         and _IDENTIFIER.fullmatch(text) is not None
         and _DEVICES.fullmatch(text) is None
+        and _FILE.fullmatch(text) is None
     )
 
 
@@ -60,9 +68,12 @@ def text_fault(text: object, longest: int) -> str:
         return "must be a text that neither is empty nor begins or ends with a space"
     if any(_is_hidden(letter) for letter in text):
         return "must be one line of text without control characters"
+    if not name_key(text):
+        return "must be a text in which something can be seen"
     return ""
 
 
+@lru_cache(maxsize=4096)
 def name_key(name: str) -> str:
     """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())

@@ -48,13 +48,32 @@ def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyfr
         return keyframes, doubt
     difference, beyond_s = _differences(posed, matched, fps)
     at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, matched))
-    known = _covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2)
+    known = _known(at, beyond_s)
     across = _covariance(at, wanted)
     share = np.linalg.solve(known, across).T  # (matched, posed)
     doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), LEAST_VARIANCE))
     changed = Posture.stack([k.posture for k in matched]).plus(share @ difference)
     both = [*posed, *(replace(k, posture=changed[row]) for row, k in enumerate(matched))]
     return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
+
+
+def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> Array:
+    """(P, D) how each posed keyframe differs from what the library and the other posed ones say of it.
+
+    Args:
+        keyframes: Posed and matched ones, some of either.
+        fps: Frames per second.
+    """
+    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
+    matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    difference, beyond_s = _differences(posed, matched, fps)
+    information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
+    return np.asarray((information @ difference) / np.diag(information)[:, None])
+
+
+def _known(at: Array, beyond_s: Array) -> Array:
+    """(P, P) covariance of the differences at posed keyframes at times [s], a person's errors included."""
+    return np.asarray(_covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2))
 
 
 def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:

@@ -199,7 +199,7 @@ def _header(canvas: Canvas, library: Library) -> None:
     canvas.text(plain(library.title), MARGIN, 38.0, 17.0, INK)
     words = (
         f"{library.identifier}, version {library.version}   "
-        f"{len(library.postures)} postures, {len(library.motions)} motions   "
+        f"{library.size}   "
         f"by {library.author}   {library.license}   figure of {library.actor.stature_m:.2f} m"
     )
     canvas.text(plain(words), MARGIN, 58.0, 8.5, GREY)

@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .canvas import Image
+from .mannequin_feet import drawn_frames
 from .mannequin_shape import mannequin_surface
 
 Array = NDArray[np.float64]
+Single = NDArray[np.float32]
+"""Accurate enough for pixels, and quicker."""
 
 LIGHT = np.array([-0.5, 0.75, -0.6])
 """From where the light comes, as the eye sees it: right, up, away."""
@@ -21,9 +24,13 @@ EDGE_M = 0.04
 """A part that lies so far before what is beside it gets an edge."""
 SHADOW, SOFTNESS_M, SPARSE = 0.32, 0.03, 7
 """How dark the shadow is, how soft, and that only every seventh point of the skin throws it."""
+STEPS, FAR_M = 65535, 1e3
+"""In how many steps depth is told apart, and what counts as the depth of nothing."""
+HOLE_M = 0.01
+"""A pixel that shows something so much farther than all around is a hole between points of the skin."""
 FINER = 2
 """The figure is drawn this much larger and reduced at the end."""
-DENSITY = 1.3
+DENSITY = 1.0
 """Points of the skin a pixel of the larger picture, along a line."""
 
 
@@ -48,9 +55,10 @@ class View:
 
     def project(self, places: Array) -> tuple[Array, Array]:
         """Pixels (..., 2) of world places (..., 3), and how far away these lie (...,) [m]."""
-        seen = places @ self.axes.T
-        pixel = np.array(self.centre) + self.scale * seen[..., :2] * np.array([1.0, -1.0])
-        return pixel, seen[..., 2]
+        axes = self.axes
+        flat = self.scale * axes[:2] * np.array([[1.0], [-1.0]])
+        pixel = places @ flat.T.astype(places.dtype) + np.array(self.centre, dtype=places.dtype)
+        return pixel, places @ axes[2].astype(places.dtype)
 
 
 def view_axes(turn_rad: float, tilt_rad: float) -> Array:
@@ -81,59 +89,81 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     height, width = image.shape[:2]
     size = (height * FINER, width * FINER)
     surface = mannequin_surface(body, _spacing_m(view))
-    pose = body.pose(posture)
-    place, towards = [], []
-    for joint, skin in surface.parts:
-        place.append(pose.origin[joint] + surface.place[skin] @ pose.rotation[joint].T)
-        towards.append(surface.normal[skin] @ (pose.rotation[joint].T @ view.axes[2]) < 0.0)
-    places, facing = np.concatenate(place), np.flatnonzero(np.concatenate(towards))
-    nearest, depth = _nearest(view, places[facing], size)
+    rotations, origins = drawn_frames(body, body.pose(posture))
+    onto = view.axes * np.array([[view.scale], [-view.scale], [1.0]])
+    facing, shown, thrown = [], [], []
+    for frame, skin in surface.parts:
+        turn, origin = rotations[frame], origins[frame]
+        towards = surface.normal[skin] @ (turn.T @ view.axes[2]).astype(np.float32) < 0.0
+        facing.append(np.flatnonzero(towards) + skin.start)
+        shown.append(_moved(surface.place[facing[-1]], onto @ turn, onto @ origin + [*view.centre, 0.0]))
+        thrown.append(_moved(surface.place[skin][::SPARSE], turn, origin))
+    front = np.concatenate(facing)
+    nearest, depth = _nearest(np.concatenate(shown), size)
     seen = nearest >= 0
-    point = facing[nearest[seen]]
-    large = cv2.resize(image, size[::-1], interpolation=cv2.INTER_NEAREST).astype(np.float32)
-    large *= 1.0 - SHADOW * _shadow(view, places, size)[..., None]
-    turn = pose.rotation[surface.joint[point]]
-    large[seen] = _shaded(surface.color[point], np.einsum("nij,nj->ni", turn, surface.normal[point]), view)
+    point = front[nearest[seen]]
+    shadow = _shadow(view, np.concatenate(thrown), (height, width))
+    large = cv2.resize(
+        image * (1.0 - SHADOW * shadow[..., None]), size[::-1], interpolation=cv2.INTER_NEAREST
+    )
+    light = (LIGHT / np.linalg.norm(LIGHT) @ view.axes @ rotations).astype(np.float32)  # by frame
+    lit = np.sum(surface.normal[point] * light[surface.frame[point]], axis=-1)
+    large[seen] = _shaded(surface.color[point], lit)
     large[_edges(depth)] = EDGE_COLOR
-    reduced = cv2.resize(np.clip(large, 0.0, 255.0), (width, height), interpolation=cv2.INTER_AREA)
-    return np.asarray(np.round(reduced), dtype=np.uint8)
+    reduced = cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)
+    return np.asarray(np.round(np.clip(reduced, 0.0, 255.0)), dtype=np.uint8)
 
 
-def _pixels(view: View, place: Array, size: tuple[int, int]) -> tuple[NDArray[np.intp], Array]:
-    """The pixel that each place falls into, counted row by row, -1 outside; and how far away it is."""
-    at, away = view.project(place)
-    column, row = np.floor(at * FINER).astype(np.intp).T
+def _moved(place: Single, turn: Array, origin: Array) -> Single:
+    return np.asarray(place @ turn.T.astype(np.float32) + origin.astype(np.float32))
+
+
+def _pixels(at: Single, size: tuple[int, int]) -> NDArray[np.int32]:
+    """Which pixel each of some points (N, 2) falls into, counted row by row; one more than all: none."""
+    column, row = np.floor(at[:, 0]), np.floor(at[:, 1])
     inside = (column >= 0) & (column < size[1]) & (row >= 0) & (row < size[0])
-    return np.where(inside, row * size[1] + column, -1), away
+    return np.where(inside, row * size[1] + column, size[0] * size[1]).astype(np.int32)
 
 
-def _shadow(view: View, place: Array, size: tuple[int, int]) -> NDArray[np.float32]:
+def _shadow(view: View, place: Single, size: tuple[int, int]) -> Single:
     """How much of the light from above is missing, 0 to 1, on the floor z = 0."""
     mask = np.zeros(size[0] * size[1] + 1, dtype=np.float32)
-    mask[_pixels(view, place[::SPARSE] * [1.0, 1.0, 0.0], size)[0]] = 1.0
-    dense = cv2.dilate(mask[:-1].reshape(size), np.ones((3, 3)))
-    return np.asarray(cv2.GaussianBlur(dense, (0, 0), SOFTNESS_M * view.scale * FINER), dtype=np.float32)
+    at, _ = view.project(place * np.array([1.0, 1.0, 0.0], dtype=np.float32))
+    mask[_pixels(at.astype(np.float32), size)] = 1.0
+    return np.asarray(cv2.GaussianBlur(mask[:-1].reshape(size), (0, 0), SOFTNESS_M * view.scale))
 
 
-def _nearest(view: View, place: Array, size: tuple[int, int]) -> tuple[NDArray[np.intp], Array]:
-    """Which point is seen in each pixel, -1 where none, and how far away it is [m]."""
-    pixel, away = _pixels(view, place, size)
-    order = np.argsort(-away)  # of several points in a pixel the last one written stays: the nearest
-    nearest = np.full(size[0] * size[1] + 1, -1, dtype=np.intp)
+def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Single]:
+    """Which point is seen in each pixel of the larger picture, -1 where none, and how far away it is [m].
+
+    Args:
+        seen: (N, 3) pixels of the reduced picture to the right and down, and metres away.
+        size: Height and width of the larger one.
+    """
+    pixel, away = _pixels(seen[:, :2] * np.float32(FINER), size), seen[:, 2]
+    # Of several points in a pixel the last one written stays: the nearest. Whole numbers of two bytes are
+    # sorted many times faster than fractions, and a figure's depth in so many steps is fine enough.
+    first, last = away.min(), away.max()
+    nearness = (last - away) * (np.float32(STEPS) / max(last - first, np.float32(1e-6)))
+    order = np.argsort(nearness.astype(np.uint16), kind="stable")
+    nearest = np.full(size[0] * size[1] + 1, -1, dtype=np.int32)
     nearest[pixel[order]] = order
     nearest = nearest[:-1].reshape(size)
-    return nearest, np.where(nearest >= 0, away[nearest], np.inf)
+    depth = np.where(nearest >= 0, away[nearest], np.float32(FAR_M))
+    level = cv2.morphologyEx(depth, cv2.MORPH_OPEN, np.ones((3, 3), dtype=np.uint8))
+    for row, column in zip(*np.nonzero(depth - level > HOLE_M), strict=True):
+        around = slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2)
+        nearest[row, column] = nearest[around].flat[np.argmin(depth[around])]
+    return nearest, np.asarray(level, dtype=np.float32)
 
 
-def _shaded(color: Array, normal: Array, view: View) -> Array:
-    light = LIGHT / np.linalg.norm(LIGHT) @ view.axes
-    lit = normal @ light
+def _shaded(color: Single, lit: Single) -> Single:
+    """Colours (N, 3) where so much light (N,) falls, -1 to 1."""
     brightness = DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit)
-    return np.asarray(1.12 * color * brightness[:, None] + SHEEN * (np.clip(lit, 0.0, 1.0) ** 12)[:, None])
+    return np.asarray(1.12 * color * brightness[:, None] + SHEEN * np.clip(lit, 0.0, 1.0)[:, None] ** 12)
 
 
-def _edges(depth: Array) -> NDArray[np.bool_]:
+def _edges(depth: Single) -> NDArray[np.bool_]:
     """Where something much nearer is beside: around the figure, and where a limb passes before another."""
-    far = np.where(np.isinf(depth), 1e3, depth).astype(np.float32)
-    near = cv2.erode(far, cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)))
-    return np.asarray(far - near > EDGE_M)
+    near = cv2.erode(depth, cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)))
+    return np.asarray(depth - near > EDGE_M)

@@ -16,6 +16,7 @@ from ..body.kinematics import Body
 from ..body.shapes import Piece, body_pieces
 from ..body.soles import HEEL_BEHIND
 from .canvas import LEFT, RIGHT, Color
+from .mannequin_feet import foot_frame
 
 Array = NDArray[np.float64]
 
@@ -32,29 +33,29 @@ ROUNDING = {"chest": 0.35, "pelvis": 0.6, "hand": 1.0}
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Points of the skin, fixed in joints' frames."""
+    """Points of the skin, fixed in frames."""
 
-    joint: NDArray[np.intp]
-    """(N,) the joint that moves each point."""
-    place: Array
-    """(N, 3) in that joint's frame [m]."""
-    normal: Array
+    frame: NDArray[np.intp]
+    """(N,) the frame that moves each point: a joint's, or a foot's, of `mannequin_feet`."""
+    place: NDArray[np.float32]
+    """(N, 3) in that frame [m]."""
+    normal: NDArray[np.float32]
     """(N, 3) unit directions outwards."""
-    color: Array
+    color: NDArray[np.float32]
     """(N, 3) blue, green, red."""
 
     @cached_property
     def parts(self) -> tuple[tuple[int, slice], ...]:
-        """The stretches of points that one joint moves, in order, and that joint."""
-        starts = [0, *np.flatnonzero(np.diff(self.joint)) + 1, len(self.joint)]
-        return tuple((int(self.joint[a]), slice(a, b)) for a, b in pairwise(starts))
+        """The stretches of points that one frame moves, in order, and that frame."""
+        starts = [0, *np.flatnonzero(np.diff(self.frame)) + 1, len(self.frame)]
+        return tuple((int(self.frame[a]), slice(a, b)) for a, b in pairwise(starts))
 
 
 @dataclass(frozen=True, eq=False)
 class _Tube:
-    """Elliptical rings (R) along a line, in a joint's frame."""
+    """Elliptical rings (R) along a line, in a frame."""
 
-    joint: int
+    frame: int
     centre: Array
     """(R, 3) [m]."""
     lateral: Array
@@ -69,9 +70,9 @@ class _Tube:
 def mannequin_surface(body: Body, spacing_m: float) -> Surface:
     """The skin of a body, its points about `spacing_m` apart."""
     parts = [_points(tube, spacing_m) for tube in _tubes(body, spacing_m)]
-    joint = np.concatenate([np.full(len(place), tube) for tube, place, _, _ in parts])
-    place, normal, color = (np.concatenate([part[i] for part in parts]) for i in (1, 2, 3))
-    return Surface(joint, place, normal, color)
+    frame = np.concatenate([np.full(len(place), tube) for tube, place, _, _ in parts])
+    place, normal, color = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in (1, 2, 3))
+    return Surface(frame, place, normal, color)
 
 
 def _tubes(body: Body, spacing_m: float) -> Iterator[_Tube]:
@@ -152,7 +153,8 @@ def _foot(body: Body, piece: Piece, spacing_m: float) -> _Tube:
     centre = np.stack([np.full_like(along, ankle[0]), along, low + 0.5 * height], axis=-1)
     across, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     color = np.tile(SHOE * _side_color(piece.segment), (len(along), 1))
-    return _Tube(piece.joint, centre, half_width[:, None] * across, 0.5 * height[:, None] * up, color)
+    frame = foot_frame(body, piece.segment)
+    return _Tube(frame, centre, half_width[:, None] * across, 0.5 * height[:, None] * up, color)
 
 
 def _side_color(segment: str) -> Array:
@@ -175,4 +177,4 @@ def _points(tube: _Tube, spacing_m: float) -> tuple[int, Array, Array, Array]:
     normal = np.where(flat, pole[:, None], normal)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
     color = np.broadcast_to(tube.color[:, None], place.shape)
-    return tube.joint, place.reshape(-1, 3), normal.reshape(-1, 3), color.reshape(-1, 3)
+    return tube.frame, place.reshape(-1, 3), normal.reshape(-1, 3), color.reshape(-1, 3)

@@ -73,22 +73,33 @@ def showing_turn(body: Body, postures: Posture) -> float:
     """From where, around the world's Z, limbs show best over a batch of postures (K) [rad]."""
     ahead = -postures.rotations[:, 0, :, 1]
     heading = facing_rad(ahead.mean(axis=0))
-    turns = heading + TURNS_RAD
-    return float(turns[np.argmax([_shown(body, postures, turn, heading) for turn in turns])])
-
-
-def _shown(body: Body, postures: Posture, turn_rad: float, heading_rad: float) -> float:
-    """How well limbs show in a view, over all postures: far apart, and not pointing at the eye."""
-    axes = view_axes(turn_rad, TILT_RAD)[:2]
-    places = _places(body, postures)
-    pose = body.pose(postures)
-    ends = [body.segment_ends(pose, segment.name) for segment in body.skeleton.segments]
-    limbs = np.stack([end - start for start, end in ends], axis=1)  # (K, S, 3)
+    places, limbs = _places(body, postures), _limbs(body, postures)
     apart = places[:, :, None] - places[:, None]
+    away = np.abs(TURNS_RAD - USUAL_RAD)
+    shown = [_shown(apart, limbs, heading + turn) for turn in TURNS_RAD]
+    return float(heading + TURNS_RAD[np.argmax(np.array(shown) - UNUSUAL * away)])
+
+
+def _shown(apart: Array, limbs: Array, turn_rad: float) -> float:
+    """How well limbs show in a view, over all postures: far apart, and not pointing at the eye.
+
+    Args:
+        apart: (K, N, N, 3) from each place to each other one [m].
+        limbs: (K, S, 3) from each segment's start to its end [m].
+        turn_rad: Of the view.
+    """
+    axes = view_axes(turn_rad, TILT_RAD)[:2]
     aside = _length(apart @ axes.T).mean() / _length(apart).mean()
     share = np.maximum(_length(limbs @ axes.T) / _length(limbs), SHORTEST)
     worst = np.sort(np.log(share), axis=1)[:, :WORST].mean()
-    return float(aside + WORST_COUNTS * worst - UNUSUAL * abs(turn_rad - heading_rad - USUAL_RAD))
+    return float(aside + WORST_COUNTS * worst)
+
+
+def _limbs(body: Body, postures: Posture) -> Array:
+    """(K, S, 3) [m]."""
+    pose = body.pose(postures)
+    ends = [body.segment_ends(pose, segment.name) for segment in body.skeleton.segments]
+    return np.stack([end - start for start, end in ends], axis=1)
 
 
 def _length(vector: Array) -> Array:

@@ -36,10 +36,13 @@ def write_library_blend(
         pictures: Of each posture; drawn by default.
 
     Raises:
-        InputError: The file of catalogs is of another kind, or nothing can be written there.
+        InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
+            file.
         ConversionError: A file cannot be written.
     """
     root = root or path.parent
+    if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
+        raise InputError(f"{path}: is the open file, of which only pose assets would be left; name another")
     with output_folder(root) as new, bpy.data.temp_data() as data:
         if (root / NAME).exists():
             shutil.copyfile(root / NAME, new / NAME)

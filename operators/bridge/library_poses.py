@@ -9,7 +9,7 @@ from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.mirror import mirrored
 from ...core.body.posture import Posture
-from ...core.body.soles import sole_heights_m
+from ...core.body.soles import lower_sole_m
 from ...core.errors import InputError
 from ...core.library.applying import applied
 from ...core.library.library import Library, LibraryPosture
@@ -33,7 +33,7 @@ def as_kept(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> P
     turned = moved(postures, turn, np.zeros(3))
     place = turned.translation[0] * [-1.0, -1.0, 0.0]
     if on_floor:
-        place[2] = -lowest_m(body, turned)
+        place[2] = -lower_sole_m(body, turned).min()
     level = moved(turned, np.zeros(1), place)
     return applied(level, body.actor, Body(actor))
 
@@ -64,13 +64,8 @@ def standing_as(posture: Posture, body: Body, shown: Posture) -> Posture:
     own, wanted = headings_rad(both)
     turned = moved(both[:1], wanted - own, np.zeros(3))
     place = shown.translation - turned.translation[0]
-    place = np.array([place[0], place[1], lowest_m(body, both[1:])])
+    place[2] = lower_sole_m(body, shown)
     return moved(turned, np.zeros(1), place)[0]
-
-
-def lowest_m(body: Body, postures: Posture) -> float:
-    """Height of the lowest sole of a batch of postures [m]."""
-    return float(sole_heights_m(body, body.pose(postures)).min())
 
 
 def named_posture(library: Library, name: str) -> LibraryPosture:

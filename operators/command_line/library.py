@@ -12,6 +12,7 @@ from ...core.library.shelf import find_library, shelved
 from ...core.report.canvas import write_png
 from .console import arguments_console
 from .libraries import library_folders
+from .line_parser import UsageError
 
 
 def list_command(arguments: argparse.Namespace) -> None:
@@ -31,7 +32,7 @@ def list_command(arguments: argparse.Namespace) -> None:
         ]
         width = max((len(entry.identifier) for entry in found), default=0)
         lines = [
-            f"{entry.identifier:{width}}  {entry.title}, {_counted(entry.library)}"
+            f"{entry.identifier:{width}}  {entry.title}, {entry.library.size}"
             if entry.library
             else f"{entry.identifier:{width}}  cannot be used: {entry.problem}"
             for entry in found
@@ -40,7 +41,13 @@ def list_command(arguments: argparse.Namespace) -> None:
 
 
 def show_command(arguments: argparse.Namespace) -> None:
-    """Say what a library holds; draw it where that is wanted."""
+    """Say what a library holds; draw it where that is wanted.
+
+    Raises:
+        UsageError: The picture is no .png: a library named there by mistake must not become one.
+    """
+    if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
+        raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
         lines = described(library)
@@ -71,7 +78,7 @@ def check_command(arguments: argparse.Namespace) -> None:
                 problems.append(str(error))
                 continue
             good.append({"file": str(file), **library_summary(library)})
-            lines.append(f"{file}: {library.title}, version {library.version}, {_counted(library)}")
+            lines.append(f"{file}: {library.title}, version {library.version}, {library.size}")
         if problems:
             raise InputError("; ".join(problems))
         console.finish({"libraries": good}, "\n".join(lines))
@@ -109,7 +116,7 @@ def described(library: Library) -> list[str]:
         f"{library.title} ({library.identifier}, version {library.version})",
         *([library.description] if library.description else []),
         f"By {library.author}; license {library.license}; posed on {100.0 * library.actor.stature_m:.0f} cm",
-        f"{_counted(library)}:",
+        f"{library.size}:",
         *(f"  {_motion(motion)}" for motion in library.motions),
     ]
     steps = Counter(step.posture for motion in library.motions for step in motion.steps)
@@ -125,8 +132,3 @@ def _motion(motion: LibraryMotion) -> str:
     way = (x * x + y * y) ** 0.5
     travel = f", {way:.2f} m on" if way >= 0.01 else ""
     return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
-
-
-def _counted(library: Library) -> str:
-    motions = f"{len(library.motions)} motion{'' if len(library.motions) == 1 else 's'}"
-    return f"{len(library.postures)} postures, {motions}"

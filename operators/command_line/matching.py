@@ -8,13 +8,13 @@ from typing import Any
 from ...core.errors import ConversionError
 from ...core.library.library import Library
 from ...core.library.shelf import find_library, shelved
+from ...core.library.texts import EVERY_LIBRARY
 from ...core.match_take import LibraryChoice, match_take, with_matches
 from ...core.progress import Job, stretch
 from ...core.reconstruct import Reconstruction, read_footage, reconstruct
 from ...core.take import Take, read_take
 from .libraries import library_folders
 
-AUTOMATIC = "auto"
 NAMED = 3
 """So many libraries are named where none fits."""
 READING_SHARE, MATCHING_SHARE = 0.5, 0.6
@@ -39,7 +39,7 @@ def chosen_libraries(wanted: str) -> tuple[Library, ...]:
         InputError: There is no such library, or none at all, or a file is unusable.
     """
     folders = library_folders()
-    if wanted != AUTOMATIC:
+    if wanted != EVERY_LIBRARY:
         return (find_library(wanted, folders),)
     return tuple(found.library for found in shelved(folders) if found.library is not None)
 

@@ -30,3 +30,8 @@ def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup
 def label(template: str, **values: Any) -> str:
     """A line of a panel; draw it with `translate=False`, as it is translated already."""
     return str(bpy.app.translations.pgettext_iface(template)).format(**values)
+
+
+def counted(one: str, several: str, count: int) -> str:
+    """Words for so many of something, from a template for one and one for any other number."""
+    return label(one if count == 1 else several, count=count)

@@ -185,6 +185,7 @@ def show_again(group: bpy.types.PropertyGroup, drawn: Sequence[bpy.types.Propert
     postures = postures_of(group)
     library = _said(group, postures)
     entries = [entry for entry in group.postures if entry.action is not None]
+    body = Body(library.actor)
     with _quiet():
         for order, (entry, posture) in enumerate(zip(entries, postures.values(), strict=True)):
             _rename_steps(group, entry.name, posture.name)
@@ -192,7 +193,7 @@ def show_again(group: bpy.types.PropertyGroup, drawn: Sequence[bpy.types.Propert
             entry.tags, entry.exact_tags = SEPARATOR.join(posture.tags), json.dumps(posture.tags)
             entry.action.name = posture.name
             again = any(entry == other for other in drawn)
-            picture = posture_picture(Body(library.actor), posture.posture) if again else None
+            picture = posture_picture(body, posture.posture) if again else None
             show_asset(entry.action, library, posture, order, picture)
 
 

@@ -78,6 +78,7 @@ def settled(
         first = next(iter(taken.values()))
         raise InputError(f"{first.sentence}; choose whether to keep it, replace it or keep both")
     result = []
+    used = [library.identifier for library in new]
     for library in new:
         if library.identifier not in taken:
             if there(library.identifier) is None:
@@ -87,9 +88,9 @@ def settled(
         elif choice == "MERGE":
             result.append(merged(taken[library.identifier].there, library, Choice.KEEP))
         elif choice == "BOTH":
-            used = [library.identifier]
             while there(free := identifier_from(library.identifier, used)) is not None:
                 used.append(free)
+            used.append(free)
             title = told_apart(library.title, [taken[library.identifier].there.title])
             result.append(replace(library, identifier=free, title=title))
     return result
@@ -108,17 +109,36 @@ def keep_on_shelf(libraries: "Iterable[Library]") -> None:
     """Write libraries into the user's folder, and let the list show them.
 
     Raises:
+        InputError: A file of that name is another library's, or no library.
         ConversionError: A file cannot be written.
     """
     from ...core.library.library_file import write_library
-    from ...core.library.shelf import library_path
     from .shelf import fill, own_folder
 
     identifier = ""
-    for library in libraries:
-        write_library(library_path(own_folder(), library.identifier), library)
+    files = [(_own_file(own_folder(), library.identifier), library) for library in libraries]
+    for file, library in files:
+        write_library(file, library)
         identifier = library.identifier
     fill(identifier)
+
+
+def _own_file(folder: Path, identifier: str) -> Path:
+    """Where a library lies in a folder, or would: people may have put files there under any name.
+
+    Raises:
+        InputError: Something else lies there.
+    """
+    from ...core.library.shelf import library_path, shelved
+
+    path, there = library_path(folder, identifier), shelved([folder])
+    found = next((each.path for each in there if each.library and each.identifier == identifier), path)
+    other = next((each for each in there if each.path == found and each.identifier != identifier), None)
+    damaged = next((each for each in there if each.path == found and each.library is None), None)
+    if other is not None or damaged is not None:
+        holds = f"the library '{other.title}'" if other is not None else "something that is no library"
+        raise InputError(f"{found}: holds {holds}, which would be lost; give that file another name first")
+    return found
 
 
 def only_postures(library: "Library", names: "Iterable[str]") -> "Library":

@@ -13,6 +13,7 @@ import bpy
 from bpy.app import timers
 from bpy.app.handlers import persistent
 
+from ...core.library.texts import EVERY_LIBRARY
 from .results import EXTENSION
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ OWN = "libraries"
 """Name of the user's folder."""
 START_S = 0.3
 """After registering, before the shelf is read: Blender's window appears first."""
-AUTOMATIC = "auto"
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Blender keeps no copy of a menu's words: they must stay as long as it is shown."""
@@ -68,7 +68,7 @@ def library_items(_properties: object, context: bpy.types.Context | None) -> lis
     if bpy.app.background and not len(manager.keymark_shelf.libraries):
         fill()  # no timer runs, and nothing is drawn
     automatic = "Choose the library that fits the footage best, and say how sure that is"
-    found: list[Item] = [(AUTOMATIC, "Automatic", automatic, "VIEWZOOM", 0)]
+    found: list[Item] = [(EVERY_LIBRARY, "Automatic", automatic, "VIEWZOOM", 0)]
     found += [
         (library.name, library.title, library.description, "ASSET_MANAGER", _number(library.name))
         for library in manager.keymark_shelf.libraries

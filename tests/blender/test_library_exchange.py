@@ -14,6 +14,7 @@ from keymark.core.library.shelf import shelved
 from keymark.operators.bridge.library_blend import read_library_blend, write_library_blend
 from keymark.operators.scene import shelf
 from keymark.operators.scene.libraries import add_library
+from keymark.operators.scene.library_exchange import on_shelf, settled
 from keymark.operators.scene.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -168,6 +169,28 @@ def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) ->
     assert titles(own) == [("small", "Small", 2, 2), ("small_2", "Small 2", 2, 1)]
 
 
+def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
+    """Whatever was exported before; the format counts where the name ends otherwise."""
+    add_library(bpy.context.scene, library)
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "v1.2"), format="JSON")
+    assert {path.name for path in tmp_path.glob("*.*")} >= {"a.blend", "b.json", "v1.2.json"}
+    assert not list(tmp_path.glob("b.json.*"))
+
+
+def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
+    own: Path, library: Library, tmp_path: Path
+) -> None:
+    """Another library has others; the button beside it always says one that is there."""
+    other = replace(library, identifier="other", title="Other", postures=library.postures[1:])
+    imported(library, tmp_path)
+    at_hand = bpy.context.window_manager.keymark_shelf
+    assert at_hand.posture == "A"
+    imported(other, tmp_path)
+    assert (at_hand.libraries[at_hand.active].name, at_hand.posture) == ("other", "B")
+
+
 def test_a_library_of_this_file_is_kept_for_matching(own: Path, library: Library) -> None:
     """As it is now; after a change, the older one is not replaced unasked."""
     add_library(bpy.context.scene, library)
@@ -214,3 +237,56 @@ def test_pose_assets_brought_by_other_means_are_gathered(own: Path, library: Lib
     assert (tmp_path / "back.json").read_bytes() == (tmp_path / "first.json").read_bytes()
     with pytest.raises(RuntimeError, match="no pose assets of a library that is not listed"):
         bpy.ops.keymark.gather_library()
+
+
+def test_two_that_come_at_once_do_not_get_one_name(own: Path, library: Library, tmp_path: Path) -> None:
+    """A .blend may hold the very library whose name another one of it would get."""
+    imported(library, tmp_path)
+    first = replace(library, version=3)
+    second = replace(library, identifier="small_2", title="Quite different")
+    kept = settled([first, second], on_shelf, "BOTH")
+    assert [(one.identifier, one.title) for one in kept] == [
+        ("small_3", "Small 2"),
+        ("small_2", "Quite different"),
+    ]
+
+
+@pytest.mark.parametrize("content", ["another", "damaged"])
+def test_a_file_that_only_has_the_name_is_not_lost(
+    own: Path, library: Library, tmp_path: Path, content: str
+) -> None:
+    """Files that people have put into the folder themselves may hold anything."""
+    there = own / "small.json"
+    if content == "another":
+        write_library(there, replace(library, identifier="anna", title="Anna"))
+    else:
+        there.write_text("{")
+    before = there.read_bytes()
+    with pytest.raises(RuntimeError, match=r"small\.json: holds .* would be lost"):
+        imported(library, tmp_path, existing="REPLACE")
+    assert there.read_bytes() == before
+
+
+def test_an_older_version_that_shall_replace_does(own: Path, library: Library, tmp_path: Path) -> None:
+    """Also where the newer one lies in a file of another name."""
+    write_library(own / "a copy.json", replace(library, version=7))
+    imported(library, tmp_path, existing="REPLACE")
+    assert titles(own) == [("small", "Small", 2, 2)]
+
+
+def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Library) -> None:
+    """The list points to libraries by identifier: a stranger's title must not take their place."""
+    write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
+    write_library(own / "small.json", replace(library, title="Zoo"))
+    assert shelf.library_called("small").title == "Zoo"
+
+
+def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library, tmp_path: Path) -> None:
+    """Only pose assets would be left of it."""
+    add_library(bpy.context.scene, library)
+    path = tmp_path / "work.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    before = path.read_bytes()
+    with pytest.raises(RuntimeError, match="is the open file"):
+        bpy.ops.keymark.export_library(format="BLEND", filepath=str(path))
+    assert path.read_bytes() == before

@@ -53,6 +53,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
         library=library(motion),
         fit=0.75,
         floor_m=0.02,
+        course=motion.posture,
         frames=tuple(
             MatchedFrame(
                 index,
@@ -159,8 +160,9 @@ def test_what_is_posed_stays_and_is_handed_to_matching(matched: Group, given: Si
     assert (handed.index, handed.matched) == (6, None)
     assert handed.posture.minus(before) == pytest.approx(0.0, abs=1e-5)
     assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
-    assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
+    # What was matched there moves beside it.
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 4.0, 13.0))
+    assert [match.frame for match in take.matching.matches] == [1.0, 4.0, 13.0]
 
 
 def test_matching_again_replaces_what_matching_gave(

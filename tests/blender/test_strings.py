@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.running.say import label, say
+from keymark.operators.running.say import counted, label, say
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
@@ -93,11 +93,10 @@ def test_sentences_that_are_said_are_not_put_together(repository: Path) -> None:
     for file in sorted((repository / "operators").rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
-                place = {"say": 2, "label": 0}.get(node.func.id)
-                if place is None:
-                    continue
-                found += 1
-                if any(isinstance(part, PUT_TOGETHER) for part in ast.walk(node.args[place])):
+                places = {"say": (2,), "label": (0,), "counted": (0, 1)}.get(node.func.id, ())
+                found += len(places)
+                templates = [part for place in places for part in ast.walk(node.args[place])]
+                if any(isinstance(part, PUT_TOGETHER) for part in templates):
                     wrong.append(f"{file.name}:{node.lineno}")
     assert found > 5
     assert wrong == []
@@ -124,3 +123,9 @@ def test_a_sentence_is_filled_in_after_translation(monkeypatch: pytest.MonkeyPat
     say(operator, "INFO", "Opened {name}", name="walk")
     assert operator.said == ({"INFO"}, "walk geöffnet")
     assert label("Opened {name}", name="walk") == "walk geöffnet"
+
+
+def test_one_is_not_several() -> None:
+    """A number goes with words for one or for more."""
+    said = [counted("1 posture", "{count} postures", count) for count in (0, 1, 12)]
+    assert said == ["0 postures", "1 posture", "12 postures"]

@@ -49,18 +49,6 @@ def out(tmp_path: Path) -> Path:
     return folder
 
 
-@pytest.fixture
-def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two files with no content in place of what Blender writes; tests/blender has the real ones."""
-
-    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> None:
-        for name in (conversion.BLEND, conversion.BVH):
-            (place / name).touch()
-
-    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
-    monkeypatch.setattr(conversion, "_write_scene", write)
-
-
 def tree(folder: Path) -> dict[str, bytes | None]:
     """Every path below a folder, with what is in the files."""
     return {

@@ -207,3 +207,11 @@ def test_mistakes_are_one_line(
     said = capsys.readouterr()
     assert len(said.err.splitlines()) == 1 and re.search(sentence, said.err), said.err
     assert list(empty.iterdir()) == []
+
+
+def test_a_sheet_never_takes_the_place_of_a_library(shelf: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`show A --sheet A` by mistake: one line, status 2, and the file is as it was."""
+    file = shelf / "any name.json"
+    before = file.read_bytes()
+    assert run("show", file, "--sheet", file) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1 and file.read_bytes() == before

@@ -14,9 +14,11 @@ from keymark.core.library.learning import About, learn_library
 from keymark.core.library.library_file import write_library
 from keymark.core.motion_file import read_motion
 from keymark.operators.cli import main
-from keymark.operators.command_line import conversion, libraries
+from keymark.operators.command_line import libraries
 
 FRAMES = 24
+
+pytestmark = pytest.mark.usefixtures("no_blender")
 
 
 @pytest.fixture(scope="module")
@@ -40,18 +42,6 @@ def library(tmp_path: Path) -> Path:
     learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, About("Swaying", "Nobody"))
     write_library(tmp_path / "swaying.json", learned)
     return tmp_path / "swaying.json"
-
-
-@pytest.fixture(autouse=True)
-def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two files with no content in place of what Blender writes."""
-
-    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> None:
-        for name in (conversion.BLEND, conversion.BVH):
-            (place / name).touch()
-
-    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
-    monkeypatch.setattr(conversion, "_write_scene", write)
 
 
 def convert(take: Path, out: Path, *more: object) -> int:

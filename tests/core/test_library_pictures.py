@@ -7,11 +7,13 @@ import pytest
 from _libraries import ACTOR, small_library
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.body.soles import HEEL_BEHIND, sole_heights_m, sole_places
 from keymark.core.body.standing import standing_posture
 from keymark.core.library.library import LibraryMotion, MotionStep
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.library_sheet import MARGIN, WIDTH, library_sheet
 from keymark.core.report.mannequin import View, draw_mannequin
+from keymark.core.report.mannequin_feet import drawn_frames, foot_frame
 from keymark.core.report.posture_picture import SIZE, posture_picture
 
 BODY = Body(ACTOR)
@@ -67,6 +69,46 @@ def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, f
         assert lowest[1] < lowest[0] - 15
     else:
         assert np.abs(here.astype(int) - there).mean() < 1.0
+
+
+def crouching(knee: float) -> Posture:
+    """Someone with bent knees whose ankles are as high over the floor as in standing [radians]."""
+    angles = STANDING.angles.copy()
+    names = [BODY.skeleton.joints[i].name for i in BODY.skeleton.hinge_joints]
+    for side in ("L", "R"):
+        angles[names.index(f"knee.{side}")] = knee
+    bent = Posture(STANDING.skeleton, STANDING.translation, STANDING.rotations, angles)
+    ankle = BODY.skeleton.point_names.index("ankle.L")
+    heights = [BODY.points(BODY.pose(posture))[ankle, 2] for posture in (bent, STANDING)]
+    return moved(bent, (0.0, 0.0, float(heights[1] - heights[0])))
+
+
+@pytest.mark.parametrize("knee", [0.2, 0.6, 1.2])
+def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
+    """The rigid foot of a leaning shin dips; drawn, its sole is level, and its ankle stays where it was."""
+    posture = crouching(knee)
+    pose = BODY.pose(posture)
+    turned, origins = drawn_frames(BODY, pose)
+    assert sole_heights_m(BODY, pose).max() < -0.01
+    for side, heights in zip(("L", "R"), sole_places(BODY, pose)[..., 2], strict=True):
+        foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
+        frame = foot_frame(BODY, foot.name)
+        ankle, tip = (BODY.local(end) for end in (foot.start, foot.end))
+        heel = np.array([tip[0], ankle[1] + HEEL_BEHIND * BODY.actor.segments_m[foot.name], tip[2]])
+        drawn = [(origins[frame] + turned[frame] @ place)[2] for place in (heel, tip)]
+        assert min(drawn) > -1e-3 > heights.min()
+        at = origins[frame] + turned[frame] @ ankle
+        np.testing.assert_allclose(at, pose.place(foot.joint, ankle), atol=1e-9)
+        np.testing.assert_allclose(turned[frame].T @ turned[frame], np.eye(3), atol=1e-9)
+
+
+def test_a_foot_in_the_air_is_drawn_as_the_shin_has_it() -> None:
+    """Nothing but the floor turns it."""
+    pose = BODY.pose(moved(crouching(0.8), (0.0, 0.0, 0.5)))
+    turned, _ = drawn_frames(BODY, pose)
+    for side in ("L", "R"):
+        foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
+        np.testing.assert_array_equal(turned[foot_frame(BODY, foot.name)], pose.rotation[foot.joint])
 
 
 def test_every_posture_is_on_the_sheet() -> None:

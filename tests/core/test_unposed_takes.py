@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from _synthetic_take import true_postures, write_synthetic_take
 from keymark.core.match_take import NEAR_FRAMES, with_matches
-from keymark.core.notes import match_notes
+from keymark.core.notes import filter_notes, left_out_notes, match_notes
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.prior.matching.candidate import Candidate, MatchedFrame
 from keymark.core.prior.matching.match import LibraryMatch
@@ -60,6 +60,15 @@ def test_of_posed_keyframes_nothing_is_said_and_of_both_kinds_how_many(take: Tak
     first, *others = take.keyframes
     both = replace(take, keyframes=(first, *(replace(one, matched=said()) for one in others)))
     assert match_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes were posed")
+
+
+def test_it_is_said_what_is_left_out_and_what_the_filter_does_not_know(take: Take) -> None:
+    """Some matched keyframes or all of them; nothing where there is nothing to say."""
+    every = unposed(take)
+    assert left_out_notes(every, 0) == () == filter_notes(take)
+    assert left_out_notes(every, len(take.keyframes))[0].startswith("the library was left out")
+    assert left_out_notes(every, 1)[0].startswith(f"1 of {len(take.keyframes)} matched keyframes")
+    assert "ekf" in filter_notes(every)[0]
 
 
 def test_a_reconstruction_tells_it_and_doubts_depth_where_nothing_was_posed(take: Take) -> None:

@@ -107,18 +107,6 @@ def leap(made: Composer) -> None:
         ),
         ahead_m=-0.34,
     )
-    drive = balanced(
-        moment(
-            left_leg=Foot(0.02, 0.0, 5.0, 4.0),
-            right_leg=Leg(42.0, 0.0, 0.0, 98.0, 20.0),
-            left_arm=swung_arm(8.0, 18.0, elbow=66.0),
-            right_arm=swung_arm(-8.0, 18.0, elbow=66.0),
-            bend=40.0,
-            pelvis=Turn(5.0),
-            waist=Turn(4.0),
-        ),
-        ahead_m=0.10,
-    )
     off = balanced(
         moment(
             left_leg=Foot(0.02, 0.0, 5.0, 62.0),
@@ -144,19 +132,6 @@ def leap(made: Composer) -> None:
         ),
         ahead_m=-0.26,
     )
-    caught = balanced(
-        moment(
-            left_leg=Leg(14.0, 0.0, 0.0, 96.0, 30.0),
-            right_leg=Foot(-0.03, land_y, -5.0, 0.0),
-            left_arm=swung_arm(18.0, 30.0, elbow=58.0),
-            right_arm=swung_arm(0.0, 32.0, elbow=52.0),
-            bend=52.0,
-            pelvis=Turn(16.0),
-            waist=Turn(10.0),
-            neck=Turn(-10.0),
-        ),
-        ahead_m=0.05,
-    )
     start, end = mass_of(off), mass_of(on)
     high = moment(
         left_leg=Leg(-26.0, 0.0, 0.0, 42.0, 40.0),
@@ -168,14 +143,12 @@ def leap(made: Composer) -> None:
     )
     names = (
         "left foot plants",
-        "knee drives up",
         "toes leave the floor",
         "highest",
         "right foot lands",
-        "caught",
     )
-    moments = (plant, drive, off, thrown(high, flight(start, end, LEAP_S, 0.5)), on, caught)
-    times = (0.0, 0.11, 0.22, 0.22 + 0.5 * LEAP_S, 0.22 + LEAP_S, 0.36 + LEAP_S)
+    moments = (plant, off, thrown(high, flight(start, end, LEAP_S, 0.5)), on)
+    times = (0.0, 0.22, 0.22 + 0.5 * LEAP_S, 0.22 + LEAP_S)
     steps = []
     for name, at, time_s in zip(names, moments, times, strict=True):
         steps.append((made.pose(f"leap: {name}", at), time_s))

@@ -1,7 +1,7 @@
 """Running: feet planted while they bear the body, free flight between, and legs that swing by their angles.
 
-Numbers: Novacheck (1998), *The biomechanics of running*, Gait and Posture 7, for joints, stance and flight;
-Hinrichs (1987), *Upper extremity function in running II*, International Journal of Sport Biomechanics 3, for
+Numbers: Novacheck (1998), *The biomechanics of running*, Gait & Posture 7, for joints, stance and flight;
+Hinrichs (1987), *Upper extremity function in running. II*, International Journal of Sport Biomechanics 3, for
 the arms.
 """
 

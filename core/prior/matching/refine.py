@@ -28,8 +28,8 @@ PROBE = 5e-3
 LARGEST = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
 """No unknown moves farther at once."""
 EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
-"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's: the
-floor tells the height, and who jumps or crouches otherwise is fast."""
+"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's:
+upwards the floor tells it, and who jumps or crouches otherwise is fast."""
 CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
 """Of what these change by in a second, as the square root of time."""
 LEAP_STD = np.array([np.inf, np.inf, 0.7, 0.7, 1.5])

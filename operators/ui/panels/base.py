@@ -67,13 +67,25 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
 
 
 def draw_sentence(
-    layout: bpy.types.UILayout, context: bpy.types.Context, sentence: str, icon: str = "DOT"
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    sentence: str,
+    icon: str = "DOT",
+    most_lines: int | None = None,
 ) -> None:
-    """Draw a sentence that is translated already, broken into lines as wide as the sidebar."""
+    """Draw a sentence that is translated already, broken into lines as wide as the sidebar.
+
+    Args:
+        layout: Where.
+        context: Whose sidebar.
+        sentence: What to draw.
+        icon: Before the first line.
+        most_lines: What is longer ends in dots.
+    """
     scale = context.preferences.system.ui_scale
     letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
     lines = layout.column(align=True)
     lines.scale_y = 0.8
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
-    for number, line in enumerate(wrap(kept, letters)):
+    for number, line in enumerate(wrap(kept, letters, max_lines=most_lines, placeholder=" ...")):
         lines.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)

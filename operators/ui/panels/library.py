@@ -1,17 +1,15 @@
 """Keyframe libraries: those at hand, and the one that is made in this file."""
 
-from textwrap import wrap
-
 import bpy
 
-from ...running.say import label
+from ...running.say import counted, label
 from ...scene.libraries import active_motion, active_posture, find_library_here, library_here
 from ...scene.shelf import chosen
-from .base import SubPanel, draw_progress
+from ...scene.takes import find_take
+from .base import SubPanel, draw_progress, draw_sentence
 
-CHARACTER_WIDTH = 6.2
-MARGIN = 60.0
 MOST_LINES = 4
+"""Of what a library says of itself, or what is wrong with it."""
 
 
 class KEYMARK_UL_shelf(bpy.types.UIList):
@@ -38,7 +36,7 @@ class KEYMARK_UL_shelf(bpy.types.UIList):
             facts = row.row()
             facts.alignment = "RIGHT"
             facts.active = False
-            facts.label(text=str(len(item.postures)), translate=False, icon="ARMATURE_DATA")
+            facts.label(text=str(len(item.postures)), translate=False)
 
 
 class KEYMARK_UL_library_postures(bpy.types.UIList):
@@ -162,7 +160,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         if item is None:
             return
         if item.problem:
-            _lines(layout, context, item.problem, "ERROR")
+            draw_sentence(layout, context, item.problem, "ERROR", MOST_LINES)
             return
         _facts(layout, context, item)
         column = layout.column()
@@ -170,9 +168,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop_search(shelf, "posture", item, "postures", icon="ARMATURE_DATA")
         column.prop(shelf, "mirrored")
-        row = column.row()
-        row.enabled = shelf.posture in item.postures
-        apply = row.operator("keymark.apply_posture", icon="POSE_HLT")
+        apply = column.operator("keymark.apply_posture", icon="POSE_HLT")
         apply.library, apply.posture, apply.mirrored = item.name, shelf.posture, shelf.mirrored
         if not draw_progress(column, context, "keymark.install_"):
             column.operator("keymark.install_library", icon="ASSET_MANAGER").library = item.name
@@ -216,6 +212,9 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
             row = column.row(align=True)
             row.operator("keymark.apply_posture", icon="POSE_HLT").mirrored = False
             row.operator("keymark.apply_posture", text="", icon="MOD_MIRROR").mirrored = True
+        if entry is None:
+            _draw_begin(column, context)
+            return
         column.operator("keymark.keep_library", icon="USER")
         row = column.row(align=True)
         row.operator("keymark.export_library", text="Export", icon="EXPORT").library = ""
@@ -291,31 +290,28 @@ class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
         lines.operator("keymark.add_source", icon="ADD")
 
 
+def _draw_begin(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What an empty library waits for; without a take there is no other button to build an actor."""
+    take = find_take(context.scene)
+    if take is None or take.armature is None:
+        draw_sentence(layout, context, label("Build an actor to pose; no footage is needed"), "FORWARD")
+        layout.operator("keymark.build_actor", icon="OUTLINER_OB_ARMATURE")
+    else:
+        draw_sentence(layout, context, label("Pose the actor, and add its pose with the plus"), "FORWARD")
+
+
 def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.PropertyGroup) -> None:
     """What is known of a library at hand."""
     column = layout.column(align=True)
     column.scale_y = 0.85
-    counts = label(
-        "{postures} postures, {motions} motions", postures=len(item.postures), motions=item.motions
-    )
-    column.label(text=counts, icon="INFO", translate=False)
+    postures = counted("1 posture", "{count} postures", len(item.postures))
+    motions = counted("1 motion", "{count} motions", item.motions)
+    column.label(text=f"{postures}, {motions}", icon="INFO", translate=False)
     by = label("Version {version} by {author}", version=item.version, author=item.author)
     column.label(text=by, icon="BLANK1", translate=False)
     column.label(text=item.license, icon="BLANK1", translate=False)
     if item.description:
-        _lines(layout, context, item.description, "TEXT")
-
-
-def _lines(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """A text on as many lines as the sidebar's width asks for, but few."""
-    room = context.region.width / context.preferences.system.ui_scale - MARGIN
-    lines = wrap(text, max(int(room / CHARACTER_WIDTH), 20))
-    if len(lines) > MOST_LINES:
-        lines = [*lines[: MOST_LINES - 1], f"{lines[MOST_LINES - 1]} ..."]
-    column = layout.column(align=True)
-    column.scale_y = 0.85
-    for number, line in enumerate(lines):
-        column.label(text=line, icon="BLANK1" if number else icon, translate=False)
+        draw_sentence(layout, context, item.description, "TEXT", MOST_LINES)
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -12,6 +12,8 @@ from .base import TakePanel, draw_progress, draw_sentence
 
 WORTH_NAMING = 0.005
 """Probability below which the second best kind of motion is none."""
+WELL = 0.85
+"""Fit below which the footage probably shows something else than the library."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
 NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
@@ -85,42 +87,53 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
             row.operator("keymark.match_library", icon="VIEWZOOM")
         _draw_choice(column, context, matching)
         if len(matching.matches):
-            _draw_matches(column, matching)
+            _draw_matches(column, active_take(context.scene))
             _draw_candidates(column, active_take(context.scene))
 
 
 def _draw_choice(
     layout: bpy.types.UILayout, context: bpy.types.Context, matching: bpy.types.PropertyGroup
 ) -> None:
-    """Which library, how sure, and what comes next; why, where that is in doubt or one alone was tried."""
+    """Which library, how sure, and what comes next; how much it explains, where that is in doubt."""
     if not len(matching.ranking):
         return
     best, *others = matching.ranking
-    sure = best.probability >= SURE and matching.fit >= DOUBTFUL
+    sure = best.probability >= SURE and matching.fit >= WELL
     icon = "CHECKMARK" if sure else "QUESTION"
-    if others and others[0].probability < WORTH_NAMING:
-        words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
-        draw_sentence(layout, context, words, icon)
-    elif others:
+    if not others:
+        draw_sentence(layout, context, matching.reason, icon)
+        if matching.fit < WELL:
+            draw_sentence(layout, context, label("It probably shows something else"), "BLANK1")
+        return
+    words = label("{best} {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+    if others[0].probability >= WORTH_NAMING:
         words = label(
-            "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
+            "{best} {percent:.0f} %, {other} {less:.0f} %",
             best=best.name,
             percent=100.0 * best.probability,
             other=others[0].name,
             less=100.0 * others[0].probability,
         )
-        draw_sentence(layout, context, words, icon)
-    if matching.reason and not (sure and others):
-        draw_sentence(layout, context, matching.reason, "BLANK1" if others else icon)
+    draw_sentence(layout, context, words, icon)
+    if not len(matching.matches):
+        draw_sentence(layout, context, matching.reason, "BLANK1")
+    elif not sure:
+        explained = label("Explains {percent:.0f} % of the footage", percent=100.0 * matching.fit)
+        draw_sentence(layout, context, explained, "BLANK1")
 
 
-def _draw_matches(layout: bpy.types.UILayout, matching: bpy.types.PropertyGroup) -> None:
+def _draw_matches(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    matching = take.matching
     layout.template_list(
         "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=3, maxrows=5
     )
     row = layout.row(align=True)
     row.operator("keymark.jump_to_match", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
-    doubtful = row.operator("keymark.jump_to_match", text="Next Doubtful")
+    left = sum(match.is_doubtful and state_of(take, match) == "MATCHED" for match in matching.matches)
+    going = row.row(align=True)
+    going.enabled = left > 0
+    words = label("Next Doubtful ({count})", count=left) if left else label("None Doubtful")
+    doubtful = going.operator("keymark.jump_to_match", text=words, translate=False)
     doubtful.direction, doubtful.only_doubtful = "NEXT", True
     row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
 

@@ -9,6 +9,8 @@ from contextlib import suppress
 
 import bpy
 
+from ..licenses import suggest
+
 KEPT_DIGITS = 6
 """Of a number that was typed in: single precision has no more."""
 
@@ -181,6 +183,8 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
         description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
         "by default none",
         default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
         update=_details_changed,
     )
     description: bpy.props.StringProperty(

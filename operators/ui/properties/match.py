@@ -5,13 +5,12 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ....core.body.human import HUMAN
+from ....core.library.texts import EVERY_LIBRARY
 
 if TYPE_CHECKING:
     from ....core.body.posture import Posture
     from ....core.prior.keyframes import Matched
 
-AUTOMATIC = "auto"
-"""Stands for all libraries, as on the command line."""
 PLACE_VALUES = 6
 """Degrees of freedom that say where the hips are and how they are turned; Blender's vectors are short."""
 DOUBTFUL = 0.5
@@ -161,7 +160,7 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
     library_name: bpy.props.StringProperty(
         name="Library",
         description="What the library is known by that is looked for; menus number theirs, which may change",
-        default=AUTOMATIC,
+        default=EVERY_LIBRARY,
         options={"HIDDEN"},
     )
     library: bpy.props.EnumProperty(

@@ -154,7 +154,12 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
         (("schema_version",), 0, "schema_version"),
         (("identifier",), "../up", "identifier is '../up'"),
         (("identifier",), "Walk", "lower-case"),
+        (("identifier",), "auto", "not .auto."),  # names the choice among all libraries
+        (("identifier",), "walk.json", "no ending .json"),  # would name a file where libraries are named
+        (("title",), "\u200d", "something can be seen"),
+        (("motions", 1, "duration_s"), 1e-9, "from 0.001 to 600 s"),  # endless cycles between two frames
         (("titel",), "Walk", "unknown field 'titel' \\(is 'title' meant\\?\\)"),
+        (("title",), None, "title is null"),
         (("title",), "a\u202eb", "control characters"),
         (("title",), "t" * 61, "at most 60"),
         (("version",), 0, "version is 0"),
@@ -198,3 +203,10 @@ def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="identifier"):
         write_library(tmp_path / "x.json", replace(small_library(), identifier="../x"))
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no endless file")
+def test_a_file_without_end_is_not_read_to_its_end() -> None:
+    """A device says that it holds nothing, and then never stops."""
+    with pytest.raises(InputError, match="no end in sight; at most 4 MiB"):
+        read_library(Path("/dev/zero"))

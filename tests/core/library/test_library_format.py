@@ -43,7 +43,7 @@ def test_every_field_has_its_row(page: str) -> None:
         f"{library_fields.MOST_SOURCES} sources of {library_fields.LONGEST_TEXT}",
         f"{library_fields.MOST_MOTIONS}, together {library_fields.MOST_STEPS} steps",
         f"1 to {library_fields.MOST_POSTURES} |",
-        f"at most {library_fields.LONGEST_S:g} s",
+        f"({library_fields.SHORTEST_S:g} to {library_fields.LONGEST_S:g} s)",
         f"above {library_file.LARGEST_BYTES // 2**20} MiB",
     ],
 )

@@ -69,10 +69,18 @@ def test_an_unknown_name_is_one_sentence(folders: list[Path], name: str) -> None
 
 
 @pytest.mark.parametrize(
-    "identifier", ["../x", "a/b", "C:x", "con", "nul.x", "Walk", ".walk", "walk.", "", "a b"]
+    "identifier", ["../x", "a/b", "C:x", "con", "nul.x", "Walk", ".walk", "walk.", "", "a b", "auto"]
 )
 def test_a_librarys_file_stays_in_its_folder(tmp_path: Path, identifier: str) -> None:
-    """Names that mean another folder, a device or the same file as another are none."""
+    """Names that mean another folder, a device, the same file as another or all libraries are none."""
     assert library_path(tmp_path, "walk.2_b-c") == tmp_path / "walk.2_b-c.json"
     with pytest.raises(InputError, match="identifier"):
         library_path(tmp_path, identifier)
+
+
+def test_a_name_counts_before_a_title(folders: list[Path]) -> None:
+    """A stranger's library may be titled as another is named, and a damaged file may have any name."""
+    write_library(folders[0] / "a.json", replace(LIBRARY, identifier="zebra", title="walk"))
+    (folders[0] / "walk.json").write_text("{")
+    assert find_library("walk", folders).identifier == "walk"
+    assert find_library("A walk", folders).identifier == "walk"

@@ -13,9 +13,10 @@ from ..composing import Composer
 from ..moment import Arm, Foot, Leg, Moment, Turn, mirrored, moment
 
 SOURCES = (
-    "Costa, M. J. et al. (2011). The influence of musical cadence into aquatic jumping jacks kinematics."
-    " Journal of Sports Science and Medicine 10.",
-    "Bishop, J. G. (2013). Fitness through Aerobics, 9th ed.",
+    "Costa, M. J., Oliveira, C., Teixeira, G., Marinho, D. A., Silva, A. J. & Barbosa, T. M. (2011). The"
+    " influence of musical cadence into aquatic jumping jacks kinematics. Journal of Sports Science and"
+    " Medicine 10, 607-615.",
+    "Bishop, J. G. (2013). Fitness through Aerobics.",
     "Inman, V. T., Saunders, J. B. & Abbott, L. C. (1944). Observations on the function of the shoulder"
     " joint. Journal of Bone and Joint Surgery 26.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",

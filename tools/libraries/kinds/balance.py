@@ -14,14 +14,15 @@ from ..moment import AnyArm, AnyLeg, Arm, Foot, Leg, Moment, Turn, mirrored, mom
 from ..placing import moved
 
 SOURCES = (
-    "Boström, K. J. et al. (2018). The contribution of upper body movements to dynamic balance regulation"
-    " during challenged locomotion. Frontiers in Human Neuroscience 12.",
-    "Hill, M. W. et al. (2019). Dynamic postural control in children: do the arms lend the legs a helping"
-    " hand? Frontiers in Physiology 9.",
+    "Boström, K. J., Dirksen, T., Zentgraf, K. & Wagner, H. (2018). The contribution of upper body"
+    " movements to dynamic balance regulation during challenged locomotion. Frontiers in Human"
+    " Neuroscience 12, 8.",
+    "Hill, M. W., Wdowski, M. M., Pennell, A., Stodden, D. F. & Duncan, M. J. (2019). Dynamic postural"
+    " control in children: do the arms lend the legs a helping hand? Frontiers in Physiology 9, 1932.",
     "McCurdy, K. & Langford, G. (2006). The relationship between maximum unilateral squat strength and"
-    " balance in young adult men and women. Journal of Sports Science and Medicine 5.",
+    " balance in young adult men and women. Journal of Sports Science and Medicine 5, 282-288.",
     "Otten, E. (1999). Balancing on a narrow ridge: biomechanics and control. Philosophical Transactions"
-    " of the Royal Society B 354.",
+    " of the Royal Society B 354, 869-875.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 CARRYING = Foot(-0.06, 0.0, -6.0)

@@ -1,4 +1,4 @@
-"""Jumps: straight up, far, astride, small ones on both feet and on one, and a leap over from a run-up."""
+"""Jumps: straight up, far, ahead, astride, small ones on both feet and on one, and a leap from a run-up."""
 
 from dataclasses import replace
 
@@ -12,19 +12,19 @@ from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 SOURCES = (
     "Bobbert, M. F. & van Ingen Schenau, G. J. (1988). Coordination in vertical jumping. Journal of"
     " Biomechanics 21.",
-    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances performance"
-    " in the vertical jump. Journal of Biomechanics 37.",
-    "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human Movement"
-    " Science 24.",
+    "Lees, A., Vanrenterghem, J. & De Clercq, D. (2004). Understanding how an arm swing enhances"
+    " performance in the vertical jump. Journal of Biomechanics 37.",
+    "Wakai, M. & Linthorne, N. P. (2005). Optimum take-off angle in the standing long jump. Human"
+    " Movement Science 24, 81-96.",
     "Hay, J. G. (1993). The Biomechanics of Sports Techniques, 4th ed.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 APART_M = 0.11
 """Half the distance between the feet of someone about to jump."""
-HIGH_S, FAR_S, ASTRIDE_S = 0.50, 0.46, 0.48
+HIGH_S, FAR_S, ASTRIDE_S, SMALL_S, FORWARD_S = 0.50, 0.46, 0.48, 0.30, 0.38
 """Times of flight: half a second is a jump of 31 cm."""
-FAR_M = 1.25
-"""How far the mass flies."""
+FAR_M, AHEAD_M = 1.25, 0.55
+"""How far the mass flies in the long jump, and in one without much ado."""
 
 HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=15.0)
 BACK = swung_arm(-48.0, 12.0, rotation=0.0, elbow=14.0)
@@ -38,13 +38,16 @@ def library() -> Library:
     made = Composer(
         "jumping",
         "Jumping",
-        "Jumps up, tucked, astride and far, with swinging arms; bouncing on the spot, hopping, a leap.",
+        "Jumps up, tucked, astride and far, with swinging arms; a small jump and one forward with little"
+        " swing; bouncing on the spot, hopping, a leap.",
         SOURCES,
         ("jumping",),
     )
     _up(made)
     _tuck(made)
     _far(made)
+    _small(made)
+    _forward(made)
     _astride(made)
     hops.bounce(made)
     hops.hop(made)
@@ -98,18 +101,11 @@ def landing() -> Moment:
 def _up(made: Composer) -> None:
     off, on = leaving_upward(), landing()
     start, end = mass_of(off), mass_of(on)
-    rising = moment(arms=UP, legs=Leg(4.0, 4.0, 4.0, 9.0, 50.0), waist=Turn(-2.0), neck=Turn(-8.0))
     top = moment(
         arms=replace(UP, elevation=146.0),
         legs=Leg(8.0, 5.0, 4.0, 18.0, 45.0),
         waist=Turn(2.0),
         neck=Turn(-4.0),
-    )
-    falling = moment(
-        arms=replace(OPEN, elevation=105.0, plane=60.0),
-        legs=Leg(18.0, 6.0, 4.0, 20.0, 25.0),
-        pelvis=Turn(4.0),
-        waist=Turn(6.0),
     )
     made.pose("standing", balanced(moment(legs=feet(), arms=HANGING, bend=7.0)))
     made.pose("sinking", crouched(52.0, 22.0, 12.0, swung_arm(-30.0, 12.0, rotation=0.0, elbow=14.0)))
@@ -117,9 +113,7 @@ def _up(made: Composer) -> None:
     made.pose("pushing off, arms pass", crouched(82.0, 34.0, 14.0, swung_arm(24.0, 12.0, elbow=26.0)))
     made.pose("stretching, arms forward", crouched(44.0, 14.0, 8.0, FORWARD, pitch=12.0))
     made.pose("toes leave the floor", off)
-    made.pose("rising", thrown(rising, flight(start, end, HIGH_S, 0.22)))
     made.pose("highest, arms up", thrown(top, flight(start, end, HIGH_S, 0.5)))
-    made.pose("falling", thrown(falling, flight(start, end, HIGH_S, 0.78)))
     made.pose("toes touch the floor", on)
     made.pose("caught, knees deep", crouched(78.0, 32.0, 18.0, swung_arm(30.0, 26.0, elbow=42.0)))
     made.pose("straightening", crouched(36.0, 12.0, 8.0, swung_arm(12.0, 16.0, elbow=24.0)))
@@ -134,9 +128,7 @@ def _up(made: Composer) -> None:
             ("pushing off, arms pass", 0.81),
             ("stretching, arms forward", 0.93),
             ("toes leave the floor", off_s),
-            ("rising", off_s + 0.22 * HIGH_S),
             ("highest, arms up", off_s + 0.5 * HIGH_S),
-            ("falling", off_s + 0.78 * HIGH_S),
             ("toes touch the floor", on_s),
             ("caught, knees deep", on_s + 0.20),
             ("straightening", on_s + 0.55),
@@ -262,6 +254,90 @@ def _far(made: Composer) -> None:
     )
 
 
+def _small(made: Composer) -> None:
+    """Up a hand's breadth with arms that swing no higher than the waist; it ends as the jump up does."""
+    off = on_toes(swung_arm(26.0, 16.0, elbow=34.0))
+    start, end = mass_of(off), mass_of(landing())
+    top = moment(
+        arms=swung_arm(32.0, 24.0, elbow=42.0),
+        legs=Leg(9.0, 4.0, 4.0, 18.0, 40.0),
+        pelvis=Turn(2.0),
+        waist=Turn(3.0),
+    )
+    made.pose("small: toes leave the floor", off)
+    made.pose("small: highest", thrown(top, flight(start, end, SMALL_S, 0.5)))
+    off_s = 0.62
+    on_s = off_s + SMALL_S
+    made.motion(
+        "small jump",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.40),
+            ("small: toes leave the floor", off_s),
+            ("small: highest", off_s + 0.5 * SMALL_S),
+            ("toes touch the floor", on_s),
+            ("straightening", on_s + 0.22),
+            ("standing", on_s + 0.60),
+        ],
+    )
+
+
+def _forward(made: Composer) -> None:
+    """A jump ahead without much ado, arms to the height of the chest, landing on flat feet."""
+    off = balanced(
+        moment(
+            legs=feet(54.0),
+            arms=swung_arm(62.0, 14.0, elbow=30.0),
+            bend=14.0,
+            pelvis=Turn(15.0),
+            waist=Turn(4.0),
+            neck=Turn(-8.0),
+        ),
+        ahead_m=0.32,
+    )
+    land_y = -AHEAD_M - 0.32 - 0.14
+    on = balanced(
+        moment(
+            legs=feet(-4.0, land_y),
+            arms=swung_arm(42.0, 18.0, elbow=32.0),
+            bend=36.0,
+            pelvis=Turn(16.0),
+            waist=Turn(14.0),
+            neck=Turn(-10.0),
+        ),
+        ahead_m=-0.15,
+    )
+    start, end = mass_of(off), mass_of(on)
+    high = moment(
+        arms=swung_arm(64.0, 18.0, elbow=30.0),
+        legs=Leg(46.0, 5.0, 4.0, 66.0, 15.0),
+        pelvis=Turn(10.0),
+        waist=Turn(10.0),
+        neck=Turn(-8.0),
+    )
+    caught = crouched(60.0, 25.0, 16.0, swung_arm(24.0, 18.0, elbow=28.0), y=land_y)
+    made.pose("forward: toes leave the floor", off)
+    made.pose("forward: highest", thrown(high, flight(start, end, FORWARD_S, 0.5)))
+    made.pose("forward: feet land", on)
+    made.pose("forward: caught", caught)
+    made.pose("forward: standing", balanced(moment(legs=feet(y=land_y), arms=HANGING, bend=7.0)))
+    off_s = 0.82
+    on_s = off_s + FORWARD_S
+    made.motion(
+        "jump forward",
+        [
+            ("standing", 0.0),
+            ("sinking", 0.48),
+            ("pushing off, arms pass", 0.66),
+            ("forward: toes leave the floor", off_s),
+            ("forward: highest", off_s + 0.5 * FORWARD_S),
+            ("forward: feet land", on_s),
+            ("forward: caught", on_s + 0.18),
+            ("forward: standing", on_s + 0.75),
+        ],
+    )
+
+
 def _astride(made: Composer) -> None:
     """A star in the air, with the jump up's beginning and end."""
     off = on_toes(Arm(elevation=62.0, plane=15.0, rotation=10.0, elbow=18.0, girdle=6.0))
@@ -269,13 +345,8 @@ def _astride(made: Composer) -> None:
     start, end = mass_of(off), mass_of(on)
     wide = Arm(elevation=128.0, plane=6.0, rotation=6.0, elbow=8.0, girdle=20.0)
     star = moment(arms=wide, legs=Leg(4.0, 38.0, 8.0, 8.0, 40.0), neck=Turn(-6.0))
-    half = moment(arms=replace(wide, elevation=96.0, girdle=12.0), legs=Leg(6.0, 22.0, 6.0, 12.0, 45.0))
-    stretching = crouched(46.0, 15.0, 8.0, replace(OPEN, elevation=34.0, plane=25.0), pitch=12.0)
-    made.pose("star: stretching", stretching)
     made.pose("star: toes leave the floor", off)
-    made.pose("star: opening", thrown(half, flight(start, end, ASTRIDE_S, 0.25)))
     made.pose("star: wide open", thrown(star, flight(start, end, ASTRIDE_S, 0.52)))
-    made.pose("star: closing", thrown(half, flight(start, end, ASTRIDE_S, 0.80)))
     on_s = 0.94 + ASTRIDE_S
     made.motion(
         "star jump",
@@ -283,11 +354,8 @@ def _astride(made: Composer) -> None:
             ("standing", 0.0),
             ("sinking", 0.36),
             ("pushing off, arms pass", 0.74),
-            ("star: stretching", 0.86),
             ("star: toes leave the floor", 0.94),
-            ("star: opening", 0.94 + 0.25 * ASTRIDE_S),
             ("star: wide open", 0.94 + 0.52 * ASTRIDE_S),
-            ("star: closing", 0.94 + 0.80 * ASTRIDE_S),
             ("toes touch the floor", on_s),
             ("caught, knees deep", on_s + 0.18),
             ("straightening", on_s + 0.50),

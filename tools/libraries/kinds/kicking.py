@@ -4,29 +4,24 @@ from dataclasses import replace
 
 from keymark.core.library.library import Library
 
+from .. import easy_kicks
 from ..balance import balanced
 from ..composing import Composer
+from ..kicker import BEHIND, GUARD, HANGING, LOW_GUARD, STAND, on_right
 from ..moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 
 SOURCES = (
     "Robertson, D. G. E. & Mosher, R. E. (1985). Work and power of the leg muscles in soccer kicking."
     " Biomechanics IX-B.",
-    "Sorensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the"
+    "Sørensen, H., Zacho, M., Simonsen, E. B., Dyhre-Poulsen, P. & Klausen, K. (1996). Dynamics of the"
     " martial arts high front kick. Journal of Sports Sciences 14.",
-    "Wasik, J. (2011). Kinematics and kinetics of taekwon-do side kick. Journal of Human Kinetics 30.",
+    "Wąsik, J. (2011). Kinematics and kinetics of taekwon-do side kick. Journal of Human Kinetics 30, 13-20.",
     "Kim, Y. K., Kim, Y. H. & Im, S. J. (2011). Inter-joint coordination in producing kicking velocity of"
-    " taekwondo kicks. Journal of Sports Science and Medicine 10.",
+    " taekwondo kicks. Journal of Sports Science and Medicine 10, 31-38.",
     "Kellis, E. & Katis, A. (2007). Biomechanical characteristics and determinants of instep soccer kick."
-    " Journal of Sports Science and Medicine 6.",
+    " Journal of Sports Science and Medicine 6, 154-165.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
-GUARD = Arm(elevation=34.0, plane=58.0, rotation=26.0, elbow=120.0, pronation=30.0, girdle=3.0)
-LOW_GUARD = Arm(elevation=26.0, plane=40.0, rotation=20.0, elbow=84.0, pronation=20.0)
-HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=16.0)
-LEVEL = Turn()
-STAND = Foot(-0.10, -0.08, -18.0)
-"""Of the right foot, which bears; behind it the left one kicks from."""
-BEHIND = Foot(0.12, 0.24, 28.0)
 
 
 def library() -> Library:
@@ -34,8 +29,8 @@ def library() -> Library:
     made = Composer(
         "kicking",
         "Kicking",
-        "Kicks with the left leg: front, side and roundhouse kick from a guard, a kick of a ball with its"
-        " step, and a straight swing of the leg.",
+        "Left kicks: front, side and around from a guard, front and side from standing, a ball with or"
+        " without a run-up, a straight swing.",
         SOURCES,
         ("kicking", "martial arts", "football"),
     )
@@ -57,34 +52,9 @@ def library() -> Library:
     _around(made)
     _ball(made)
     _swing(made)
+    easy_kicks.front(made)
+    easy_kicks.side(made)
     return made.library()
-
-
-def on_right(
-    leg: Leg,
-    pelvis: Turn,
-    waist: Turn = LEVEL,
-    neck: Turn = LEVEL,
-    stand: Foot = STAND,
-    bend: float = 21.0,
-    left_arm: Arm = GUARD,
-    right_arm: Arm = GUARD,
-    ahead_m: float = 0.0,
-) -> Moment:
-    """Someone in balance on the right foot."""
-    return balanced(
-        moment(
-            left_leg=leg,
-            right_leg=stand,
-            left_arm=left_arm,
-            right_arm=right_arm,
-            bend=bend,
-            pelvis=pelvis,
-            waist=waist,
-            neck=neck,
-        ),
-        ahead_m=ahead_m,
-    )
 
 
 def _front(made: Composer) -> None:
@@ -318,6 +288,7 @@ def _ball(made: Composer) -> None:
     times = (0.0, 0.22, 0.32, 0.40, 0.50, 0.64, 0.98)
     steps = [(made.pose(name, at), time_s) for (name, at), time_s in zip(moments.items(), times, strict=True)]
     made.motion("kick of a ball", steps)
+    easy_kicks.run_up(made, "kick of a ball with a run-up", steps)
 
 
 def _swing(made: Composer) -> None:

@@ -13,12 +13,14 @@ from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Moment, Turn, mirrored, moment
 
 SOURCES = (
-    "Stanley, E. et al. (2018). An analysis of the three-dimensional kinetics and kinematics of maximal"
-    " effort punches among amateur boxers. International Journal of Performance Analysis in Sport 18.",
+    "Stanley, E., Thomson, E., Smith, G. & Lamb, K. L. (2018). An analysis of the three-dimensional"
+    " kinetics and kinematics of maximal effort punches among amateur boxers. International Journal of"
+    " Performance Analysis in Sport 18.",
     "Piorkowski, B. A., Lees, A. & Barton, G. J. (2011). Single maximal versus combination punch"
     " kinematics. Sports Biomechanics 10.",
-    "Dinu, D. & Louis, J. (2020). Biomechanical analysis of the cross, hook, and uppercut in junior vs. elite"
-    " boxers. Frontiers in Sports and Active Living 2.",
+    "Dinu, D. & Louis, J. (2020). Biomechanical analysis of the cross, hook, and uppercut in junior vs."
+    " elite boxers: implications for training and talent identification. Frontiers in Sports and Active"
+    " Living 2, 598861.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 Path = tuple[tuple[str, float], ...]
@@ -234,6 +236,7 @@ def _from_an_easy_stance(work: Composer) -> None:
             left, right, turn=square + turn, chest=chest, bow=-9, bend=16, forward=forward, feet=feet
         )
 
+    low = Arm(16, 60, 16, 84, 10)
     drawn, swung = Arm(66, -16, -30, 92, 10, 8), Arm(90, 60, 30, 46, 40, 12)
     for name, posed in (
         ("fists up", easy(fists, fists)),
@@ -241,11 +244,15 @@ def _from_an_easy_stance(work: Composer) -> None:
         ("easy: left punch", easy(fist(0.08, 1.0, 1.36, **straight), fists, -12, -22, 0.05)),
         ("swing: drawn back", easy(fists, drawn, -16, -26, -0.06)),
         ("swing: through", easy(fists, swung, 18, 34, 0.08)),
+        ("low hands: right punch", easy(low, fist(-0.04, 0.92, 1.24, **straight), 8, 20, 0.03)),
+        ("low hands: left punch", easy(fist(0.06, 0.92, 1.24, **straight), low, -10, -18, 0.03)),
     ):
         work.pose(name, posed, "easy stance")
     names = ("fists up", "easy: right punch", "fists up", "easy: left punch")
     steps = [(name, t) for name, t in zip(names, (0.0, 0.30, 0.60, 0.90), strict=True)]
     work.motion("punches from an easy stance", steps, 1.20, cyclic=True)
+    names = ("low hands: right punch", "low hands: left punch")
+    work.motion("punches with low hands", list(zip(names, (0.0, 0.42), strict=True)), 0.84, cyclic=True)
     names = ("fists up", "swing: drawn back", "swing: through", "fists up")
     times = (0.0, 0.4, 0.68, 1.15)
     work.motion("swing", list(zip(names, times, strict=True)))

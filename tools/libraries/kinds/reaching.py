@@ -13,13 +13,14 @@ from ..moment import AnyArm, Arm, Foot, Hand, Moment, Turn, moment
 
 SOURCES = (
     "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed"
-    " mathematical model. Journal of Neuroscience 5.",
-    "Vandenberghe, A. et al. (2010). Three-dimensional reaching tasks: effect of reaching height and width"
-    " on upper limb kinematics and muscle activity. Gait & Posture 32.",
-    "Kaminski, T. R., Bock, C. & Gentile, A. M. (1995). The coordination between trunk and arm motion during"
-    " pointing movements. Experimental Brain Research 106.",
-    "Braman, J. P. et al. (2009). In vivo assessment of scapulohumeral rhythm during unconstrained overhead"
-    " reaching in asymptomatic subjects. Journal of Shoulder and Elbow Surgery 18.",
+    " mathematical model. Journal of Neuroscience 5, 1688-1703.",
+    "Vandenberghe, A., Levin, O., De Schutter, J., Swinnen, S. & Jonkers, I. (2010). Three-dimensional"
+    " reaching tasks: effect of reaching height and width on upper limb kinematics and muscle activity."
+    " Gait & Posture 32, 500-507.",
+    "Kaminski, T. R., Bock, C. & Gentile, A. M. (1995). The coordination between trunk and arm motion"
+    " during pointing movements. Experimental Brain Research 106, 457-466.",
+    "Braman, J. P. et al. (2009). In vivo assessment of scapulohumeral rhythm during unconstrained"
+    " overhead reaching in asymptomatic subjects. Journal of Shoulder and Elbow Surgery 18, 960-967.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 LEFT_FOOT, RIGHT_FOOT = Foot(0.12, 0.0, 9.0), Foot(-0.12, 0.0, -9.0)

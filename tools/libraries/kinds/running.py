@@ -34,9 +34,9 @@ FEWER_PHASES = (
     ("right toe off", 0.89),
 )
 SOURCES = (
-    "Novacheck, T. F. (1998). The biomechanics of running. Gait and Posture 7.",
-    "Hinrichs, R. N. (1987). Upper extremity function in running II: angular momentum considerations."
-    " International Journal of Sport Biomechanics 3.",
+    "Novacheck, T. F. (1998). The biomechanics of running. Gait & Posture 7, 77-95.",
+    "Hinrichs, R. N. (1987). Upper extremity function in running. II: angular momentum considerations."
+    " International Journal of Sport Biomechanics 3, 242-263.",
 )
 JOG = Pace(
     stride_m=1.95,

@@ -10,16 +10,18 @@ from ..moment import AnyArm, Arm, Foot, Hand, Moment, Turn, moment
 from ..placing import pivoted
 
 SOURCES = (
-    "Hwang, S., Kim, Y. & Kim, Y. (2009). Lower extremity joint kinetics and lumbar curvature during squat"
-    " and stoop lifting. BMC Musculoskeletal Disorders 10.",
+    "Hwang, S., Kim, Y. & Kim, Y. (2009). Lower extremity joint kinetics and lumbar curvature during"
+    " squat and stoop lifting. BMC Musculoskeletal Disorders 10, 15.",
     "von Arx, M. et al. (2021). From stoop to squat: a comprehensive analysis of lumbar loading among"
-    " different lifting styles. Frontiers in Bioengineering and Biotechnology 9.",
+    " different lifting styles. Frontiers in Bioengineering and Biotechnology 9, 769117.",
     "Davis, K. G., Splittstoesser, R. E. & Marras, W. S. (2002). Kinematic contribution and"
-    " synchronization of the trunk, hip, and knee during free-dynamic lifting. Occupational Ergonomics 3.",
-    "Zawadka, M. et al. (2020). How are squat timing and kinematics in the sagittal plane related to squat"
-    " depth? Journal of Sports Science and Medicine 19.",
+    " synchronization of the trunk, hip, and knee during free-dynamic lifting. Occupational Ergonomics 3,"
+    " 99-108.",
+    "Zawadka, M., Smolka, J., Skublewska-Paszkowska, M., Lukasik, E. & Gawda, P. (2020). How are squat"
+    " timing and kinematics in the sagittal plane related to squat depth? Journal of Sports Science and"
+    " Medicine 19, 500-507.",
     "Schoenfeld, B. J. (2010). Squatting kinematics and kinetics and their application to exercise"
-    " performance. Journal of Strength and Conditioning Research 24.",
+    " performance. Journal of Strength and Conditioning Research 24, 3497-3506.",
     "Riemann, B. L. et al. (2012). Biomechanical analysis of the anterior lunge during 4 external-load"
     " conditions. Journal of Athletic Training 47.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",

@@ -16,8 +16,8 @@ SOURCES = (
     "Hase, K. & Stein, R. B. (1999). Turning strategies during human walking. Journal of Neurophysiology 81.",
     "Hollands, M. A., Ziavra, N. V. & Bronstein, A. M. (2004). A new paradigm to investigate the roles of"
     " head and eye movements in the coordination of whole-body movements. Experimental Brain Research 154.",
-    "Patla, A. E., Adkin, A. & Ballard, T. (1999). Online steering: coordination and control of body center"
-    " of mass, head and body reorientation. Experimental Brain Research 129.",
+    "Patla, A. E., Adkin, A. & Ballard, T. (1999). Online steering: coordination and control of body"
+    " center of mass, head and body reorientation. Experimental Brain Research 129, 629-634.",
     "Laws, K. (2002). Physics and the Art of Dance.",
     "Perry, J. & Burnfield, J. M. (2010). Gait Analysis: Normal and Pathological Function, 2nd ed.",
 )

@@ -1,10 +1,11 @@
-"""Walking at three speeds and with quiet arms, starting and stopping."""
+"""Walking at three speeds and with quiet arms, starting and stopping, and on the spot."""
 
 from keymark.core.library.library import Library
 
+from ..balance import balanced
 from ..composing import Composer
 from ..gait import LEADS, STANCE, Footfall, Style, Walk, steady
-from ..moment import Moment
+from ..moment import Foot, Leg, Moment, Turn, mirrored, moment, swung_arm
 
 PHASES = (
     ("left heel strike", 0.0),
@@ -31,19 +32,19 @@ FEWER_PHASES = (
 SOURCES = (
     "Perry, J. & Burnfield, J. M. (2010). Gait Analysis: Normal and Pathological Function, 2nd ed.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
-    "Kadaba, M. P., Ramakrishnan, H. K. & Wootten, M. E. (1990). Measurement of lower extremity kinematics"
-    " during level walking. Journal of Orthopaedic Research 8.",
-    "Murray, M. P., Drought, A. B. & Kory, R. C. (1964). Walking patterns of normal men. Journal of Bone and"
-    " Joint Surgery 46-A.",
-    "Murray, M. P., Sepic, S. B. & Barnard, E. J. (1967). Patterns of sagittal rotation of the upper limbs in"
-    " walking. Physical Therapy 47.",
+    "Kadaba, M. P., Ramakrishnan, H. K. & Wootten, M. E. (1990). Measurement of lower extremity"
+    " kinematics during level walking. Journal of Orthopaedic Research 8.",
+    "Murray, M. P., Drought, A. B. & Kory, R. C. (1964). Walking patterns of normal men. Journal of Bone"
+    " and Joint Surgery 46-A.",
+    "Murray, M. P., Sepic, S. B. & Barnard, E. J. (1967). Patterns of sagittal rotation of the upper"
+    " limbs in walking. Physical Therapy 47.",
 )
 USUAL = Style()
 WALK = (1.42, 1.08, USUAL)
 GAITS = {
     "walk": (*WALK, PHASES),
     "slow walk": (1.06, 1.28, Style(arms=0.4, elbow=12.0), FEWER_PHASES),
-    "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), PHASES),
+    "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), FEWER_PHASES),
 }
 """Stride [m], its time [s], how, and where in the cycle there is a posture."""
 FIRST_STEP_M = 0.5
@@ -55,7 +56,8 @@ def library() -> Library:
     made = Composer(
         "walking",
         "Walking",
-        "Walking ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest.",
+        "Walking ahead: slowly with quiet arms, as usual, and briskly; setting out and coming to rest;"
+        " walking on the spot.",
         SOURCES,
         ("walking", "gait"),
     )
@@ -68,6 +70,7 @@ def library() -> Library:
         made.cycle(name, at, phases, stride_s, (0.0, -stride_m, 0.0))
     _set_out(made)
     _come_to_rest(made)
+    _on_the_spot(made)
     return made.library()
 
 
@@ -119,3 +122,27 @@ def _come_to_rest(made: Composer) -> None:
     }
     steps = [(made.pose(name, walk.at(time_s)), time_s) for name, time_s in moments.items()]
     made.motion("come to rest", [("walk: left heel strike", 0.0), *steps])
+
+
+def _on_the_spot(made: Composer) -> None:
+    """Knees half as high as in marching, arms that swing a little."""
+    foot, calm = Foot(0.08, 0.0, 6.0), {"elbow": 24.0, "rotation": 10.0}
+    left_up = balanced(
+        moment(
+            left_leg=Leg(40.0, 0.0, 4.0, 66.0, 15.0),
+            right_leg=Foot(-foot.x, 0.0, -foot.turn),
+            left_arm=swung_arm(-14.0, 7.0, **calm),
+            right_arm=swung_arm(16.0, 7.0, **calm),
+            bend=7.0,
+            pelvis=Turn(1.0, 1.0, -3.0),
+            waist=Turn(2.0, -1.0, 5.0),
+        )
+    )
+    both = moment(legs=foot, arms=swung_arm(1.0, 7.0, **calm), bend=12.0, pelvis=Turn(2.0), waist=Turn(2.0))
+    names = [
+        made.pose("on the spot: left knee up", left_up),
+        made.pose("on the spot: changing", balanced(both)),
+        made.pose("on the spot: right knee up", mirrored(left_up)),
+    ]
+    steps = [(names[0], 0.0), (names[1], 0.27), (names[2], 0.54), (names[1], 0.81)]
+    made.motion("walk on the spot", steps, 1.08, cyclic=True)

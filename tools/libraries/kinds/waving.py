@@ -10,11 +10,11 @@ from ..composing import Composer
 from ..moment import AnyArm, Arm, Foot, Moment, Turn, moment
 
 SOURCES = (
-    "Nishihara, K. et al. (2004). Study on recognition of hand waving. Journal of Robotics and"
-    " Mechatronics 16.",
+    "Nishihara, K., Kawarazaki, N., Yoshidome, T. & Gao, Q. (2004). Study on recognition of hand waving."
+    " Journal of Robotics and Mechatronics 16, 17-22.",
     "Armstrong, N. & Wagner, M. (2003). Field Guide to Gestures.",
     "Flash, T. & Hogan, N. (1985). The coordination of arm movements: an experimentally confirmed"
-    " mathematical model. Journal of Neuroscience 5.",
+    " mathematical model. Journal of Neuroscience 5, 1688-1703.",
     "Inman, V. T., Saunders, J. B. & Abbott, L. C. (1944). Observations on the function of the shoulder"
     " joint. Journal of Bone and Joint Surgery 26.",
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",

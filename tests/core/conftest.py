@@ -1,0 +1,18 @@
+"""Stand-ins that several tests of the core and the command line share."""
+
+from pathlib import Path
+
+import pytest
+from keymark.operators.command_line import conversion
+
+
+@pytest.fixture
+def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two files with no content in place of what Blender writes; tests/blender has the real ones."""
+
+    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> None:
+        for name in (conversion.BLEND, conversion.BVH):
+            (place / name).touch()
+
+    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
+    monkeypatch.setattr(conversion, "_write_scene", write)
