@@ -118,6 +118,17 @@ def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, headi
     assert {one.name for frame in choice.match.frames for one in frame.candidates} <= names
 
 
+def test_walking_on_the_spot_is_walking(walking: Library) -> None:
+    """A cycle that travels is also known on a treadmill: the place does not creep after the motion's way."""
+    there = performed(walking, np.radians(35.0))
+    level = np.append(there.translation[:, :2].mean(axis=0), 0.0)
+    hips = level + there.translation * np.array([0.0, 0.0, 1.0])
+    truth = Posture(there.skeleton, hips, there.rotations, there.angles)
+    rooted, absolute = errors_m(run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0)), truth)
+    assert rooted < 0.07
+    assert absolute < 0.15
+
+
 def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) -> None:
     """A tenth of all sightings is missing, and every frame has a pose of its own."""
     truth = performed(walking, np.radians(60.0))
