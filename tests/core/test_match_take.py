@@ -118,6 +118,17 @@ def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, headi
     assert {one.name for frame in choice.match.frames for one in frame.candidates} <= names
 
 
+def test_walking_on_the_spot_is_walking(walking: Library) -> None:
+    """A cycle that travels is also known on a treadmill: the place does not creep after the motion's way."""
+    there = performed(walking, np.radians(35.0))
+    level = np.append(there.translation[:, :2].mean(axis=0), 0.0)
+    hips = level + there.translation * np.array([0.0, 0.0, 1.0])
+    truth = Posture(there.skeleton, hips, there.rotations, there.angles)
+    rooted, absolute = errors_m(run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0)), truth)
+    assert rooted < 0.07
+    assert absolute < 0.15
+
+
 def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) -> None:
     """A tenth of all sightings is missing, and every frame has a pose of its own."""
     truth = performed(walking, np.radians(60.0))
@@ -192,6 +203,23 @@ def test_confidence_follows_what_is_explained(walking: Library, squatting: Libra
             assert 1 <= len(frame.candidates) <= 6
             assert all(0.0 <= one.confidence <= 1.0 for one in frame.candidates)
     assert sure[0] > sure[1] + 0.2
+
+
+def test_posed_keyframes_steer_the_match(walking: Library) -> None:
+    """They tell of a floor that the footage does not, and where and how the performer stands."""
+    truth = performed(walking, np.radians(35.0), style_rad=0.15, floor_m=0.2)
+    take, reading = filmed(truth, camera())
+    ends = tuple(Keyframe(index, truth[index]) for index in (0, FRAMES - 1))
+    alone = run(match_take(take, reading, [walking]))
+    steered = run(match_take(replace(take, keyframes=ends), reading, [walking]))
+    assert alone.match is not None
+    assert steered.match is not None
+    assert alone.match.floor_m == 0.0
+    assert steered.match.floor_m == pytest.approx(0.2, abs=0.05)
+    assert errors_m(steered, truth)[1] < 0.8 * errors_m(alone, truth)[1]
+    for end in ends:
+        off = steered.match.course.translation[end.index] - end.posture.translation
+        assert np.linalg.norm(off) < 0.05
 
 
 def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:

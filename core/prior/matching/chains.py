@@ -5,7 +5,7 @@ mirror image, where that is another motion. A posture in no motion is a chain of
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,6 +27,8 @@ LEAST_RATE, MOST_RATE = 8.0, 25.0
 """Postures per second of a motion."""
 MOST_POSTURES = 450
 """Of a whole library: with more the steps are widened."""
+TRAVELS_M = 0.3
+"""A cycle that leads farther may also be done on the spot, as on a treadmill."""
 SAME_M = 0.03
 """A mirror image whose points come this near to those of its motion half a cycle on adds nothing."""
 UP = np.array([0.0, 0.0, 1.0])
@@ -139,10 +141,11 @@ def _chains(library: Library, body: Body, spacing: float) -> Iterator[Chain]:
     used = {step.posture for motion in library.motions for step in motion.steps}
     for motion in library.motions:
         chain = _chain(library, motion, body, spacing)
-        yield chain
         other = _mirrored(chain)
-        if not _repeats(chain, other, body):
-            yield other
+        for each in (chain,) if _repeats(chain, other, body) else (chain, other):
+            yield each
+            if each.cyclic and np.linalg.norm(each.track[len(each)] - each.track[0]) > TRAVELS_M:
+                yield replace(each, track=np.zeros_like(each.track))
     for loose in library.postures:
         if loose.name in used:
             continue
