@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 FEWEST_POSED = 2
 """Fewer posed keyframes than these have nothing between them."""
-POOR_M = 0.15
+POOR_M = 0.12
 """A library that is off by more than this, along the line of sight, holds another motion."""
 WORSE = 1.3
 """So much worse than the posed keyframes' interpolation it may be, for it knows how the motion goes on."""
