@@ -9,6 +9,7 @@ from .running.failures import reported
 from .running.requirements import all_met, idle
 from .running.say import say
 from .scene.library_exchange import CHOICES, Conflict, conflicts, keep_on_shelf, on_shelf, settled
+from .scene.shelf import fill
 from .ui.choose_existing import WIDTH, draw_question
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
             if not self._found:
                 return self.execute(context)
             self.existing = "KEEP"
-            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Import")
+            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Continue")
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -75,6 +76,7 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
             if kept:
                 say(self, "INFO", "Imported {titles}", titles=titles)
             else:
+                fill(libraries[0].identifier)  # the list points to it
                 say(self, "INFO", "Nothing to import: the library is at hand already")
             return {"FINISHED"}
         return {"CANCELLED"}

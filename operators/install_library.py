@@ -66,7 +66,8 @@ class InstallOperator(JobOperator):
             if not self._found and len(asset_libraries(context)) == 1:
                 return super().invoke(context, event)
             self.existing = "KEEP"
-            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Install")
+            word = "Continue" if self._found else "Install"
+            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text=word)
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:

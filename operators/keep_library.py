@@ -37,7 +37,7 @@ class KEYMARK_OT_keep_library(bpy.types.Operator):
             if not self._found:
                 return self.execute(context)
             self.existing = "REPLACE"
-            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Use")
+            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Continue")
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:

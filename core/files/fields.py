@@ -44,6 +44,8 @@ class Fields:
         """The value of a field that must be there; `valid` says what it must be."""
         if self.has(name):
             return self.values[name]
+        if name in self.values:
+            raise InputError(f"{self.where}: {name} is null; it must be {valid}")
         close = get_close_matches(name, self._first_names(), n=1, cutoff=0.6)
         hint = f" (is {shown(close[0])} meant to be it?)" if close else ""
         raise InputError(f"{self.where}: {name} is missing{hint}; it must be {valid}")

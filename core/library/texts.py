@@ -3,6 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 from ..errors import InputError
 from ..files.json_file import shown
@@ -72,6 +73,7 @@ def text_fault(text: object, longest: int) -> str:
     return ""
 
 
+@lru_cache(maxsize=4096)
 def name_key(name: str) -> str:
     """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())

@@ -26,9 +26,11 @@ SHADOW, SOFTNESS_M, SPARSE = 0.32, 0.03, 7
 """How dark the shadow is, how soft, and that only every seventh point of the skin throws it."""
 STEPS, FAR_M = 65535, 1e3
 """In how many steps depth is told apart, and what counts as the depth of nothing."""
+HOLE_M = 0.01
+"""A pixel that shows something so much farther than all around is a hole between points of the skin."""
 FINER = 2
 """The figure is drawn this much larger and reduced at the end."""
-DENSITY = 1.3
+DENSITY = 1.0
 """Points of the skin a pixel of the larger picture, along a line."""
 
 
@@ -147,7 +149,12 @@ def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Si
     nearest = np.full(size[0] * size[1] + 1, -1, dtype=np.int32)
     nearest[pixel[order]] = order
     nearest = nearest[:-1].reshape(size)
-    return nearest, np.where(nearest >= 0, away[nearest], np.float32(FAR_M))
+    depth = np.where(nearest >= 0, away[nearest], np.float32(FAR_M))
+    level = cv2.morphologyEx(depth, cv2.MORPH_OPEN, np.ones((3, 3), dtype=np.uint8))
+    for row, column in zip(*np.nonzero(depth - level > HOLE_M), strict=True):
+        around = slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2)
+        nearest[row, column] = nearest[around].flat[np.argmin(depth[around])]
+    return nearest, np.asarray(level, dtype=np.float32)
 
 
 def _shaded(color: Single, lit: Single) -> Single:

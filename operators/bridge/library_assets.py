@@ -7,6 +7,7 @@ whatever file they are. What an animator changes counts: curves, name and tags o
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -239,7 +240,16 @@ def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
     text = action.get(name)
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
+    if name == HEADER:
+        with suppress(InputError):  # which would not say whose it is
+            return _parsed(text)
     return parse_json(text, f"{_where(action)}: its property {name}")
+
+
+@lru_cache(maxsize=4)
+def _parsed(text: str) -> dict[str, Any]:
+    """An object in JSON; not to be changed. All assets of a library carry the same long header."""
+    return parse_json(text, "")
 
 
 def _body(library: Library) -> Body:

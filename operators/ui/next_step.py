@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..scene.matches import state_of
 from ..scene.posed_frames import keyframes_of, matched_frames, unposed
 
 FEWEST_KEYFRAMES = 2
@@ -26,6 +27,8 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
             return "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"
+        if any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches):
+            return "Next: check matches, reconstruct"
         return "Next: reconstruct the motion"
     if take.finish.action is None:
         return "Next: review, then finish"

@@ -12,10 +12,11 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import body_pieces, marker_parts
+from keymark.core.body.shapes import body_pieces
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.motion import Motion
+from keymark.core.observation.regions import MarkerPlacement
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take import Take, write_take
 
@@ -124,18 +125,22 @@ def camera() -> Camera:
 
 
 def _draw(body: Body, posture: Posture, camera: Camera) -> np.ndarray:
-    """One frame of a performer made of thick strokes, (height, width, 3) blue, green, red."""
+    """One frame of a performer in garments, (height, width, 3) blue, green, red."""
     image = np.full((SIZE[1], SIZE[0], 3), 110, np.uint8)
     pose = body.pose(posture)
-    colours = {part: style.color_srgb for style in STYLES for part in marker_parts(style.segment)}
-    for piece in body_pieces(body):
-        (start, end), depth = camera.project(
-            np.stack([pose.place(piece.joint, place) for place in (piece.start, piece.end)])
-        )
-        width = 2.0 * float(piece.half_widths.mean()) * camera.focal_px / float(depth.mean())
-        colour = colours.get(piece.segment, (60, 60, 60))[::-1]
-        ends = [tuple(int(round(16.0 * float(value))) for value in place) for place in (start, end)]
-        cv2.line(image, ends[0], ends[1], colour, max(2, round(width)), cv2.LINE_AA, shift=4)
+    worn = [(piece, style) for style in STYLES for piece in MarkerPlacement.usual(style.segment).pieces(body)]
+    for limb in body_pieces(body):
+        garments = [(piece, style.color_srgb) for piece, style in worn if piece.segment == limb.segment]
+        for piece, colour in [(limb, (60, 60, 60)), *garments]:
+            rims = [
+                pose.place(piece.joint, centre + side * width * across)
+                for centre, widths in ((piece.start, piece.half_widths[0]), (piece.end, piece.half_widths[1]))
+                for width, across in zip(widths, (piece.lateral, piece.sagittal), strict=True)
+                for side in (-1.0, 1.0)
+            ]
+            pixels, _ = camera.project(np.stack(rims))
+            outline = cv2.convexHull(np.round(16.0 * pixels - 8.0).astype(np.int32))
+            cv2.fillConvexPoly(image, outline, colour[::-1], cv2.LINE_AA, shift=4)
     return image
 
 

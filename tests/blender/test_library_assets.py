@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -12,8 +13,10 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
+from keymark.core.files.json_file import parse_json
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import read_library, write_library
+from keymark.operators.bridge import library_assets
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.library_assets import (
     HEADER,
@@ -260,3 +263,20 @@ def test_channels_of_a_posture_are_those_of_the_armature(library: Library) -> No
         assert np.array(turn) == pytest.approx(column[: len(turn)], abs=2e-6)
     assert np.array(actor.pose.bones["pelvis"].location) == pytest.approx(values["pelvis"][4:], abs=2e-6)
     evaluated(actor)
+
+
+def test_the_header_that_all_assets_share_is_read_once(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It holds all motions: read again for each of a thousand postures, it took half a minute."""
+    actions = add_assets(library)
+    read: list[str] = []
+
+    def parse(text: str, where: str) -> dict[str, Any]:
+        read.append(text)
+        return parse_json(text, where)
+
+    library_assets._parsed.cache_clear()
+    monkeypatch.setattr(library_assets, "parse_json", parse)
+    assert len(library_from_assets(actions)[0].postures) == 4
+    assert read.count(actions[0][HEADER]) == 1

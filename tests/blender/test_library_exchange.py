@@ -169,6 +169,28 @@ def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) ->
     assert titles(own) == [("small", "Small", 2, 2), ("small_2", "Small 2", 2, 1)]
 
 
+def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
+    """Whatever was exported before; the format counts where the name ends otherwise."""
+    add_library(bpy.context.scene, library)
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "v1.2"), format="JSON")
+    assert {path.name for path in tmp_path.glob("*.*")} >= {"a.blend", "b.json", "v1.2.json"}
+    assert not list(tmp_path.glob("b.json.*"))
+
+
+def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
+    own: Path, library: Library, tmp_path: Path
+) -> None:
+    """Another library has others; the button beside it always says one that is there."""
+    other = replace(library, identifier="other", title="Other", postures=library.postures[1:])
+    imported(library, tmp_path)
+    at_hand = bpy.context.window_manager.keymark_shelf
+    assert at_hand.posture == "A"
+    imported(other, tmp_path)
+    assert (at_hand.libraries[at_hand.active].name, at_hand.posture) == ("other", "B")
+
+
 def test_a_library_of_this_file_is_kept_for_matching(own: Path, library: Library) -> None:
     """As it is now; after a change, the older one is not replaced unasked."""
     add_library(bpy.context.scene, library)

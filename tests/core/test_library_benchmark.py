@@ -9,7 +9,7 @@ from _synthetic_take import write_synthetic_take
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-import libraries as bench  # noqa: E402
+import matching as bench  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
 from keymark.core.library.shelf import SHIPPED  # noqa: E402
 from trials import Trial  # noqa: E402

@@ -21,6 +21,8 @@ Single = NDArray[np.float32]
 
 JUMP_RATE = 0.4
 """Jumps to another posture per second: a movement of a kind takes a few seconds."""
+LEAP_TURN, LEAP_ANYHOW = 0.3, 0.1
+"""Who begins another movement goes on facing the same way, within so much [rad]; a few turn anyhow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +43,9 @@ class Lattice:
         score = self._log_likelihood(0)
         sources = []
         for index, ways, jump in self._steps:
-            leap = int(score.argmax())
-            best = np.full(len(self.fits[index].states), score[leap] + jump)
-            source = np.full(len(best), leap, dtype=np.int32)
+            leaps, gained = self._leaps(score, index - 1)
+            headings = self._heading(index)
+            best, source = gained[headings] + jump, leaps[headings]
             for way in ways:
                 through = score[way.origin] + way.weight
                 better = through > best[way.target]
@@ -62,7 +64,7 @@ class Lattice:
         steps = self._steps
         forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
         for index, ways, jump in steps:
-            total = np.full(len(self.fits[index].states), _log_sum(forward[-1]) + jump, dtype=np.float32)
+            total = self._leapt(forward[-1], index - 1)[self._heading(index)] + jump
             for way in ways:
                 through = forward[-1][way.origin] + way.weight
                 total[way.target] = np.logaddexp(total[way.target], through)
@@ -72,12 +74,46 @@ class Lattice:
         shares = [_share(forward[-1])]
         for index, ways, jump in reversed(steps):
             ahead = backward + self._log_likelihood(index)
-            backward = np.full(len(forward[index - 1]), _log_sum(ahead) + jump, dtype=np.float32)
+            backward = self._leapt(ahead, index)[self._heading(index - 1)] + jump
             for way in ways:
                 through = ahead[way.target] + way.weight
                 backward[way.origin] = np.logaddexp(backward[way.origin], through)
             shares.append(_share(forward[index - 1] + backward))
         return shares[::-1], evidence
+
+    def _heading(self, index: int) -> NDArray[np.intp]:
+        """(K,) which heading each of a frame's states has."""
+        return np.asarray(self.fits[index].states % len(self.turned.heading_rad))
+
+    @cached_property
+    def _leap_turns(self) -> Single:
+        """(H, H) logarithm of what a jump between two headings is more probable than between any."""
+        count = len(self.turned.heading_rad)
+        apart = np.abs(np.arange(count)[:, None] - np.arange(count))
+        angle = np.minimum(apart, count - apart) * (2.0 * np.pi / count)
+        kept = np.exp(-0.5 * (angle / LEAP_TURN) ** 2)
+        share = (1.0 - LEAP_ANYHOW) * kept / kept.sum(axis=0) + LEAP_ANYHOW / count
+        return np.asarray(np.log(share * count), dtype=np.float32)
+
+    def _leaps(self, score: Single, index: int) -> tuple[NDArray[np.int32], Single]:
+        """(H,) from which of a frame's states a jump into each heading comes best, and its score."""
+        count = len(self.turned.heading_rad)
+        most, heading = np.full(count, -np.inf, dtype=np.float32), self._heading(index)
+        np.maximum.at(most, heading, score)
+        row = np.zeros(count, dtype=np.int32)
+        holds = np.flatnonzero(score == most[heading])
+        row[heading[holds]] = holds
+        through = most[:, None] + self._leap_turns
+        origin = through.argmax(axis=0)
+        return row[origin], through[origin, np.arange(count)]
+
+    def _leapt(self, score: Single, index: int) -> Single:
+        """(H,) logarithm of the sum over a frame's states of what leads by a jump into each heading."""
+        least = float(score.max())
+        share = np.exp(score - np.float32(least), dtype=np.float64)
+        total = np.bincount(self._heading(index), share, len(self.turned.heading_rad))
+        leapt = np.exp(self._leap_turns.astype(np.float64)) @ total  # symmetric
+        return np.asarray(least + np.log(leapt), dtype=np.float32)
 
     @property
     def _count(self) -> int:

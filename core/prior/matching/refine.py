@@ -32,6 +32,8 @@ EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
 upwards the floor tells it, and who jumps or crouches otherwise is fast."""
 CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
 """Of what these change by in a second, as the square root of time."""
+LEAP_STD = np.array([np.inf, np.inf, 0.7, 0.7, 1.5])
+"""The same where another movement begins, whose time and axes are its own: nobody leaves the spot by that."""
 MOST_SIZE = 1.5
 """No marker is larger or smaller than on an average body by more."""
 HELD = 1e-2
@@ -187,9 +189,10 @@ class Refinement:
     def _evenness(self, course: Course, values: Array, matrix: Array, gradient: Array) -> None:
         """Add that motions go on at a usual speed and change it little."""
         duration = np.diff(self.clock_s)[:, None]
-        rate, by_first, by_second = self._rates(course.chain, values, duration)
+        rate, by_first, by_second = self._rates(course.chain, values, duration, course.joined)
         joined = course.joined.astype(float)[:, None]
-        scale = joined / EVEN_STD * np.sqrt(self.tempering)
+        even = np.where(joined > 0.0, 1.0 / EVEN_STD, 1.0 / LEAP_STD)
+        scale = even * np.sqrt(self.tempering)
         usual = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
         _add(
             matrix,
@@ -204,19 +207,22 @@ class Refinement:
         blocks = [-by_first[:-1], by_first[1:] - by_second[:-1], by_second[1:]]
         _add(matrix, gradient, (rate[1:] - rate[:-1]) * scale, [block * scale[..., None] for block in blocks])
 
-    def _rates(self, chain: Whole, values: Array, duration: Array) -> tuple[Array, Array, Array]:
+    def _rates(
+        self, chain: Whole, values: Array, duration: Array, joined: NDArray[np.bool_]
+    ) -> tuple[Array, Array, Array]:
         """(T - 1, 5) speed, turning and going besides the motion's, and their derivatives by both frames."""
         way = self.table.read(chain, values[:, 0]).way
         further = self.table.read(chain, values[:, 0] + PROBE).way
         velocity = (further - way) / PROBE
         turn = about_up(0.5 * (values[1:, 1] + values[:-1, 1]))
-        gone = np.diff(way, axis=0)
+        gone = np.where(joined[:, None], np.diff(way, axis=0), 0.0)
+        earlier, later = velocity[:-1] * joined[:, None], velocity[1:] * joined[:, None]
         change = np.diff(values, axis=0)
         change[:, 2:] -= (turn @ gone[..., None])[..., 0]
         unit = np.broadcast_to(np.eye(UNKNOWNS), (len(gone), UNKNOWNS, UNKNOWNS))
         by_first, by_second = -np.array(unit), np.array(unit)
-        by_first[:, 2:, 0] += (turn @ velocity[:-1, :, None])[..., 0]
-        by_second[:, 2:, 0] -= (turn @ velocity[1:, :, None])[..., 0]
+        by_first[:, 2:, 0] += (turn @ earlier[..., None])[..., 0]
+        by_second[:, 2:, 0] -= (turn @ later[..., None])[..., 0]
         x, y, _ = np.moveaxis((turn @ gone[..., None])[..., 0], -1, 0)
         sideways = -0.5 * np.stack([-y, x, np.zeros_like(x)], axis=-1)
         by_first[:, 2:, 1] += sideways

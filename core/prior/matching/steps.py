@@ -19,8 +19,10 @@ SPEED_STD = 0.45
 """Of the logarithm of the speed."""
 STAY = 0.05
 """Probability of holding still."""
-TURN_STD = 1.0
-"""Turning besides what the motion turns [rad], over a second of independent tenths."""
+TURNING, MOST_TURN = 0.4, 6.0
+"""Turning besides what the motion turns [rad/s]: on average, as people mostly face one way, and at most."""
+SHARPER = 0.3
+"""Each heading farther aside at once is so much less probable."""
 DRIFT_STD_M = 0.35
 """Going besides what the motion travels, in a second."""
 DRIFT_CAP = np.float32(12.0)
@@ -90,11 +92,12 @@ class Roads:
     def asides(self, duration_s: float) -> dict[int, float]:
         """Logarithm of the probability of so many headings aside, in a time."""
         bin_rad = 2.0 * np.pi / len(self.heading_rad)
-        deviation = TURN_STD * np.sqrt(0.1 * duration_s) + 0.3 * bin_rad
-        reach = int(np.clip(np.ceil(2.0 * deviation / bin_rad), 1, 3))
-        weight = {k: float(np.exp(-0.5 * (k * bin_rad / deviation) ** 2)) for k in range(-reach, reach + 1)}
-        total = sum(weight.values())
-        return {k: float(np.log(value / total)) for k, value in weight.items()}
+        reach = int(np.clip(np.ceil(MOST_TURN * duration_s / bin_rad), 1, 3))
+        turning = TURNING * duration_s / bin_rad  # headings passed, on average
+        share = 1.0 - np.exp(-turning)
+        aside = {k: 0.5 * share * SHARPER ** (k - 1) for k in range(1, reach + 1)}
+        left = 1.0 - 2.0 * sum(aside.values())
+        return {k: float(np.log(aside[abs(k)] if k else left)) for k in range(-reach, reach + 1)}
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...running.job_operator import job_is_running
 from ...scene.takes import find_take
 from ...scene.upgrade import is_newer
 from ..next_step import next_step
@@ -11,7 +12,7 @@ STEPS = (
     ("FILE_MOVIE", "Footage: load the clip, or open a take"),
     ("EYEDROPPER", "Markers: pick each sleeve's color in the footage"),
     ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
-    ("KEY_HLT", "Keyframes: pose the actor at proposed frames"),
+    ("KEY_HLT", "Keyframes: match a library, or pose the actor"),
     ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
     ("OVERLAY", "Review: see where another keyframe helps"),
     ("CHECKMARK", "Finish: bake, mark as asset, export"),
@@ -96,9 +97,10 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             box = layout.box().column(align=True)
             box.label(text="A newer Keymark wrote this file", icon="ERROR")
             box.label(text="Update Keymark before editing", icon="BLANK1")
-        if take is None and not draw_progress(layout, context):
-            _draw_beginning(layout)
         if take is None:
+            # Installing shows its progress among the libraries; what is above must not move.
+            if job_is_running(context, "keymark.install_") or not draw_progress(layout, context):
+                _draw_beginning(layout)
             return
         _draw_takes(layout, context.scene.keymark)
         if not draw_progress(layout, context):

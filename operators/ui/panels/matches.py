@@ -12,6 +12,8 @@ from .base import TakePanel, draw_progress, draw_sentence
 
 WORTH_NAMING = 0.005
 """Probability below which the second best kind of motion is none."""
+WELL = 0.85
+"""Fit below which the footage probably shows something else than the library."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
 NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
@@ -96,15 +98,17 @@ def _draw_choice(
     if not len(matching.ranking):
         return
     best, *others = matching.ranking
-    sure = best.probability >= SURE and matching.fit >= DOUBTFUL
+    sure = best.probability >= SURE and matching.fit >= WELL
     icon = "CHECKMARK" if sure else "QUESTION"
     if not others:
         draw_sentence(layout, context, matching.reason, icon)
+        if matching.fit < WELL:
+            draw_sentence(layout, context, label("It probably shows something else"), "BLANK1")
         return
-    words = label("{best}, {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
+    words = label("{best} {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
     if others[0].probability >= WORTH_NAMING:
         words = label(
-            "{best}, {percent:.0f} %; next {other}, {less:.0f} %",
+            "{best} {percent:.0f} %, {other} {less:.0f} %",
             best=best.name,
             percent=100.0 * best.probability,
             other=others[0].name,

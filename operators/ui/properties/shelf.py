@@ -24,12 +24,23 @@ class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
 
 
+def _chosen(shelf: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Let the posture to apply be one of the chosen library's."""
+    postures = shelf.libraries[shelf.active].postures if shelf.active < len(shelf.libraries) else ()
+    if shelf.posture not in [posture.name for posture in postures]:
+        shelf.posture = postures[0].name if len(postures) else ""
+
+
 class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
     """The shelf."""
 
     libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
     active: bpy.props.IntProperty(
-        name="Active Library", description="The library that is chosen in the list", default=0, min=0
+        name="Active Library",
+        description="The library that is chosen in the list",
+        default=0,
+        min=0,
+        update=_chosen,
     )
     posture: bpy.props.StringProperty(
         name="Posture", description="The posture of the chosen library to apply to the actor"

@@ -159,6 +159,7 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
         (("title",), "\u200d", "something can be seen"),
         (("motions", 1, "duration_s"), 1e-9, "from 0.001 to 600 s"),  # endless cycles between two frames
         (("titel",), "Walk", "unknown field 'titel' \\(is 'title' meant\\?\\)"),
+        (("title",), None, "title is null"),
         (("title",), "a\u202eb", "control characters"),
         (("title",), "t" * 61, "at most 60"),
         (("version",), 0, "version is 0"),

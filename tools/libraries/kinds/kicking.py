@@ -29,8 +29,8 @@ def library() -> Library:
     made = Composer(
         "kicking",
         "Kicking",
-        "Kicks with the left leg: front, side and roundhouse kick from a guard, front and side kick from"
-        " standing, a kick of a ball with its step and with a run-up, and a straight swing of the leg.",
+        "Left kicks: front, side and around from a guard, front and side from standing, a ball with or"
+        " without a run-up, a straight swing.",
         SOURCES,
         ("kicking", "martial arts", "football"),
     )

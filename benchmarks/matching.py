@@ -1,6 +1,6 @@
 """Keyframe libraries: what becomes of footage that nobody posed a keyframe of, and of two keyframes.
 
-Usage: libraries.py [TAKE ...] [--choose] with names or folders of takes. See README.md.
+Usage: matching.py [TAKE ...] [--choose] with names or folders of takes. See README.md.
 """
 
 import argparse
@@ -222,7 +222,7 @@ def main(arguments: list[str]) -> int:
         "accuracy": {name: asdict(one) for name, one in measured.items()},
         "choice": {name: asdict(one) for name, one in chosen.items()},
     }
-    write_results("libraries", tables, json.dumps(as_dictionaries, indent=1))
+    write_results("matching", tables, json.dumps(as_dictionaries, indent=1))
     return 0
 
 
