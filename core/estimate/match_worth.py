@@ -68,11 +68,13 @@ def _library_error_m(
     body = model.body
     posture = Posture.stack([keyframe.posture for keyframe in posed])
     points = body.points(body.pose(posture))
-    foretold = body.points(body.pose(posture.plus(-unforeseen(keyframes, fps))))
+    difference, weight = unforeseen(keyframes, fps)
+    foretold = body.points(body.pose(posture.plus(-difference)))
     _, eye = model.camera.pose(np.array([keyframe.index for keyframe in posed]))
     sight = points - np.asarray(eye).reshape(-1, 1, 3)
     sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
-    return float(np.sqrt(np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2)))
+    squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)
+    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), 1.0)))
 
 
 def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks) -> Array:
