@@ -38,8 +38,7 @@ def measure(library: Library, folder: Path) -> dict[str, Any]:
     """Errors [mm], hips aligned and absolute, by the number of keyframes, without the library and with it."""
     trial = read_trial(folder)
     posed = hand_posed(trial, exact_postures(trial))
-    match = run(match_take(trial.take, trial.reading, [library])).match
-    assert match is not None
+    fit = 0.0
     errors: dict[str, dict[int, tuple[float, float]]] = {"posed": {}, "with the library": {}}
     for count in COUNTS:
         some = (
@@ -49,8 +48,11 @@ def measure(library: Library, folder: Path) -> dict[str, Any]:
         )
         if count:
             errors["posed"][count] = scored(some)
+        match = run(match_take(some.take, trial.reading, [library])).match  # what is posed steers it
+        assert match is not None
+        fit = fit if count else match.fit
         errors["with the library"][count] = scored(replace(some, take=with_matches(some.take, match)))
-    return {"frames": len(trial.truth), "fit": match.fit, "errors": errors}
+    return {"frames": len(trial.truth), "fit": fit, "errors": errors}
 
 
 def scored(trial: Trial) -> tuple[float, float]:

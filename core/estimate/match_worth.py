@@ -21,10 +21,12 @@ Array = NDArray[np.float64]
 
 FEWEST_POSED = 2
 """Fewer posed keyframes than these have nothing between them."""
-POOR_M = 0.15
+POOR_M = 0.12
 """A library that is off by more than this, along the line of sight, holds another motion."""
 WORSE = 1.3
 """So much worse than the posed keyframes' interpolation it may be, for it knows how the motion goes on."""
+LEAST_WEIGHT = 0.5
+"""With less than half a posed keyframe to judge it by, a library is not found poor."""
 LEAST_TRUSTED = 0.3
 """Regions hidden or doubted further than this do not count."""
 FRAMES_AT_ONCE = 500
@@ -68,11 +70,13 @@ def _library_error_m(
     body = model.body
     posture = Posture.stack([keyframe.posture for keyframe in posed])
     points = body.points(body.pose(posture))
-    foretold = body.points(body.pose(posture.plus(-unforeseen(keyframes, fps))))
+    difference, weight = unforeseen(keyframes, fps)
+    foretold = body.points(body.pose(posture.plus(-difference)))
     _, eye = model.camera.pose(np.array([keyframe.index for keyframe in posed]))
     sight = points - np.asarray(eye).reshape(-1, 1, 3)
     sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
-    return float(np.sqrt(np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2)))
+    squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)
+    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), LEAST_WEIGHT)))
 
 
 def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks) -> Array:

@@ -57,18 +57,22 @@ def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyfr
     return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
 
 
-def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> Array:
-    """(P, D) how each posed keyframe differs from what the library and the other posed ones say of it.
+def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
+    """How posed keyframes differ from what the library and the other posed ones say of them.
 
     Args:
         keyframes: Posed and matched ones, some of either.
         fps: Frames per second.
+
+    Returns:
+        (P, D) the differences, and (P,) what each counts: less, the farther it lies from matched keyframes.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
     difference, beyond_s = _differences(posed, matched, fps)
     information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
-    return np.asarray((information @ difference) / np.diag(information)[:, None])
+    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
+    return (information @ difference) / np.diag(information)[:, None], weight
 
 
 def _known(at: Array, beyond_s: Array) -> Array:

@@ -26,7 +26,7 @@ def used(posed: list[int], library: Posture) -> tuple[list[int], list[int]]:
 
 def alike() -> Posture:
     """The motion as another performer does it: a little otherwise all along."""
-    return TRUTH.plus(np.tile(0.06 * OF_ANGLES, (FRAMES, 1)))
+    return TRUTH.plus(np.tile(0.04 * OF_ANGLES, (FRAMES, 1)))
 
 
 def unlike() -> Posture:
