@@ -31,6 +31,8 @@ TRAVELS_M = 0.3
 """A cycle that leads farther may also be done on the spot, as on a treadmill."""
 SAME_M = 0.03
 """A mirror image whose points come this near to those of its motion half a cycle on adds nothing."""
+MOST_SHIFTS = 100
+"""Times of a cycle at which its mirror image is compared with it."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -160,12 +162,12 @@ def _chains(library: Library, body: Body, spacing: float) -> Iterator[Chain]:
 def _chain(library: Library, motion: LibraryMotion, body: Body, spacing: float) -> Chain:
     """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
     whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
-    fine = np.linspace(0.0, whole, max(3, int(np.ceil(whole * MOST_RATE)) + 1))
+    fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
     posture = course(library, motion, body, fine)
     points = body.points(body.pose(posture)) - posture.translation[:, None]
     way = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
     rate = np.clip(way / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
-    count = max(3, int(np.ceil(whole * rate)))
+    count = int(np.clip(np.ceil(whole * rate), 3, MOST_POSTURES))
     step = whole / count if motion.cyclic else whole / (count - 1)
     time = step * np.arange(count)
     times = np.array([entry.time_s for entry in motion.steps])
@@ -191,7 +193,7 @@ def _mirrored(chain: Chain) -> Chain:
 def _repeats(chain: Chain, other: Chain, body: Body) -> bool:
     """Whether a mirror image is its own motion again, at the same or, in a cycle, at another time."""
     first, second = (_shape(entry.posture, body) for entry in (chain, other))
-    shifts = range(len(chain)) if chain.cyclic else (0,)
+    shifts = range(0, len(chain), -(-len(chain) // MOST_SHIFTS)) if chain.cyclic else (0,)
     apart = [np.linalg.norm(np.roll(second, shift, axis=0) - first, axis=-1).mean() for shift in shifts]
     return float(min(apart)) < SAME_M
 

@@ -5,7 +5,8 @@ one movement ends and another begins. The likelihoods are tempered: a performer 
 posture is off in the same way for a while.
 """
 
-from dataclasses import dataclass
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -21,8 +22,12 @@ Single = NDArray[np.float32]
 
 JUMP_RATE = 0.4
 """Jumps to another posture per second: a movement of a kind takes a few seconds."""
+AT_ONCE = 50
 LEAP_TURN, LEAP_ANYHOW = 0.3, 0.1
 """Who begins another movement goes on facing the same way, within so much [rad]; a few turn anyhow."""
+
+Step = tuple[int, Sequence[Move], np.float32]
+"""To a frame: its index, the ways there, the logarithm of a jump's probability."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +42,28 @@ class Lattice:
     """What the logarithms of the likelihoods count for."""
     time_s: Array
     """(T,)."""
+    _steps: list[Step] = field(default_factory=list)
 
-    def best_path(self) -> NDArray[np.intp]:
+    # Long clips have thousands of steps: all that goes through them yields, so that whoever waits can stop.
+
+    def connect(self) -> Generator[None, None, None]:
+        """Find the ways from each frame to the next; comes before all else."""
+        for index in range(1, len(self.sights)):
+            duration = float(self.time_s[index] - self.time_s[index - 1])
+            sights = self.sights[index - 1], self.sights[index]
+            fits = self.fits[index - 1], self.fits[index]
+            jump = np.float32(np.log(-np.expm1(-JUMP_RATE * duration)) - np.log(self._count))
+            self._steps.append((index, moves(self._roads, duration, sights, fits), jump))
+            if index % AT_ONCE == 0:
+                yield
+
+    def best_path(self) -> Generator[None, None, NDArray[np.intp]]:
         """(T,) states of the best way through (Viterbi)."""
         score = self._log_likelihood(0)
         sources = []
         for index, ways, jump in self._steps:
+            if index % AT_ONCE == 0:
+                yield
             leaps, gained = self._leaps(score, index - 1)
             headings = self._heading(index)
             best, source = gained[headings] + jump, leaps[headings]
@@ -59,11 +80,13 @@ class Lattice:
             last.append(int(source[last[-1]]))
         return np.array([fit.states[row] for fit, row in zip(self.fits, last[::-1], strict=True)])
 
-    def posterior(self) -> tuple[list[Single], float]:
+    def posterior(self) -> Generator[None, None, tuple[list[Single], float]]:
         """Of each frame the probability of its states, (K,); and the logarithm of the whole evidence."""
         steps = self._steps
         forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
         for index, ways, jump in steps:
+            if index % AT_ONCE == 0:
+                yield
             total = self._leapt(forward[-1], index - 1)[self._heading(index)] + jump
             for way in ways:
                 through = forward[-1][way.origin] + way.weight
@@ -73,6 +96,8 @@ class Lattice:
         backward = np.zeros(len(forward[-1]), dtype=np.float32)
         shares = [_share(forward[-1])]
         for index, ways, jump in reversed(steps):
+            if index % AT_ONCE == 0:
+                yield
             ahead = backward + self._log_likelihood(index)
             backward = self._leapt(ahead, index)[self._heading(index - 1)] + jump
             for way in ways:
@@ -125,18 +150,6 @@ class Lattice:
 
     def _log_likelihood(self, index: int) -> Single:
         return self.fits[index].cost * np.float32(-self.tempering)
-
-    @cached_property
-    def _steps(self) -> list[tuple[int, list[Move], np.float32]]:
-        """From each frame to the next: its index, the ways there, the logarithm of a jump's probability."""
-        steps = []
-        for index in range(1, len(self.sights)):
-            duration = float(self.time_s[index] - self.time_s[index - 1])
-            sights = self.sights[index - 1], self.sights[index]
-            fits = self.fits[index - 1], self.fits[index]
-            jump = np.float32(np.log(-np.expm1(-JUMP_RATE * duration)) - np.log(self._count))
-            steps.append((index, moves(self._roads, duration, sights, fits), jump))
-        return steps
 
 
 def _share(log_probability: Single) -> Single:

@@ -11,7 +11,7 @@ from ...body.posture import Posture
 from ...footage.camera import Camera
 from ...footage.tracks import RegionTracks
 from ...library.library import Library
-from ...progress import Part
+from ...progress import Part, scaled
 from ..interpolation import interpolate
 from ..keyframes import Keyframe
 from .alternatives import alternatives
@@ -24,14 +24,15 @@ from .habits import DEGREES, Habits
 from .lattice import Lattice
 from .path import Path
 from .refine import Course, Refinement
-from .sights import sights
+from .sights import Sight, sights
 from .solids import Solids, marker_solids
-from .sweep import Turned, sweep, turned
+from .sweep import Fit, Single, Turned, sweep, turned
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
 
 HEADINGS = 24
+SWEPT_AT_ONCE = 16
 SAMPLES_PER_S = 15.0
 """Frames looked at: a motion's posture is known well between two that are this near."""
 CORRELATION_S = 0.25
@@ -117,17 +118,17 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[Li
     posed = [None if cost is None else cost / np.float32(tempering) for cost in like]
     for look in (0, 1):  # the second look knows how the performer differs from the library
         seen = sights(sought.camera, tracks, sought.segments, sampled, floor_m, FLOOR_STD_M, habits, anchors)
-        fits = [sweep(sight, states, cost) for sight, cost in zip(seen, posed, strict=True)]
-        yield 0.2 + 0.4 * look
+        begun = 0.45 * look
+        fits = yield from scaled(_swept(seen, states, posed), begun, begun + 0.2)
         lattice = Lattice(chains, states, seen, fits, tempering, time_s)
-        path = Path(chains, states, seen, fits, lattice.best_path(), time_s)
-        yield 0.4 + 0.4 * look
+        yield from scaled(lattice.connect(), begun + 0.2, begun + 0.3)
+        best = yield from scaled(lattice.best_path(), begun + 0.3, begun + 0.35)
+        path = Path(chains, states, seen, fits, best, time_s)
         refinement = Refinement(table, seen, time_s, tempering, floor_m, FLOOR_STD_M, anchors, anchored)
-        refined = refinement.refined(path.course())
+        refined = yield from scaled(refinement.refined(path.course()), begun + 0.35, begun + 0.45)
         if look == 0:
             habits = refinement.habits(refined)
-    shares, evidence = lattice.posterior()
-    yield 0.95
+    shares, evidence = yield from scaled(lattice.posterior(), 0.9, 1.0)
     course = _every_frame(table, refined, sampled, tracks.frame_count)
     explained = _explained(refinement, refined, habits)
     likelihood = evidence / (len(sampled) * tempering)
@@ -139,6 +140,16 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[Li
         frames.append(alternatives(path, shares[row], int(row), index, chosen, int(nearest[row]), part))
     fit = float(explained.mean())
     return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, course, likelihood)
+
+
+def _swept(seen: Sequence[Sight], states: Turned, posed: Sequence[Single | None]) -> Part[list[Fit]]:
+    """The states that explain each frame."""
+    fits = []
+    for index, (sight, cost) in enumerate(zip(seen, posed, strict=True)):
+        fits.append(sweep(sight, states, cost))
+        if index % SWEPT_AT_ONCE == 0:
+            yield index / len(seen)
+    return fits
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:

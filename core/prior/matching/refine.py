@@ -4,6 +4,7 @@ Gauss-Newton over all frames looked at, at once. What the footage says is weighe
 on, turns and travels evenly; markers that are far off count less, as performers hold a limb otherwise.
 """
 
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -69,10 +70,11 @@ class Refinement:
     anchored: Whole = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     """(K,) which of the T frames those are."""
 
-    def refined(self, course: Course) -> Course:
-        """The course that explains the footage best, nearby."""
+    def refined(self, course: Course) -> Generator[None, None, Course]:
+        """The course that explains the footage best, nearby; yields now and then."""
         values = np.array(course.values)
         for _ in range(ITERATIONS):
+            yield
             size = self._sizes(course.chain, values)
             matrix, gradient = self._footage(course.chain, values, size)
             self._posed(course.chain, values, matrix, gradient)
