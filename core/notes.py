@@ -95,7 +95,7 @@ def match_notes(take: Take) -> tuple[str, ...]:
         ]
     else:
         notes = [
-            f"{posed} of {len(take.keyframes)} keyframes were posed; the others are postures of the library "
+            f"{posed} of {len(take.keyframes)} keyframes are posed; the others are postures of the library "
             f"{libraries}, changed the way the posed ones differ from it"
         ]
     doubted = [(keyframe, said) for keyframe, said in matched if said.confidence < DOUBTED_MATCH]

@@ -59,7 +59,7 @@ def test_of_posed_keyframes_nothing_is_said_and_of_both_kinds_how_many(take: Tak
     assert match_notes(take) == ()
     first, *others = take.keyframes
     both = replace(take, keyframes=(first, *(replace(one, matched=said()) for one in others)))
-    assert match_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes were posed")
+    assert match_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes are posed")
 
 
 def test_it_is_said_what_is_left_out_and_what_the_filter_does_not_know(take: Take) -> None:
