@@ -89,8 +89,9 @@ def _motion(motion: LibraryMotion) -> dict[str, Any]:
         "cyclic": motion.cyclic,
         "duration_s": _number(motion.duration_s),
     }
-    if any(motion.travel):
-        value["travel"] = dict(zip(("x_m", "y_m", "heading_rad"), map(_number, motion.travel), strict=True))
+    travel = [_number(part) for part in motion.travel]
+    if any(travel):
+        value["travel"] = dict(zip(("x_m", "y_m", "heading_rad"), travel, strict=True))
     value["steps"] = [{"time_s": _number(step.time_s), "posture": step.posture} for step in motion.steps]
     return value
 

@@ -1,5 +1,6 @@
 """Library files: nothing lost, nothing trusted."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -53,6 +54,14 @@ def test_nothing_is_lost_and_the_second_time_nothing_changes(library: Library) -
     assert_same(back, library, 3e-9)  # half a turn is kept two nanoradians short
     assert library_to_json(back) == value
     assert_same(library_from_json(library_to_json(back), "here"), back, 0.0)
+
+
+def test_a_way_too_short_for_the_file_leaves_none() -> None:
+    """Else it would stand there as zeros once, and be gone the next time."""
+    library = small_library()
+    cycle = next(motion for motion in library.motions if motion.cyclic)
+    value = library_to_json(replace(library, motions=(replace(cycle, travel=(1e-12, 0.0, -1e-12)),)))
+    assert "travel" not in value["motions"][0]
 
 
 def test_a_file_that_is_read_and_written_has_the_same_bytes(file: Path, tmp_path: Path) -> None:
