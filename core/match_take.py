@@ -13,7 +13,7 @@ from .footage.reading import Reading
 from .library.library import Library
 from .prior.keyframes import Keyframe, Matched
 from .prior.matching.anchors import Anchors
-from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library, prepare
+from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library, prepare, prepared_anew
 from .prior.speed import marker_speed, propose_keyframes
 from .progress import Job, Progress, stretch, within
 from .reconstruct import read_footage
@@ -90,18 +90,22 @@ def match_take(
     if not reading.tracks.visible.any():
         raise InputError(f"{take.folder}: no marker is seen in the footage, so no posture can be matched")
     with threadpool_limits(limits=1, user_api="blas"):
-        first = _matches(_sought(take, reading, keyframe_count), usable, floor_m)
-        matches = yield from stretch(first, 0.0, AGAIN)
+        sought = _sought(take, reading, keyframe_count)
+        prepared = yield from stretch(_prepared(sought, usable), 0.0, LOOKING * AGAIN)
+        first = _matches(sought, prepared, floor_m)
+        matches = yield from stretch(first, LOOKING * AGAIN, AGAIN)
+        choice = _choice(usable, matches)
         better = yield from stretch(_read_again(take, reading, matches[0]), AGAIN, AGAIN)
         if better is not None:
+            sought = _sought(take, better, keyframe_count)
             found = [match.library for match in matches]
-            second = _matches(_sought(take, better, keyframe_count), found, floor_m)
+            anew = [prepared_anew(sought, one) for one in prepared if one.library in found]
+            second = _matches(sought, anew, floor_m)
             again = yield from stretch(second, AGAIN, 1.0)
             if again[0].fit > matches[0].fit + BETTER:
-                yield Progress("Done", 1.0)
-                return replace(_choice(usable, again), reading=better)
+                choice = replace(_choice(usable, again), reading=better)
     yield Progress("Done", 1.0)
-    return _choice(usable, matches)
+    return choice
 
 
 def _sought(take: Take, reading: Reading, keyframe_count: int | None) -> Sought:
@@ -110,12 +114,17 @@ def _sought(take: Take, reading: Reading, keyframe_count: int | None) -> Sought:
     return Sought(take.body, take.camera, reading.tracks, take.marker_segments, keyframes, anchors)
 
 
-def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None) -> Job[list[LibraryMatch]]:
-    """The matches of the libraries that are worth it, the likeliest first."""
+def _prepared(sought: Sought, libraries: Sequence[Library]) -> Job[list[Prepared]]:
+    """All libraries on the performer's body, each with a first look."""
     prepared = []
     for index, library in enumerate(libraries):
-        yield Progress(f"Looking for {library.title}", LOOKING * index / len(libraries))
+        yield Progress(f"Looking for {library.title}", index / len(libraries))
         prepared.append(prepare(sought, library))
+    return prepared
+
+
+def _matches(sought: Sought, prepared: Sequence[Prepared], floor_m: float | None) -> Job[list[LibraryMatch]]:
+    """The matches of the libraries that are worth it, the likeliest first."""
     tried = _worth_trying(prepared)
     if floor_m is None:
         floor_m = sought.anchors.floor_m()
@@ -123,7 +132,7 @@ def _matches(sought: Sought, libraries: Sequence[Library], floor_m: float | None
     floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
     matches = []
     for index, one in enumerate(tried):
-        share = [LOOKING + (1.0 - LOOKING) * (index + end) / len(tried) for end in (0, 1)]
+        share = [(index + end) / len(tried) for end in (0, 1)]
         part = match_library(sought, one, floor)
         matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
     return sorted(matches, key=lambda match: -match.log_evidence)

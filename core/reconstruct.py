@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from .body.kinematics import Body
 from .body.posture import Posture
+from .chunks import chunks
 from .errors import InputError
 from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
@@ -190,7 +191,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     prior = interpolate(take.keyframes, frame_count)
     model = _average_model(take)
     centre = np.empty((frame_count, len(take.markers), 2))
-    for frame in _chunks(frame_count):
+    for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
         centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
@@ -203,11 +204,6 @@ def _average_model(take: Take) -> RegionModel:
     """The markers as they sit on an average performer."""
     placements = tuple(MarkerPlacement.usual(segment) for segment in take.marker_segments)
     return RegionModel(take.body, take.camera, placements)
-
-
-def _chunks(frame_count: int) -> list[NDArray[np.intp]]:
-    """The clip's frames in stretches short enough that work on one needs little memory."""
-    return np.array_split(np.arange(frame_count), max(1, -(-frame_count // CHUNK_FRAMES)))
 
 
 def _whole_clip(
@@ -295,7 +291,7 @@ def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D)."""
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))
-    for frame in _chunks(len(covariance)):
+    for frame in chunks(np.arange(len(covariance)), CHUNK_FRAMES):
         jacobian = body.points_jacobian(body.pose(posture[frame]))  # (F, P, 3, D)
         spread[frame] = jacobian @ covariance[frame, None] @ np.swapaxes(jacobian, -1, -2)
     return spread

@@ -136,11 +136,7 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
 
 def _along_and_across(error: Array, truth: Array, camera: Camera) -> tuple[Array, Array]:
     """Sizes (F, P) of the error along and across the line from the camera to each true point."""
-    eye = camera.matrix_world[..., :3, 3]
-    if camera.is_moving:
-        eye = eye[: len(truth), None, :]
-    sight = truth - eye
-    sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
+    sight = camera.sight(truth, np.arange(len(truth))[:, None])
     along = np.sum(error * sight, axis=-1)
     return np.abs(along), np.linalg.norm(error - along[..., None] * sight, axis=-1)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from . import rotations
+from .heading import headed
 from .kinematics import Body
 from .posture import Posture
 from .shapes import HEAD_OVERSHOOT
@@ -63,9 +63,5 @@ def facing_rad(direction: Array) -> float:
 
 def turned(posture: Posture, angle_rad: Array) -> Posture:
     """A posture turned about the vertical through its hips by each of N angles: a batch of N."""
-    axis = np.array([0.0, 0.0, 1.0])
-    turn = rotations.exponential(np.asarray(angle_rad)[:, None] * axis)
-    batch = Posture.stack([posture] * len(turn))
-    matrices = np.array(batch.rotations)
-    matrices[:, 0] = turn @ matrices[:, 0]
-    return Posture(posture.skeleton, batch.translation, matrices, batch.angles)
+    batch = Posture.stack([posture] * len(angle_rad))
+    return headed(batch, angle_rad, batch.translation)

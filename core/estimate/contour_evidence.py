@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..chunks import chunks
 from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
@@ -59,7 +60,7 @@ class ContourEvidence:
         model, album = self.model, self.album
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
-        for chunk in _chunks(np.arange(len(frame))):
+        for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
             pictures = _pictures(album, frame[chunk])
             predicted, edges = _look(model, album, self.appearance, posture[chunk], frame[chunk], pictures)
             found = np.isfinite(edges.variance)
@@ -100,10 +101,6 @@ def learn_contours(
     return ContourEvidence(album, appearance, fitted)
 
 
-def _chunks(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    return np.array_split(index, max(1, -(-len(index) // CHUNK_FRAMES)))
-
-
 def _learn(
     model: ContourModel, album: Album, posture: Posture, frame: NDArray[np.intp]
 ) -> Generator[None, None, Appearance]:
@@ -139,11 +136,11 @@ def _fitted(
     model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
 ) -> Generator[None, None, ContourModel]:
     """The model with shapes that explain the edges of postures known best."""
-    chunks = _chunks(np.arange(len(frame)))
-    pictures = [_pictures(album, frame[k]) for k in chunks]
+    stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)
+    pictures = [_pictures(album, frame[chunk]) for chunk in stretches]
     for _ in range(ROUNDS):
         known = []
-        for chunk, seen in zip(chunks, pictures, strict=True):
+        for chunk, seen in zip(stretches, pictures, strict=True):
             yield
             known.append(_look(model, album, appearance, posture[chunk], frame[chunk], seen))
         model = model.with_shape(_fitted_shape(model, known, album.factor))

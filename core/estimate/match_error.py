@@ -53,9 +53,7 @@ def match_covariance(posture: Posture, camera: Camera, frame: NDArray[np.intp]) 
     index = np.arange(posture.skeleton.dof_count)
     covariance = np.zeros((len(frame), len(index), len(index)))
     covariance[:, index, index] = joint_std_rad(posture.skeleton) ** 2
-    _, eye = camera.pose(frame)
-    sight = posture.translation - eye
-    sight = sight / np.linalg.norm(sight, axis=-1, keepdims=True)
+    sight = camera.sight(posture.translation, frame)
     along = sight[:, :, None] * sight[:, None, :]
     covariance[:, :3, :3] = PLACE_STD_M**2 * (np.eye(3) - along) + PLACE_DEPTH_STD_M**2 * along
     return covariance
@@ -83,8 +81,6 @@ def undecided_covariance(points: Array, camera: Camera, index: NDArray[np.intp],
         doubt: (K,) how far matched ones are off, in usual differences; 0 for posed ones.
     """
     frame = np.arange(len(points))
-    _, eye = camera.pose(frame)
-    sight = points - np.asarray(eye).reshape(-1, 1, 3)
-    sight = sight / np.linalg.norm(sight, axis=-1, keepdims=True)
+    sight = camera.sight(points, frame[:, None])
     std_m = UNDECIDED_DEPTH_M * np.interp(frame, index, doubt)
     return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.posture import Posture
+from ..chunks import chunks
 from ..footage.tracks import RegionTracks
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
@@ -72,9 +73,7 @@ def _library_error_m(
     points = body.points(body.pose(posture))
     difference, weight = unforeseen(keyframes, fps)
     foretold = body.points(body.pose(posture.plus(-difference)))
-    _, eye = model.camera.pose(np.array([keyframe.index for keyframe in posed]))
-    sight = points - np.asarray(eye).reshape(-1, 1, 3)
-    sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
+    sight = model.camera.sight(points, np.array([[keyframe.index] for keyframe in posed]))
     squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)
     return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), LEAST_WEIGHT)))
 
@@ -87,7 +86,7 @@ def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: R
     camera, frames = model.camera, tracks.frame_count
     prior = interpolate(posed, frames)
     offset = np.empty((frames, len(model.placements), 2))
-    for frame in np.array_split(np.arange(frames), -(-frames // FRAMES_AT_ONCE)):
+    for frame in chunks(np.arange(frames), FRAMES_AT_ONCE):
         predicted = model.evaluate(model.body.pose(prior[frame]), frame)
         trusted = (predicted.visible > LEAST_TRUSTED) & (tracks.quality[frame] > LEAST_TRUSTED)
         metres = camera.depth(prior[frame].translation, frame) / camera.focal_px

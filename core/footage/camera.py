@@ -133,6 +133,12 @@ class Camera:
             return np.asarray(offset @ rotation)
         return np.asarray(np.einsum("...ji,...j->...i", rotation, offset))
 
+    def sight(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+        """Return the unit directions (..., 3), in world axes, in which world points (..., 3) are seen."""
+        _, location = self.pose(frame)
+        offset = np.asarray(points, dtype=np.float64) - location
+        return np.asarray(offset / np.linalg.norm(offset, axis=-1, keepdims=True))
+
     def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
         """Return the distance along the viewing axis (...) in metres of world points (..., 3)."""
         return -self.world_to_camera(points, frame)[..., 2]

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import rotations
 from ..body.course import straight_course
+from ..body.heading import about_up
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .library import Travel
-from .shapes import UP, headings_rad, moved, shapes
+from .shapes import headings_rad, moved, shapes
 
 Array = NDArray[np.float64]
 
@@ -121,7 +121,7 @@ def _cycle_step(posture: Posture, time_s: Array, period_s: float) -> tuple[float
     later = straight_course(posture, time_s, time_s[now] + period_s)
     turned = headings_rad(later) - headings_rad(posture[now])
     turn = float(np.arctan2(np.sin(turned).mean(), np.cos(turned).mean()))
-    step = (later.translation - posture[now].translation @ rotations.hinge(UP, np.array(turn)).T).mean(axis=0)
+    step = (later.translation - posture[now].translation @ about_up(turn).T).mean(axis=0)
     return turn, np.asarray(step * [1.0, 1.0, 0.0])
 
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import rotations
+from ..body.heading import about_up
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .shapes import UP, ankle_heights, headings_rad, moved, shapes
+from .shapes import ankle_heights, headings_rad, moved, shapes
 from .texts import LONGEST_NAME, identifier_from
 
 Array = NDArray[np.float64]
@@ -185,8 +185,8 @@ def _turned_travel(
 ) -> tuple[float, float, float]:
     """A cycle's travel, given for the world, as it is for postures that were turned and shifted."""
     x, y, heading = travel
-    step = rotations.hinge(UP, np.array(turn)) @ np.array([x, y, 0.0])
-    onward = step + shift - rotations.hinge(UP, np.array(heading)) @ shift
+    step = about_up(turn) @ np.array([x, y, 0.0])
+    onward = step + shift - about_up(heading) @ shift
     return float(onward[0]), float(onward[1]), heading
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import rotations
 from ..body.course import smooth_course, stretches
+from ..body.heading import UP, about_up, headed
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.soles import lower_sole_m
@@ -13,7 +13,6 @@ from .library import Library, LibraryMotion
 
 Array = NDArray[np.float64]
 
-UP = np.array([0.0, 0.0, 1.0])
 NEIGHBOURS = 2
 """So many postures before and after a cycle shape the curve within it."""
 
@@ -63,16 +62,13 @@ def carried(posture: Posture, motion: LibraryMotion, cycles: Array) -> Posture:
     """
     *way, heading = motion.travel
     angle = np.asarray(cycles) * heading
-    turn = rotations.hinge(UP, angle)  # (N, 3, 3)
     # The sum of the turned ways of all cycles is a geometric series; sin(n h / 2) / sin(h / 2) is its size.
     half = 0.5 * np.remainder(heading + np.pi, 2.0 * np.pi) - 0.5 * np.pi
     size = np.asarray(cycles) if abs(half) < 1e-9 else np.sin(cycles * half) / np.sin(half)
-    direction = rotations.hinge(UP, (np.asarray(cycles) - 1.0) * half)
+    direction = about_up((np.asarray(cycles) - 1.0) * half)
     moved = size[:, None] * (direction @ np.array([*way, 0.0]))
-    place = (turn @ posture.translation[..., None])[..., 0] + moved
-    matrices = np.array(posture.rotations)
-    matrices[:, 0] = turn @ matrices[:, 0]
-    return Posture(posture.skeleton, place, matrices, posture.angles)
+    place = (about_up(angle) @ posture.translation[..., None])[..., 0] + moved
+    return headed(posture, angle, place)
 
 
 def _led(library: Library, posed: Posture, knots: Array, at: Array) -> Posture:

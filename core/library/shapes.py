@@ -3,14 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import rotations
+from ..body.heading import about_up, headed
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 
 Array = NDArray[np.float64]
 
-UP = np.array([0.0, 0.0, 1.0])
 ANKLE_OVER_SOLE = 0.36
 """Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
 
@@ -32,11 +31,8 @@ def moved(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
         angle_rad: (F,) or one angle.
         shift: (F, 3) or (3,) [m].
     """
-    turn = rotations.hinge(UP, np.asarray(angle_rad))
-    place = (turn @ posture.translation[..., None])[..., 0] + shift
-    matrices = np.array(posture.rotations)
-    matrices[..., 0, :, :] = turn @ matrices[..., 0, :, :]
-    return Posture(posture.skeleton, place, matrices, posture.angles)
+    place = (about_up(angle_rad) @ posture.translation[..., None])[..., 0] + shift
+    return headed(posture, angle_rad, place)
 
 
 def shapes(body: Body, posture: Posture) -> Array:
@@ -46,7 +42,7 @@ def shapes(body: Body, posture: Posture) -> Array:
     """
     points = body.points(body.pose(posture))
     ground = posture.translation * [1.0, 1.0, 0.0]
-    turn = rotations.hinge(UP, -headings_rad(posture))
+    turn = about_up(-headings_rad(posture))
     seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
     return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
 

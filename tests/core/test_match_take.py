@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.heading import headed
 from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
@@ -20,7 +21,6 @@ from keymark.core.library.motion_course import course
 from keymark.core.match_take import LibraryChoice, match_take, with_matches
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.prior.matching.placing import placed
 from keymark.core.progress import run
 from keymark.core.take import Take
 
@@ -65,7 +65,7 @@ def performed(library: Library, heading_rad: float, style_rad: float = 0.08, flo
     turn = np.array([[np.cos(heading_rad), -np.sin(heading_rad)], [np.sin(heading_rad), np.cos(heading_rad)]])
     middle = led.translation[:, :2].mean(axis=0)
     hips = np.column_stack([(led.translation[:, :2] - middle) @ turn.T, led.translation[:, 2] + floor_m])
-    return placed(led, np.full(FRAMES, heading_rad), hips)
+    return headed(led, np.full(FRAMES, heading_rad), hips)
 
 
 def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take, Reading]:

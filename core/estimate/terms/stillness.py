@@ -57,9 +57,7 @@ class StillnessTerm:
 
     def _standing(self, travel: Array, middle: Array, frame: NDArray[np.intp]) -> Array:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
-        _, location = self.camera.pose(frame)
-        sight = middle - np.asarray(location).reshape(-1, 1, 3)
-        sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
+        sight = self.camera.sight(middle, frame[:, None])
         along = np.sum(travel * sight, axis=-1, keepdims=True) * sight
         counted = travel - (1.0 - self.depth_share) * along
         speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]

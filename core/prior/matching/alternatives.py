@@ -78,7 +78,6 @@ def confidence(share: float, explained: float) -> float:
 
     Args:
         share: Probability of the posture and those about like it among all of the library.
-        nearest: Which of the chains' postures that is nearest to.
         explained: How much of the frame the match explains, 0 to 1.
     """
     odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *CERTAIN)]

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.heading import UP
 from ...body.kinematics import Body
 from ...body.mirror import mirrored
 from ...body.posture import Posture
@@ -33,7 +34,6 @@ SAME_M = 0.03
 """A mirror image whose points come this near to those of its motion half a cycle on adds nothing."""
 MOST_SHIFTS = 100
 """Times of a cycle at which its mirror image is compared with it."""
-UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)

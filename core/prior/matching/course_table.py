@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.heading import about_up, headed
 from ...body.posture import Posture
 from .chains import Chains
-from .placing import about_up, placed
 from .solids import Solids
 
 Array = NDArray[np.float64]
@@ -111,10 +111,10 @@ class CourseTable:
         first, second, share, cycle = self._between(chain, time_s)
         ends = np.zeros(len(rows))
         ends[start[1:] - 1] = [entry.turn_rad for entry in self.chains.chains]
-        postures = placed(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
+        postures = headed(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
         led = postures[first].plus(share[:, None] * postures[second].minus(postures[first]))
         turned = np.array([entry.turn_rad for entry in self.chains.chains])[chain]
-        return placed(led, heading_rad + cycle * turned, hips)
+        return headed(led, heading_rad + cycle * turned, hips)
 
     def nearest(self, chain: Whole, time_s: Array) -> Whole:
         """(T,) which of the N postures of the chains is nearest in time."""

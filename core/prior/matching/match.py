@@ -1,7 +1,7 @@
 """A library found in footage: which of its postures is seen when and where, in which heading, how surely."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,13 +86,22 @@ class Prepared:
 
 def prepare(sought: Sought, library: Library) -> Prepared:
     """Put a library on the performer's body and look at a few frames with it."""
-    told = np.concatenate([sought.keyframes, sought.anchors.frames])
-    sampled = sampled_frames(sought.tracks, told)
     chains = library_chains(library, sought.body)
     solids = marker_solids(sought.body, sought.segments, chains.posture)
     states = turned(solids, HEADINGS)
-    first = glance(sought.camera, sought.tracks, sought.segments, sampled, states)
-    return Prepared(library, chains, solids, states, sampled, first)
+    return Prepared(library, chains, solids, states, *_first_look(sought, states))
+
+
+def prepared_anew(sought: Sought, prepared: Prepared) -> Prepared:
+    """The library on the same body, with a first look at other tracks."""
+    sampled, first = _first_look(sought, prepared.states)
+    return replace(prepared, sampled=sampled, glance=first)
+
+
+def _first_look(sought: Sought, states: Turned) -> tuple[Whole, Glance]:
+    told = np.concatenate([sought.keyframes, sought.anchors.frames])
+    sampled = sampled_frames(sought.tracks, told)
+    return sampled, glance(sought.camera, sought.tracks, sought.segments, sampled, states)
 
 
 def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[LibraryMatch]:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.heading import headed
 from ...body.posture import Posture
 from .chains import Chains
-from .placing import placed
 from .refine import Course
 from .sights import Sight
 from .steps import FASTEST
@@ -35,7 +35,7 @@ class Path:
         fit = self.fits[frame]
         posture, heading = np.divmod(fit.states[rows], len(self.turned.heading_rad))
         hips = fit.hips[:, rows].T.astype(float)
-        return placed(self.chains.posture[posture], self.turned.heading_rad[heading], hips)
+        return headed(self.chains.posture[posture], self.turned.heading_rad[heading], hips)
 
     def course(self) -> Course:
         """The path in times that go on over cycles, and headings that turn on."""

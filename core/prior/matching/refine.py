@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...body.heading import about_up
 from .anchors import POINTS_COUNT, Anchors
 from .course_table import CourseTable, Reading
 from .habits import DEGREES, Habits, scale
-from .placing import about_up
 from .sights import Sight, square_root
 
 Array = NDArray[np.float64]

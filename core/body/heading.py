@@ -1,0 +1,29 @@
+"""Turning about the vertical."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import rotations
+from .posture import Posture
+
+Array = NDArray[np.float64]
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def about_up(angle_rad: Array | float) -> Array:
+    """(..., 3, 3) rotations about the vertical by angles (...)."""
+    return rotations.hinge(UP, np.asarray(angle_rad))
+
+
+def headed(posture: Posture, angle_rad: Array | float, place: Array) -> Posture:
+    """Postures turned about the vertical, their hips in given places.
+
+    Args:
+        posture: A batch of N.
+        angle_rad: (N,) or one angle.
+        place: (N, 3) of the hips' midpoint [m].
+    """
+    matrices = np.array(posture.rotations)
+    matrices[..., 0, :, :] = about_up(angle_rad) @ matrices[..., 0, :, :]
+    return Posture(posture.skeleton, place, matrices, posture.angles)
