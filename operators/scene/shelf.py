@@ -1,7 +1,7 @@
 """The libraries at hand: those that come with Keymark, and the user's own.
 
-The disk is read when Blender has started, and by operators that change what lies there; drawing only sees
-what was found then.
+The disk is read once the sidebar is looked at, and by operators that change what lies there; drawing only
+sees what was found then.
 """
 
 from contextlib import suppress
@@ -11,9 +11,9 @@ from zlib import crc32
 
 import bpy
 from bpy.app import timers
-from bpy.app.handlers import persistent
 
 from ...core.library.texts import EVERY_LIBRARY
+from ..running.redraw import redraw_sidebars
 from .results import EXTENSION
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 OWN = "libraries"
 """Name of the user's folder."""
-START_S = 0.3
-"""After registering, before the shelf is read: Blender's window appears first."""
+SOON_S = 0.1
+"""Before the shelf is read, so that what asks for it is drawn first."""
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Blender keeps no copy of a menu's words: they must stay as long as it is shown."""
@@ -114,18 +114,15 @@ def _describe(item: bpy.types.PropertyGroup, library: "Library") -> None:
         item.postures.add().name = posture.name
 
 
-def fill_soon() -> None:
-    """Read the shelf when Blender is ready, and again for every file: windows come with files."""
-    if _loaded not in bpy.app.handlers.load_post:
-        bpy.app.handlers.load_post.append(_loaded)
-    if not bpy.app.background and not timers.is_registered(_fill_now):
-        timers.register(_fill_now, first_interval=START_S)
+def need() -> None:
+    """Read the shelf soon if that was not done since Blender started or opened a file; drawing may ask."""
+    empty = not len(bpy.context.window_manager.keymark_shelf.libraries)
+    if empty and not bpy.app.background and not timers.is_registered(_fill_now):
+        timers.register(_fill_now, first_interval=SOON_S)
 
 
 def forget() -> None:
     """No longer read the shelf by itself."""
-    if _loaded in bpy.app.handlers.load_post:
-        bpy.app.handlers.load_post.remove(_loaded)
     if timers.is_registered(_fill_now):
         timers.unregister(_fill_now)
     _items.clear()
@@ -134,9 +131,4 @@ def forget() -> None:
 def _fill_now() -> None:
     with suppress(ModuleNotFoundError):  # without the libraries that Keymark brings; operators say so
         fill()
-
-
-@persistent
-def _loaded(*_arguments: object) -> None:
-    if not len(bpy.context.window_manager.keymark_shelf.libraries):
-        fill_soon()
+        redraw_sidebars(bpy.context)

@@ -3,6 +3,7 @@
 import bpy
 
 from ...running.job_operator import job_is_running
+from ...scene import shelf
 from ...scene.takes import find_take
 from ...scene.upgrade import is_newer
 from ..next_step import next_step
@@ -92,6 +93,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the running job, or the takes and the next step."""
+        shelf.need()
         layout, take = self.layout, find_take(context.scene)
         if is_newer(context.scene):
             box = layout.box().column(align=True)

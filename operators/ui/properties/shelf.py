@@ -54,13 +54,12 @@ CLASSES = (KEYMARK_PG_shelved_posture, KEYMARK_PG_shelved, KEYMARK_PG_shelf)
 
 
 def register() -> None:
-    """Add the shelf to the window manager, and fill it as soon as Blender is ready."""
+    """Add the shelf to the window manager."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
         type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
     )
-    shelf.fill_soon()
 
 
 def unregister() -> None:
