@@ -88,7 +88,7 @@ def match_take(
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to match with")
     if not reading.tracks.visible.any():
-        raise InputError(f"{take.folder}: no marker is seen in the footage, so no posture can be matched")
+        raise InputError(f"{take.clip}: no marker is seen in the footage, so no posture can be matched")
     with threadpool_limits(limits=1, user_api="blas"):
         sought = _sought(take, reading, keyframe_count)
         prepared = yield from stretch(_prepared(sought, usable), 0.0, LOOKING * AGAIN)

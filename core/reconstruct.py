@@ -27,12 +27,12 @@ from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
 from .prior.style import with_style
 from .progress import Job, Progress, stretch, within
+from .shoot.conversion_settings import METHODS
 from .take import Take, check_frame_count, check_in_front, open_clip
 
 Array = NDArray[np.float64]
 
 FOLLOWING = "Following the markers"
-METHODS = ("map", "ekf", "interpolation")
 EXPECTED_RADIUS_M = 0.45
 """How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
 CHUNK_FRAMES = 500
@@ -105,7 +105,7 @@ def check_reconstructible(take: Take, method: str) -> None:
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
     if len(take.keyframes) < 2:
-        raise InputError(f"{take.folder} has {len(take.keyframes)} keyframes; at least 2 are needed")
+        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
 
 
 def _reconstruct(

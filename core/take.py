@@ -3,7 +3,7 @@
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 from typing import Any
 
 from .body.actor import Actor
@@ -11,12 +11,14 @@ from .body.human import HUMAN
 from .body.kinematics import Body
 from .errors import InputError
 from .files.fields import Fields, listed
-from .files.json_file import read_json, shown, write_json, write_whole
+from .files.inherited import Inherited
+from .files.json_file import shown, write_json, write_whole
 from .footage.camera import Camera
 from .footage.clips.clip import Clip
 from .footage.marker_style import MarkerStyle
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
 from .prior.keyframes import Keyframe
+from .shoot.description import OWN, Description, describe
 
 TRUNK = "trunk"
 """Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
@@ -43,6 +45,20 @@ class Take:
     body: Body
     markers: tuple[MarkerStyle, ...]
     keyframes: tuple[Keyframe, ...]
+    described_in: Path | None = None
+    """The file that sentences name; None for a folder's own `take.json`."""
+    title: str = ""
+    """What people call it; empty for the folder's name."""
+
+    @property
+    def file(self) -> Path:
+        """The file that describes it."""
+        return self.described_in or self.folder / OWN
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return self.title or self.folder.absolute().name
 
     @property
     def marker_segments(self) -> tuple[str, ...]:
@@ -66,37 +82,50 @@ class Take:
 
 
 def read_take(
-    folder: Path,
+    place: Path,
     keyframes: Path | None = None,
     *,
     keyframes_required: bool = True,
     fewest_keyframes: int = FEWEST_KEYFRAMES,
 ) -> Take:
-    """Read a take folder; the clip is not opened (see `open_clip`).
+    """Read a take and what it inherits from the shoots above; the clip is not checked yet (see `open_clip`).
 
     Args:
-        folder: The folder that holds `take.json`.
-        keyframes: The keyframe file; by default `keyframes.json` in the folder.
+        place: The folder that holds `take.json`, or a clip that a shoot describes (see `shoot/description`).
+        keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
         keyframes_required: Whether a take without a keyframe file is refused.
         fewest_keyframes: So many the keyframe file must hold; with 0 the folder's own is not even opened.
 
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
-    if not folder.is_dir():
-        raise InputError(f"{folder}: no such folder; a take is a folder that holds take.json")
-    path = folder / "take.json"
-    fields = Fields(read_json(path), str(path))
-    frame_start = fields.whole("frame_start", -(10**6), 10**6)
+    return read_described(
+        describe(place), keyframes, keyframes_required=keyframes_required, fewest_keyframes=fewest_keyframes
+    )
+
+
+def read_described(
+    description: Description,
+    keyframes: Path | None = None,
+    *,
+    keyframes_required: bool = True,
+    fewest_keyframes: int = FEWEST_KEYFRAMES,
+) -> Take:
+    """Read a take as it is described; see `read_take`."""
+    fields = description.fields
+    if description.inherits:
+        fields = _with_the_clip(fields, description.clip)
+    from_clip = description.inherits and not fields.has("frame_start")
+    frame_start = 1 if from_clip else fields.whole("frame_start", -(10**6), 10**6)
     frame_count = fields.whole("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
     body = _body(fields)
     camera = _camera(fields, frame_count)
-    posed = keyframes or folder / "keyframes.json"
+    posed = keyframes or description.keyframes
     optional = keyframes is None and not keyframes_required
     missing = optional and (fewest_keyframes == 0 or not posed.exists())
     return Take(
-        folder=folder,
-        clip=_clip(fields, folder),
+        folder=description.folder,
+        clip=description.clip,
         fps=fields.number("fps", 1.0, 1000.0, "frames per second"),
         frame_start=frame_start,
         frame_count=frame_count,
@@ -104,6 +133,8 @@ def read_take(
         body=body,
         markers=_markers(fields),
         keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count, fewest_keyframes),
+        described_in=description.file,
+        title=description.name,
     )
 
 
@@ -114,13 +145,10 @@ def open_clip(take: Take) -> Clip:
         InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
             poses or a keyframe do not fit.
     """
-    try:
-        clip = Clip.open(take.clip, fps=take.fps)
-    except OSError as error:
-        raise InputError(f"{take.clip}: the clip cannot be read ({error.strerror})") from error
+    clip = _opened(take.clip, take.fps)
     if clip.size != take.camera.resolution:
         raise InputError(
-            f"{take.folder / 'take.json'}: camera.resolution is {list(take.camera.resolution)}; "
+            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
             f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
         )
     count = clip.frame_count
@@ -130,13 +158,20 @@ def open_clip(take: Take) -> Clip:
     return clip
 
 
+def _opened(path: Path, fps: float | None) -> Clip:
+    try:
+        return Clip.open(path, fps=fps)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
 def check_frame_count(take: Take, count: int) -> None:
     """Hold the number of frames that a clip really has against the take.
 
     Raises:
         InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
     """
-    path = take.folder / "take.json"
+    path = take.file
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
@@ -151,7 +186,7 @@ def check_frame_count(take: Take, count: int) -> None:
     for keyframe in take.keyframes:
         if keyframe.index >= count:
             raise InputError(
-                f"{take.folder}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
+                f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
                 f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
             )
 
@@ -168,7 +203,7 @@ def check_in_front(take: Take) -> None:
         if depth.min() <= 0.0:
             name = take.body.skeleton.point_names[int(depth.argmin())]
             raise InputError(
-                f"{take.folder}: keyframe {keyframe.index + take.frame_start} has the point {name} "
+                f"{take.file}: keyframe {keyframe.index + take.frame_start} has the point {name} "
                 f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
                 "(along its local -Z) at the performer"
             )
@@ -178,7 +213,7 @@ def rate_note(take: Take, clip: Clip) -> str | None:
     """A sentence where the clip's own frame rate is not the take's; None where they agree."""
     if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
         return None
-    return f"take.json says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
+    return f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
 
 
 def write_take(take: Take, folder: Path) -> None:
@@ -219,15 +254,20 @@ def _clip_inside(take: Take, folder: Path) -> str:
     return source.name
 
 
-def _clip(fields: Fields, folder: Path) -> Path:
-    valid = "a path inside the take's folder, as in clip.mp4"
-    name = fields.text("clip", valid) if fields.has("clip") else "clip.mp4"
-    outside = PurePosixPath(name).is_absolute() or PureWindowsPath(name).anchor
-    climbs = ".." in PureWindowsPath(name).parts  # it reads both kinds of slash
-    odd = len(name) > 1000 or not name.isprintable() or PureWindowsPath(name).name == ""
-    if outside or climbs or odd:
-        raise InputError(f"{fields.where}: clip is {shown(name)}; it must be {valid}")
-    return folder / name
+def _with_the_clip(fields: Fields, path: Path) -> Fields:
+    """The fields with rate and size from the clip itself, where the shoot leaves them out."""
+    assert isinstance(fields.values, Inherited)
+    camera = fields.values.get("camera")
+    sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
+    if fields.has("fps") and sized:
+        return fields
+    clip = _opened(path, None)
+    told: dict[str, Any] = {}
+    if not fields.has("fps") and clip.knows_its_rate:
+        told["fps"] = clip.fps
+    if not sized:
+        told["camera"] = {"resolution": list(clip.size)}
+    return Fields(fields.values.patched(told, str(path)), fields.where)
 
 
 def _camera(fields: Fields, frame_count: int | None) -> Camera:
@@ -249,7 +289,7 @@ def _body(fields: Fields) -> Body:
     try:
         return Body(Actor(lengths))
     except InputError as error:
-        raise InputError(f"{fields.where}: {error}") from error
+        raise InputError(f"{fields.at('actor')}: {error}") from error
 
 
 def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import InputError
+
 LENGTH = 32
 """Hexadecimal digits: 128 bits."""
 SAMPLES = 16
@@ -49,3 +51,18 @@ def file_digest(path: Path) -> str:
             if state.st_size <= SAMPLE_BYTES:
                 break
     return digest(state.st_size, state.st_mtime_ns, tuple(samples))
+
+
+def content_digest(path: Path) -> str:
+    """SHA-256 of a file's content.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: no such file") from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error

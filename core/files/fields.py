@@ -8,6 +8,7 @@ from math import isfinite
 from typing import Any
 
 from ..errors import InputError
+from .inherited import Inherited, child_place
 from .json_file import shown
 
 
@@ -27,7 +28,8 @@ class Fields:
 
     values: Mapping[str, Any]
     where: str
-    """File, and the way to the object in it: `TAKE/take.json: camera`."""
+    """File, and the way to the object in it: `TAKE/take.json: camera`. Inherited fields have their own, see
+    `at`."""
 
     @classmethod
     def of(cls, value: Any, where: str) -> "Fields":
@@ -35,6 +37,11 @@ class Fields:
         if not isinstance(value, Mapping):
             raise InputError(f"{where} is {shown(value)}; it must be an object, {{...}}")
         return cls(value, where)
+
+    def at(self, name: str) -> str:
+        """The place of the object that says a field."""
+        places = self.values.places if isinstance(self.values, Inherited) else {}
+        return places.get(name, self.where)
 
     def has(self, name: str) -> bool:
         """Whether a field is there and not null."""
@@ -45,7 +52,7 @@ class Fields:
         if self.has(name):
             return self.values[name]
         if name in self.values:
-            raise InputError(f"{self.where}: {name} is null; it must be {valid}")
+            raise InputError(f"{self.at(name)}: {name} is null; it must be {valid}")
         close = get_close_matches(name, self._first_names(), n=1, cutoff=0.6)
         hint = f" (is {shown(close[0])} meant to be it?)" if close else ""
         raise InputError(f"{self.where}: {name} is missing{hint}; it must be {valid}")
@@ -68,17 +75,15 @@ class Fields:
         """The object in a field."""
         value = self.required(name, valid)
         if not isinstance(value, Mapping):
-            raise InputError(f"{self.where}: {name} is {shown(value)}; it must be {valid}")
-        return Fields(
-            value, f"{self.where}: {name}" if self.where.endswith(".json") else f"{self.where}.{name}"
-        )
+            raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
+        return Fields(value, child_place(self.at(name), name))
 
     def number(self, name: str, low: float, high: float, unit: str = "") -> float:
         """A number from `low` to `high`."""
         valid = f"a number from {low:g} to {high:g}{unit and ' ' + unit}"
         value = self.required(name, valid)
         if not _is_number(value) or not low <= value <= high:
-            raise InputError(f"{self.where}: {name} is {shown(value)}; it must be {valid}")
+            raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
         return float(value)
 
     def whole(self, name: str, low: int, high: int) -> int:
@@ -86,14 +91,14 @@ class Fields:
         valid = f"a whole number from {low} to {high}"
         value = self.required(name, valid)
         if not _is_number(value) or value != int(value) or not low <= value <= high:
-            raise InputError(f"{self.where}: {name} is {shown(value)}; it must be {valid}")
+            raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
         return int(value)
 
     def text(self, name: str, valid: str) -> str:
         """A text that is not empty."""
         value = self.required(name, valid)
         if not isinstance(value, str) or not value.strip():
-            raise InputError(f"{self.where}: {name} is {shown(value)}; it must be {valid}")
+            raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
         return value
 
     def numbers(self, name: str, count: int, low: float, high: float, valid: str) -> tuple[float, ...]:
@@ -101,7 +106,7 @@ class Fields:
         value = self.required(name, valid)
         usable = isinstance(value, list) and len(value) == count
         if not usable or not all(_is_number(item) and low <= item <= high for item in value):
-            raise InputError(f"{self.where}: {name} is {shown(value)}; it must be {valid}")
+            raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
         return tuple(float(item) for item in value)
 
 

@@ -27,7 +27,7 @@ def read_resolution(fields: Fields) -> tuple[int, int]:
     numbers = _array(fields.required("resolution", valid))
     if numbers is None or numbers.shape != (2,) or np.any(numbers < 1) or np.any(numbers % 1):
         shown_value = shown(fields.values["resolution"])
-        raise InputError(f"{fields.where}: resolution is {shown_value}; it must be {valid}")
+        raise InputError(f"{fields.at('resolution')}: resolution is {shown_value}; it must be {valid}")
     return int(numbers[0]), int(numbers[1])
 
 
@@ -46,7 +46,8 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
     numbers = _array(listed)
     if numbers is None or numbers.ndim != 1 or numbers.size > 3:
         raise InputError(
-            f"{fields.where}: distortion is {shown(value)}; it must be up to three numbers [k1, k2, k3]"
+            f"{fields.at('distortion')}: distortion is {shown(value)}; "
+            "it must be up to three numbers [k1, k2, k3]"
         )
     padded = np.zeros(3)
     padded[: numbers.size] = numbers
@@ -68,10 +69,10 @@ def read_poses(fields: Fields) -> FloatArray:
         name, valid, ndim = "matrix_world", "a 4 by 4 matrix of finite numbers", 2
     matrices = _array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
-        raise InputError(f"{fields.where}: {name} has the wrong form; it must be {valid}")
+        raise InputError(f"{fields.at(name)}: {name} has the wrong form; it must be {valid}")
     stacked = matrices.reshape(-1, 4, 4).copy()
     for index, matrix in enumerate(stacked):
-        place = f"{fields.where}: {name}" + (f"[{index}]" if ndim == 3 else "")
+        place = f"{fields.at(name)}: {name}" + (f"[{index}]" if ndim == 3 else "")
         matrix[:3, :3] = _rotation(matrix, place)
     return stacked.reshape(matrices.shape)
 

@@ -3,6 +3,7 @@
 `docs/library_format.md` describes the fields. Whatever is written can be read, and then gives the same bytes.
 """
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from ..body.human import HUMAN
 from ..body.posture_fields import posture_to_json
 from ..errors import InputError
+from ..files.digest import digest
 from ..files.fields import Fields
 from ..files.json_file import read_json, shown
 from ..files.json_layout import write_readable_json
@@ -81,6 +83,11 @@ def library_to_json(library: Library) -> dict[str, Any]:
         "postures": [_posture(posture) for posture in library.postures],
     }
     return _without_empty(value, ("description", "tags", "sources", "motions"))
+
+
+def library_digest(library: Library) -> str:
+    """A digest of what a library holds, wherever its file lies and however that is laid out."""
+    return digest(json.dumps(library_to_json(library), sort_keys=True))
 
 
 def _motion(motion: LibraryMotion) -> dict[str, Any]:

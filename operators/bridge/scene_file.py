@@ -46,7 +46,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         InputError: Blender cannot read the clip.
         ConversionError: Blender could not write a file.
     """
-    with _own_scene(f"{take.folder.name} Motion") as scene:
+    with _own_scene(f"{take.name} Motion") as scene:
         armature_object = fill_scene(scene, take, motion)
         with _moved_into_place(blend_path) as path:
             _write_blend(scene, path)

@@ -1,14 +1,12 @@
 """Words of the command line: commands, options, and their help."""
 
 import argparse
-import tomllib
 from pathlib import Path
 
+from ...core.shoot.conversion_settings import METHODS
 from .library_arguments import add_library
 from .line_parser import Commands, LineParser, UsageError, add_command, program_name
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-METHODS = ("map", "ekf", "interpolation")
+from .version import version
 
 DESCRIPTION = "Turns one video of a performer wearing coloured markers into an animated armature."
 EXAMPLES = """\
@@ -22,12 +20,6 @@ examples:
 
 A take is a folder with take.json, the clip and keyframes.json; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
-
-
-def version() -> str:
-    """The version, which stands in the extension's manifest alone."""
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
-    return str(manifest["version"])
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -85,7 +77,6 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
     convert.add_argument(
         "--method",
         choices=METHODS,
-        default="map",
         help="map: the whole clip at once (default); ekf: the filter of the paper; "
         "interpolation: the keyframes alone",
     )

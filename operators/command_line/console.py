@@ -52,6 +52,8 @@ class Console:
 
     def stage(self, name: str) -> None:
         """Begin a stage; the time until the next one counts as its own."""
+        if name == self._stage:
+            return
         self._stop()
         self._stage = name
         if self._bar is not None:

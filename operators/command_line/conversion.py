@@ -5,71 +5,48 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...core.conversion_record import NAME as RECORD
+from ...core.conversion_record import is_finished, write_record
 from ...core.errors import ConversionError, InputError
 from ...core.files.output_folder import output_folder
 from ...core.keyframe_file import write_keyframes
 from ...core.library.library import Library
-from ...core.match_take import LibraryChoice
+from ...core.library.library_file import library_digest
 from ...core.motion import Motion
 from ...core.motion_file import write_motion
 from ...core.progress import run
-from ...core.reconstruct import Reconstruction
 from ...core.report.pictures import MATCHES, PICTURES, write_pictures
-from ...core.take import Take, read_take
+from ...core.shoot.conversion_digest import conversion_digest
+from ...core.shoot.conversion_settings import METHODS, ConversionSettings
+from ...core.shoot.description import Description
+from ...core.take import Take, read_described
 from .blender_silence import blender_silence
 from .console import Console
+from .made import Conversion, conversion_record
 from .matching import chosen_libraries, solve, take_to_match
+from .version import version
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
 KEYFRAMES = "keyframes.json"
-BELONGINGS = (MOTION, BLEND, BVH, *(f"{REPORT}/{name}" for name in PICTURES), f"{REPORT}/{MATCHES}")
+BELONGINGS = (RECORD, MOTION, BLEND, BVH, *(f"{REPORT}/{name}" for name in PICTURES), f"{REPORT}/{MATCHES}")
 """Every file that a conversion may make, but for the keyframes: these a person may have corrected meanwhile,
 and only a conversion that makes them anew may replace them."""
 
 
-@dataclass(frozen=True, eq=False)
-class Conversion:
-    """What a conversion made."""
-
-    take: Take
-    reconstruction: Reconstruction
-    files: tuple[Path, ...]
-    """In the order of `BELONGINGS`, keyframes last."""
-    choice: LibraryChoice | None = None
-    """Which library was matched, and how well, where one was."""
-    left_aside: tuple[str, ...] = ()
-    """A sentence about what of the take was not used."""
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a person should know of the result, one sentence each."""
-        reason = () if self.choice is None else (self.choice.reason.rstrip("."),)
-        return (*self.left_aside, *reason, *self.reconstruction.notes)
-
-
 def convert(
-    folder: Path,
+    description: Description,
     output: Path,
     console: Console,
-    *,
-    keyframes: Path | None = None,
-    library: str | None = None,
-    floor_m: float | None = None,
-    method: str = "map",
-    pictures: bool = True,
+    settings: ConversionSettings,
     debug: bool = False,
 ) -> Conversion:
     """Convert a take.
 
     Args:
-        folder: The take's folder.
+        description: The take's.
         output: Folder for the results; it changes only when all of them are complete.
         console: Learns of the progress.
-        keyframes: The keyframe file; by default the take's own, or with a library none.
-        library: Name or file of the library to match with, or `auto`; None where all is posed.
-        floor_m: Height of the floor where it is known [m]; for matching.
-        method: `map`, `ekf` or `interpolation`.
-        pictures: Whether to draw the report.
+        settings: How; with a library only the keyframes that are named here count, else the take's own.
         debug: Whether to let Blender's messages through.
 
     Raises:
@@ -78,44 +55,88 @@ def convert(
             write with.
     """
     console.stage("Reading the take")
-    take, libraries = _inputs(folder, output, keyframes, library)
     require_blender("writing motion.blend needs")
     with output_folder(output, BELONGINGS) as place:
-        solved = run(solve(take, libraries, method, floor_m), console.progress)
-        take, result = solved.take, solved.reconstruction
-        console.stage("Writing the motion")
-        write_motion(result.motion, place / MOTION)
-        if solved.choice is not None:
-            write_keyframes(place / KEYFRAMES, take.keyframes, take.body, take.frame_start)
-        console.stage("Writing Blender's files")
-        _write_scene(take, result.motion, place, Path(os.path.realpath(output)), debug)
-        if pictures:
-            console.stage("Drawing the pictures")
-            write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
-        made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
-    files = tuple(output / name for name in made)
-    left_aside = _left_aside(folder, keyframes) if libraries else ()
-    return Conversion(take, result, files, solved.choice, left_aside)
+        inputs = _inputs(description, output, settings)
+        return _convert_into(place, output, inputs, console, debug)
 
 
-def _inputs(
-    folder: Path, output: Path, keyframes: Path | None, library: str | None
-) -> tuple[Take, tuple[Library, ...]]:
-    """The take, and the libraries to match it with, if it is to be matched."""
-    if library is None:
-        return read_take(folder, keyframes), ()
-    if os.path.realpath(folder) == os.path.realpath(output):
+def convert_if_changed(
+    description: Description,
+    output: Path,
+    console: Console,
+    settings: ConversionSettings,
+    debug: bool = False,
+) -> Conversion | None:
+    """Convert a take as `convert` does, but where the whole result of the very same input is there already.
+
+    Returns:
+        What was made; None where it was there.
+    """
+    console.stage("Reading the take")
+    require_blender("writing motion.blend needs")
+    with output_folder(output, BELONGINGS) as place:
+        inputs = _inputs(description, output, settings)
+        if is_finished(output, inputs.digest):
+            return None
+        return _convert_into(place, output, inputs, console, debug)
+
+
+@dataclass(frozen=True, eq=False)
+class _Inputs:
+    """All that a conversion follows from."""
+
+    description: Description
+    settings: ConversionSettings
+    libraries: tuple[Library, ...]
+    digest: str
+
+
+def _inputs(description: Description, output: Path, settings: ConversionSettings) -> _Inputs:
+    libraries = () if settings.library is None else chosen_libraries(settings.library)
+    digests = [library_digest(library) for library in libraries]
+    made_of = conversion_digest(description, settings, digests, output, version())
+    return _Inputs(description, settings, libraries, made_of)
+
+
+def _convert_into(place: Path, output: Path, inputs: _Inputs, console: Console, debug: bool) -> Conversion:
+    description, settings = inputs.description, inputs.settings
+    take = _take(description, settings, output)
+    solving = solve(take, inputs.libraries, settings.method or METHODS[0], settings.floor_m)
+    solved = run(solving, console.progress)
+    take, result = solved.take, solved.reconstruction
+    console.stage("Writing the motion")
+    write_motion(result.motion, place / MOTION)
+    if solved.choice is not None:
+        write_keyframes(place / KEYFRAMES, take.keyframes, take.body, take.frame_start)
+    console.stage("Writing Blender's files")
+    _write_scene(take, result.motion, place, Path(os.path.realpath(output)), debug)
+    if settings.pictures is not False:
+        console.stage("Drawing the pictures")
+        write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
+    made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
+    files = tuple(output / name for name in (*made, RECORD))
+    left_aside = _left_aside(description, settings)
+    conversion = Conversion(take, result, files, solved.choice, left_aside)
+    write_record(place, conversion_record(conversion, inputs.digest, place, made))
+    return conversion
+
+
+def _take(description: Description, settings: ConversionSettings, output: Path) -> Take:
+    if settings.library is None:
+        return read_described(description, settings.keyframes)
+    if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
             f"{output}: is the take's own folder, whose {KEYFRAMES} the matched keyframes would replace; "
             "name another folder"
         )
-    return take_to_match(folder, keyframes), chosen_libraries(library)
+    return take_to_match(description, settings.keyframes)
 
 
-def _left_aside(folder: Path, keyframes: Path | None) -> tuple[str, ...]:
+def _left_aside(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
     """A sentence where a take has keyframes that a conversion with a library does not use."""
-    own = folder / KEYFRAMES
-    if keyframes is not None or not own.exists():
+    own = description.keyframes
+    if settings.library is None or settings.keyframes is not None or not own.exists():
         return ()
     return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
 

@@ -1,30 +1,25 @@
 """`keymark convert`."""
 
 import argparse
+from dataclasses import replace
 from typing import Any
 
+from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ...core.shoot.description import Description, chosen_settings, describe
 from .console import arguments_console
-from .conversion import Conversion, convert
+from .conversion import convert
 from .line_parser import UsageError
+from .made import Conversion
 from .matching import match_summary
-
-HIGHEST_FLOOR_M = 1000.0
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
     """Convert the take that the command line names, and say what was made."""
     with arguments_console(arguments) as console:
-        conversion = convert(
-            arguments.take,
-            arguments.output,
-            console,
-            keyframes=arguments.keyframes,
-            library=arguments.library,
-            floor_m=_floor_m(arguments),
-            method=arguments.method,
-            pictures=not arguments.no_report,
-            debug=arguments.debug,
-        )
+        console.stage("Reading the take")
+        description = describe(arguments.take)
+        settings = _settings(arguments, description)
+        conversion = convert(description, arguments.output, console, settings, arguments.debug)
         console.finish(summary(conversion), _text(conversion))
 
 
@@ -43,19 +38,31 @@ def summary(conversion: Conversion) -> dict[str, Any]:
     }
 
 
-def _floor_m(arguments: argparse.Namespace) -> float | None:
-    """The floor's height, if it is given and means something.
+def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
+    """What the command line asks for, and else the take: a library that is asked for here is matched alone.
 
     Raises:
-        UsageError: It does not.
+        UsageError: Options contradict each other.
     """
-    if arguments.floor is None:
-        return None
-    if arguments.library is None:
+    given = ConversionSettings(
+        keyframes=arguments.keyframes,
+        library=arguments.library,
+        floor_m=arguments.floor,
+        method=arguments.method,
+        pictures=False if arguments.no_report else None,
+    )
+    settings = given.over(chosen_settings(description))
+    _check_floor(arguments.floor, settings)
+    return settings if arguments.library is None else replace(settings, keyframes=arguments.keyframes)
+
+
+def _check_floor(floor_m: float | None, settings: ConversionSettings) -> None:
+    if floor_m is None:
+        return
+    if settings.library is None:
         raise UsageError("--floor is given without --library; only matching asks for the floor")
-    if not abs(arguments.floor) <= HIGHEST_FLOOR_M:
-        raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
-    return float(arguments.floor)
+    if not abs(floor_m) <= HIGHEST_FLOOR_M:
+        raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
 
 
 def _text(conversion: Conversion) -> str:

@@ -8,11 +8,13 @@ from ...core.motion import Motion
 from ...core.progress import run
 from ...core.reconstruct import reconstruct
 from ...core.score import Score, read_truth, score_points
+from ...core.shoot.conversion_settings import ConversionSettings
+from ...core.shoot.description import describe
 from ...core.take import Take
-from .arguments import ROOT
 from .console import arguments_console
 from .conversion import BLEND, REPORT, convert
 from .convert import summary
+from .version import ROOT
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 KEYFRAMES = DEMO / "keyframes_noisy.json"
@@ -27,7 +29,9 @@ def demo_command(arguments: argparse.Namespace) -> None:
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
         )
     with arguments_console(arguments) as console:
-        done = convert(DEMO, arguments.output, console, keyframes=KEYFRAMES, debug=arguments.debug)
+        done = convert(
+            describe(DEMO), arguments.output, console, ConversionSettings(KEYFRAMES), arguments.debug
+        )
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
         scores = {

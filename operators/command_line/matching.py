@@ -12,7 +12,8 @@ from ...core.library.texts import EVERY_LIBRARY
 from ...core.match_take import LibraryChoice, match_take, with_matches
 from ...core.progress import Job, stretch
 from ...core.reconstruct import Reconstruction, read_footage, reconstruct
-from ...core.take import Take, read_take
+from ...core.shoot.description import Description
+from ...core.take import Take, read_described
 from .libraries import library_folders
 
 NAMED = 3
@@ -44,7 +45,7 @@ def chosen_libraries(wanted: str) -> tuple[Library, ...]:
     return tuple(found.library for found in shelved(folders) if found.library is not None)
 
 
-def take_to_match(folder: Path, keyframes: Path | None) -> Take:
+def take_to_match(description: Description, keyframes: Path | None) -> Take:
     """Read a take with the keyframes that a person posed; without a file named, with none.
 
     What an earlier run has matched in that file is left out, since it is matched anew.
@@ -53,7 +54,7 @@ def take_to_match(folder: Path, keyframes: Path | None) -> Take:
         InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
-    take = read_take(folder, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
@@ -77,7 +78,7 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
     choice = yield from stretch(matching, READING_SHARE, MATCHING_SHARE)
     if choice.match is None:
         likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
-        raise ConversionError(f"{take.folder}: {choice.reason}; likeliest are {likely}; nothing was written")
+        raise ConversionError(f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written")
     take = with_matches(take, choice.match)
     solving = reconstruct(take, method, choice.reading or reading)
     return Solved(take, (yield from stretch(solving, MATCHING_SHARE, 1.0)), choice)

@@ -59,7 +59,7 @@ def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Objec
     rate = clip_rate(load_footage(take.clip), take.fps)
     frames = scene_frames(opened.time_s, take.frame_start, rate)
     camera_object = show_footage(scene, take.camera, take.clip, rate, take.frame_start, len(frames), frames)
-    settings = add_take(scene, take.folder.name)
+    settings = add_take(scene, take.name)
     settings.camera, settings.clip = camera_object, scene.active_clip
     armature_object = add_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m

@@ -19,6 +19,7 @@ HEIGHTS = {
     "core.files": 1,
     "core.body": 2,
     "core.footage": 2,
+    "core.shoot": 3,
     "core.observation": 3,
     "core.library": 3,
     "core.prior": 4,

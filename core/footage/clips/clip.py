@@ -89,6 +89,11 @@ class Clip:
         return self.source.fps
 
     @property
+    def knows_its_rate(self) -> bool:
+        """Whether the rate is the footage's own: images have none."""
+        return not isinstance(self.source, ImageSequence)
+
+    @property
     def frame_count(self) -> int:
         """Number of frames the file claims to hold; a pass over them gives the true count."""
         return self.source.frame_count

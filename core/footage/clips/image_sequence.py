@@ -105,7 +105,7 @@ def find_images(path: Path) -> list[Path] | None:
         InputError: a folder or pattern without an image.
     """
     if path.is_dir():
-        found = [file for file in path.iterdir() if file.is_file() and file.suffix.lower() in _EXTENSIONS]
+        found = [file for file in path.iterdir() if is_image(file)]
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return sorted(found, key=_natural_key)
@@ -120,6 +120,11 @@ def find_images(path: Path) -> list[Path] | None:
     if not found:
         raise InputError(f"{path}: no file fits the pattern; name one as in img_####.png or img_%04d.png")
     return found
+
+
+def is_image(path: Path) -> bool:
+    """Tell whether a path is a file that is named like an image."""
+    return path.suffix.lower() in _EXTENSIONS and path.is_file()
 
 
 def _siblings(path: Path) -> list[Path]:

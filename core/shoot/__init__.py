@@ -1,0 +1,1 @@
+"""Shoots: many takes that share a description."""

@@ -1,0 +1,138 @@
+"""What is said of one take, by its own file and by the shoots it belongs to, each field from the nearest.
+
+A take is a folder that holds `take.json`; or, where a `shoot.json` above describes it, a mere video or a
+folder of images, beside which `NAME.take.json` and `NAME.keyframes.json` may say more.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.inherited import Inherited
+from ..files.inside import inside_path
+from ..files.json_file import read_json
+from ..footage.clips.image_sequence import is_image
+from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
+from .shoot_file import NAME, read_shoot_file, shoot_files
+
+OWN = "take.json"
+KEYFRAMES = "keyframes.json"
+CLIP_VALID = "a path inside the take's folder, as in clip.mp4"
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """One take as it is described; the fields are not checked yet but for those named here."""
+
+    place: Path
+    """The take: a folder, or the clip itself."""
+    name: str
+    """What people call it."""
+    folder: Path
+    """What paths in it are relative to."""
+    file: Path
+    """The nearest file that describes it; sentences name it where a field is missing."""
+    files: tuple[Path, ...]
+    """All files that describe it, the farthest first."""
+    clip: Path
+    keyframes: Path
+    """Where its keyframes are, if it has some."""
+    fields: Fields
+    settings: ConversionSettings
+    inherits: bool
+    """Whether any of it comes from a shoot; then the clip itself may tell its rate and size."""
+
+
+def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str = "") -> Description:
+    """Gather what is said of a take.
+
+    Args:
+        place: A folder with `take.json`, a video, or a folder of images.
+        nearest: Fields that count before all others, as a line of a list has them; their paths are relative
+            to the take's folder.
+        said_in: Where these stand, for sentences.
+
+    Raises:
+        InputError: There is no such take, nothing describes it, or a file is unusable.
+    """
+    own = _own_file(place)
+    folder, whole = own.parent, own.name == OWN
+    shared = shoot_files(folder)
+    if not own.is_file() and not whole and not shared:
+        raise InputError(
+            f"{place}: nothing describes this clip; {own.name} beside it, or {NAME} there or in a folder "
+            "above, must say what camera, actor and markers it shows"
+        )
+    fields = Inherited()
+    folders: dict[str, Path] = {}
+    for file in shared:
+        fields = fields.patched(read_shoot_file(file), str(file))
+        folders[str(file)] = file.parent
+    files = [*shared]
+    if own.is_file() or whole:
+        fields = fields.patched(read_json(own), str(own))
+        folders[str(own)] = folder
+        files.append(own)
+    if nearest:
+        fields = fields.patched(nearest, said_in)
+        folders[said_in] = folder
+    described = Fields(fields, str(files[-1]))
+    clip = place
+    if whole:
+        clip = (
+            inside_path(described, "clip", folder, CLIP_VALID)
+            if described.has("clip")
+            else folder / "clip.mp4"
+        )
+    settings = read_settings(described, folders)
+    usual = folder / KEYFRAMES if whole else beside(place, KEYFRAMES)
+    return Description(
+        place=place,
+        name=place.absolute().name if whole else clip_name(place),
+        folder=folder,
+        file=files[-1],
+        files=tuple(files),
+        clip=clip,
+        keyframes=settings.keyframes or usual,
+        fields=described,
+        settings=settings,
+        inherits=bool(shared),
+    )
+
+
+def chosen_settings(
+    description: Description, farther: ConversionSettings = NOTHING_CHOSEN
+) -> ConversionSettings:
+    """How a take is to be converted: keyframes that it has are used beside a library.
+
+    Args:
+        description: The take's.
+        farther: What counts where the take and its shoots say nothing.
+    """
+    settings = description.settings.over(farther)
+    if settings.library is not None and settings.keyframes is None and description.keyframes.exists():
+        return replace(settings, keyframes=description.keyframes)
+    return settings
+
+
+def _own_file(place: Path) -> Path:
+    """A take's own file, whether it is there or not."""
+    if place.is_dir():
+        images = not (place / OWN).exists() and any(is_image(file) for file in place.iterdir())
+        return beside(place, OWN) if images else place / OWN
+    if not place.exists():
+        raise InputError(f"{place}: no such folder; a take is a folder that holds {OWN}")
+    return beside(place, OWN)
+
+
+def beside(place: Path, ending: str) -> Path:
+    """The file that says more of a mere clip: `NAME.take.json` or `NAME.keyframes.json`."""
+    return place.with_name(f"{clip_name(place)}.{ending}")
+
+
+def clip_name(place: Path) -> str:
+    """What people call a mere clip: its name without an ending, or that of its folder of images."""
+    return place.name if place.is_dir() else place.stem

@@ -1,0 +1,57 @@
+"""`shoot.json`: what all takes below its folder have in common."""
+
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.inherited import COMMENT
+from ..files.json_file import read_json, shown
+
+NAME = "shoot.json"
+SCHEMA_VERSION = 1
+LARGEST_BYTES = 2**20
+SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+"""Fields of `take.json` that takes may inherit."""
+SETTINGS = ("library", "floor_m", "method", "pictures")
+"""Fields that say how takes are converted."""
+KNOWN = ("schema_version", "root", *SHARED, *SETTINGS)
+
+
+def read_shoot_file(path: Path) -> dict[str, Any]:
+    """The fields of one `shoot.json`; what they hold is checked where a take uses them.
+
+    Raises:
+        InputError: The file is unusable, of a newer Keymark, or has a field that is not known.
+    """
+    values = read_json(path, LARGEST_BYTES)
+    fields = Fields(values, str(path))
+    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
+    if fields.has("schema_version"):
+        version = fields.whole("schema_version", 1, 10**6)
+        if version > SCHEMA_VERSION:
+            raise InputError(
+                f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}"
+            )
+    if not isinstance(values.get("root", False), bool):
+        raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
+    return {name: value for name, value in values.items() if name not in ("schema_version", "root")}
+
+
+def shoot_files(folder: Path) -> list[Path]:
+    """Every `shoot.json` that takes in a folder inherit from, the farthest first.
+
+    They are looked for in the folder and all above it, up to one that says `"root": true`.
+
+    Raises:
+        InputError: One that is found cannot be read.
+    """
+    found: list[Path] = []
+    absolute = folder.absolute()
+    for place in (absolute, *absolute.parents):
+        file = place / NAME
+        if file.is_file():
+            found.append(file)
+            if read_json(file, LARGEST_BYTES).get("root") is True:
+                break
+    return found[::-1]
