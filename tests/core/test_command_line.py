@@ -139,7 +139,7 @@ def test_json_is_one_object_and_quiet_is_silence(
     assert convert(take, out, *FAST, "--json") == 0
     said = json.loads(capsys.readouterr().out)
     assert said["frames"] == FRAMES and said["keyframes"][0] == 1 and said["notes"] == []
-    assert all(Path(file).is_file() for file in said["files"]) and len(said["files"]) == 3
+    assert all(Path(file).is_file() for file in said["files"]) and len(said["files"]) == 4
     assert said["seconds"]["total"] >= said["seconds"]["Following the markers"] > 0.0
     assert convert(take, out, *FAST, "--quiet") == 0
     assert capsys.readouterr() == ("", "")
