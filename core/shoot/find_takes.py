@@ -16,7 +16,8 @@ MOST_TAKES = 100_000
 def find_takes(folder: Path, without: Path | None = None) -> Shoot:
     """Find every take below a folder.
 
-    Takes are folders with `take.json`, and, where a `shoot.json` describes them, videos and folders of images.
+    Takes are folders with `take.json`, and, where a `shoot.json` describes them, videos and folders of
+    images.
     Inside a take nothing else is looked for, nor in hidden folders, nor behind links to folders.
 
     Args:

@@ -14,7 +14,7 @@ class ShootTake:
     """One take of a shoot, as it was found; nothing of it has been read yet."""
 
     name: str
-    """Its way from the shoot's folder, with slashes, without a clip's ending; results lie under the same one."""
+    """Its way from the shoot's folder, with slashes, without a clip's ending; results lie under the same."""
     place: Path
     """The take's folder, or the clip."""
     nearest: Mapping[str, Any] | None = None
