@@ -18,7 +18,7 @@ DEEPEST = 64
 """Folders below each other that are looked through: more are a circle that a file system has made."""
 
 
-def find_takes(folder: Path, without: Path | None = None) -> Shoot:
+def find_takes(folder: Path, without: Path | None = None, undescribed: bool = False) -> Shoot:
     """Find every take below a folder.
 
     Takes are folders with `take.json`, and, where a `shoot.json` describes them, videos and folders of
@@ -28,6 +28,7 @@ def find_takes(folder: Path, without: Path | None = None) -> Shoot:
     Args:
         folder: The shoot's folder.
         without: A folder that is left out with all in it, as that of the results.
+        undescribed: Whether clips count that no `shoot.json` describes yet.
 
     Raises:
         InputError: There is no such folder, it cannot be read, it holds no take, or two takes of one name.
@@ -37,7 +38,7 @@ def find_takes(folder: Path, without: Path | None = None) -> Shoot:
             f"{folder}: no such folder; a shoot is a folder of takes, or a list of them (.jsonl)"
         )
     search = _Search(folder, None if without is None else os.path.realpath(without))
-    search.look_through(folder, described=bool(shoot_files(folder)))
+    search.look_through(folder, described=undescribed or bool(shoot_files(folder)))
     if not search.takes:
         raise InputError(
             f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes"

@@ -26,7 +26,7 @@ def read_take_list(path: Path) -> Shoot:
     """Read a list of takes; what its fields hold is checked where each take uses them.
 
     Args:
-        path: The list, UTF-8. The takes' paths are relative to its folder, those in other fields to the take's.
+        path: The list, UTF-8. Takes are relative to its folder, paths in a take's own fields to the take's.
 
     Raises:
         InputError: It cannot be read, is too large, holds no take, or a line is no object or has an unknown
