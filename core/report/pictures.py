@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,18 +10,24 @@ from ..footage.clips.clip import Clip
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take
-from .canvas import write_png
+from .canvas import Image, write_jpg, write_png
 from .contact_sheet import chosen_frames
+from .film_strip import PICTURES as STRIP_FRAMES
+from .film_strip import film_strip
 from .match_sheet import match_sheet, shown_keyframes
 from .overlay_sheet import overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
 
 VIEWS = ("front", "side", "top")
-PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS))
+STRIP = "strip.jpg"
+"""The one that stands for the take in a list of many."""
+PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRIP)
 """Names of the pictures."""
 MATCHES = "matches.png"
 """Another, where keyframes were matched with a library."""
+LARGEST_PX = 1280
+"""Longer side of the frames that are kept to be drawn on; a dozen as large as films come fill the memory."""
 
 
 def write_pictures(
@@ -46,8 +53,10 @@ def write_pictures(
     frames = chosen_frames(len(motion.time_s))
     matched = any(keyframe.matched is not None for keyframe in take.keyframes)
     keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
-    wanted = sorted({*frames, *keyed})
-    shown = dict(Clip.open(take.clip, fps=take.fps).source.at(wanted))
+    in_strip = chosen_frames(len(motion.time_s), STRIP_FRAMES)
+    wanted = sorted({*frames, *in_strip, *keyed})
+    source = Clip.open(take.clip, fps=take.fps).source
+    shown = {frame: _reduced(image) for frame, image in source.at(wanted)}
     pictures = {
         "speed.png": speed_plot(speed, motion.keyframe_indices, motion.frame_start),
         "overlay.png": overlay_sheet(take, motion, tracks, {frame: shown[frame] for frame in frames}),
@@ -57,4 +66,15 @@ def write_pictures(
         pictures[MATCHES] = match_sheet(take, shown)
     for name, picture in pictures.items():
         write_png(str(folder / name), picture)
-    return tuple(folder / name for name in pictures)
+    write_jpg(str(folder / STRIP), film_strip(take, motion, {frame: shown[frame] for frame in in_strip}))
+    matches = (MATCHES,) if matched else ()
+    return tuple(folder / name for name in (*PICTURES, *matches))
+
+
+def _reduced(image: Image) -> Image:
+    """A frame, smaller where it is larger than any picture needs."""
+    share = LARGEST_PX / max(image.shape[:2])
+    if share >= 1.0:
+        return image
+    width, height = (max(round(share * length), 1) for length in image.shape[1::-1])
+    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), dtype=np.uint8)
