@@ -6,16 +6,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take
-from .canvas import Image, write_jpg, write_png
+from .canvas import SCALE, Image, write_jpg, write_png
 from .contact_sheet import chosen_frames
 from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import film_strip
 from .match_sheet import match_sheet, shown_keyframes
-from .overlay_sheet import overlay_sheet
+from .overlay_sheet import CELL_WIDTH, overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
 
@@ -26,8 +27,6 @@ PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRI
 """Names of the pictures."""
 MATCHES = "matches.png"
 """Another, where keyframes were matched with a library."""
-LARGEST_PX = 1280
-"""Longer side of the frames that are kept to be drawn on; a dozen as large as films come fill the memory."""
 
 
 def write_pictures(
@@ -56,25 +55,30 @@ def write_pictures(
     in_strip = chosen_frames(len(motion.time_s), STRIP_FRAMES)
     wanted = sorted({*frames, *in_strip, *keyed})
     source = Clip.open(take.clip, fps=take.fps).source
-    shown = {frame: _reduced(image) for frame, image in source.at(wanted)}
+    shown = {frame: _as_shown(image) for frame, image in source.at(wanted)}
+    found = {frame: shown[frame] for frame in frames if frame in shown}
+    if not found:
+        raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     pictures = {
         "speed.png": speed_plot(speed, motion.keyframe_indices, motion.frame_start),
-        "overlay.png": overlay_sheet(take, motion, tracks, {frame: shown[frame] for frame in frames}),
+        "overlay.png": overlay_sheet(take, motion, tracks, found),
         **{f"{view}.png": view_sheet(view, motion, take.camera, frames) for view in VIEWS},
     }
     if matched:
         pictures[MATCHES] = match_sheet(take, shown)
     for name, picture in pictures.items():
         write_png(str(folder / name), picture)
-    write_jpg(str(folder / STRIP), film_strip(take, motion, {frame: shown[frame] for frame in in_strip}))
+    strip = {frame: shown[frame] for frame in in_strip if frame in shown}
+    write_jpg(str(folder / STRIP), film_strip(take, motion, strip))
     matches = (MATCHES,) if matched else ()
     return tuple(folder / name for name in (*PICTURES, *matches))
 
 
-def _reduced(image: Image) -> Image:
-    """A frame, smaller where it is larger than any picture needs."""
-    share = LARGEST_PX / max(image.shape[:2])
-    if share >= 1.0:
+def _as_shown(image: Image) -> Image:
+    """A frame no wider than a sheet draws it: dozens of whole ones of an 8K clip would fill the memory."""
+    height, width = image.shape[:2]
+    most = CELL_WIDTH * SCALE
+    if width <= most:
         return image
-    width, height = (max(round(share * length), 1) for length in image.shape[1::-1])
-    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    size = (most, max(1, round(most * height / width)))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
