@@ -1,10 +1,11 @@
 """The head of a batch's page: how many, and what deserves attention first."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from ..shoot.outcome import Outcome, Status
 from .summary_text import counted, duration, isolated, percent
-from .summary_verdict import Verdict
+from .summary_verdict import Verdict, result
 
 NAMED = 3
 """So many takes are named in a sentence."""
@@ -13,11 +14,7 @@ NAMED = 3
 def counts(outcomes: Sequence[Outcome]) -> str:
     """The numbers of takes by status, and how much footage has been converted."""
     number = {status: sum(outcome.status is status for outcome in outcomes) for status in Status}
-    done = [
-        outcome.record
-        for outcome in outcomes
-        if outcome.record is not None and outcome.status in (Status.CONVERTED, Status.UNCHANGED)
-    ]
+    done = [record for record in map(result, outcomes) if record is not None]
     figures = [("takes", len(outcomes)), *((status.value, number[status]) for status in Status)]
     figures.append(("frames", sum(record.frames for record in done)))
     length = duration(sum(record.frames / record.fps for record in done))
@@ -37,7 +34,7 @@ def first_things(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str
         found.get(verdict, ()) for verdict in (Verdict.FAILED, Verdict.POOR, Verdict.FAIR, Verdict.WAITING)
     )
     if failed:
-        said.append(f"{counted(len(failed), 'take')} failed: {_named(failed, number)}.")
+        said.append(f"{counted(len(failed), 'take')} failed: {_named(failed, number)}.{_shared(failed)}")
     if poor:
         said.append(f"{_are(poor, 'poor')} and want keyframes: {_named(poor, number)}.")
     if fair:
@@ -65,7 +62,16 @@ def _named(outcomes: Sequence[Outcome], number: Mapping[str, int]) -> str:
     return ", ".join(names) + (f" and {more} more" if more > 0 else "")
 
 
-def _share(outcome: Outcome) -> str:
-    if outcome.status is Status.FAILED or outcome.record is None or outcome.record.confidence is None:
+def _shared(failed: Sequence[Outcome]) -> str:
+    """The sentence that several takes failed with: one mistake in a shoot fails all its takes."""
+    sentence, count = Counter(outcome.error or "" for outcome in failed).most_common(1)[0]
+    if count == 1 or not sentence:
         return ""
-    return f" ({percent(outcome.record.confidence)})"
+    return f" {'All' if count == len(failed) else count} for one reason: {isolated(sentence)}."
+
+
+def _share(outcome: Outcome) -> str:
+    record = result(outcome)
+    if record is None or record.confidence is None:
+        return ""
+    return f" ({percent(record.confidence)})"

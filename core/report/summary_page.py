@@ -14,7 +14,7 @@ from .summary_head import counts, first_things
 from .summary_row import COLUMNS, SIGNS, kind, row
 from .summary_script import SCRIPT
 from .summary_style import STYLE
-from .summary_text import counted, escaped, isolated
+from .summary_text import counted, escaped, isolated, percent
 from .summary_verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
 HEADINGS = {
@@ -22,7 +22,7 @@ HEADINGS = {
     Verdict.POOR: ("Poor", "Pose the frames that are named and convert again."),
     Verdict.FAIR: ("Fair", "Look at the frames that are named; a few keyframes there make them good."),
     Verdict.UNJUDGED: ("Not judged", "The method does not say how sure it is."),
-    Verdict.GOOD: ("Good", "Nothing needs to be done."),
+    Verdict.GOOD: ("Good", "Usable as they are; the frames that are named would gain most from a keyframe."),
     Verdict.WAITING: ("Waiting", "Their turn has not come, or the batch was interrupted: run it again."),
 }
 
@@ -81,7 +81,7 @@ def _section(verdict: Verdict, outcomes: Sequence[Outcome], output: Path, number
     rows = "\n".join(row(outcome, output, number[outcome.take]) for outcome in outcomes)
     return (
         f'<tbody role="rowgroup" id="{kind(verdict)}"><tr role="row" class="section">'
-        f'<th role="columnheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind(verdict)}">'
+        f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind(verdict)}">'
         f'<span aria-hidden="true">{SIGNS[verdict]}</span> {word} <span class="count">{len(outcomes)}</span>'
         f"</h2> <small>{advice}</small></th></tr>\n{rows}</tbody>"
     )
@@ -105,7 +105,7 @@ def _tools(found: dict[Verdict, list[Outcome]]) -> str:
 
 
 def _legend() -> str:
-    good, fair, weakest = (f"{share:.0%}".replace("%", " %") for share in (GOOD, FAIR, GOOD_WEAKEST))
+    good, fair, weakest = (percent(share) for share in (GOOD, FAIR, GOOD_WEAKEST))
     return (
         '<section id="legend"><h2>How to read this page</h2><p>Confidence is the expected share of the '
         "body\u2019s joints that lie within a fortieth of the performer\u2019s height of their true places, "

@@ -1,6 +1,6 @@
 """One take of a batch as a row of the page that a supervisor reads."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
 from ..conversion_record import ConversionRecord
@@ -9,7 +9,7 @@ from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import SIZE as STRIP_SIZE
 from .pictures import STRIP
 from .summary_text import address, counted, duration, escaped, isolated, percent, way_to
-from .summary_verdict import Verdict, judged, verdict
+from .summary_verdict import Verdict, result, verdict
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
@@ -37,12 +37,12 @@ def row(outcome: Outcome, output: Path, number: int) -> str:
         output: Where the page lies.
         number: The take's place in the order of names, which its anchor is made of.
     """
-    way, record = way_to(outcome.folder, output), outcome.record
-    to_do = "".join(_to_do(outcome))
+    way, record = way_to(outcome.folder, output), result(outcome)
     if record is None:
-        cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{to_do}</td>'
+        cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{_no_result(outcome)}</td>'
     else:
-        shown = (_footage(way, record), _confidence(record), to_do, _files(way, record))
+        found = verdict(outcome)
+        shown = (_footage(way, record), _confidence(record, found), _to_do(record), _files(way, record))
         cells = "".join(f'<td role="cell">{cell}</td>' for cell in shown)
     believed = "" if record is None or record.confidence is None else f"{record.confidence:.4f}"
     return (
@@ -92,8 +92,7 @@ def _made_from(record: ConversionRecord) -> str:
     return f"{' and '.join(counts) or 'no'} {keyframes}{library}, method {escaped(record.method)}"
 
 
-def _confidence(record: ConversionRecord) -> str:
-    found = judged(record.confidence, record.weakest)
+def _confidence(record: ConversionRecord, found: Verdict) -> str:
     word = f'<b class="{kind(found)}"><span aria-hidden="true">{SIGNS[found]}</span> {found.value}</b>'
     if record.confidence is None:
         return word
@@ -111,21 +110,21 @@ def _confidence(record: ConversionRecord) -> str:
     )
 
 
-def _to_do(outcome: Outcome) -> Iterator[str]:
-    record = outcome.record
+def _no_result(outcome: Outcome) -> str:
+    said = ""
     if outcome.status is Status.FAILED:
-        yield f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
-    if record is None:
-        return
-    if verdict(outcome) in (Verdict.FAILED, Verdict.WAITING):
-        yield "<p><small>What is shown here is an earlier result, which is still in its folder.</small></p>"
-    if record.weak_frames:
-        yield f"<p>Worth a keyframe: {_frames(record.weak_frames)}</p>"
+        said = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
+    if outcome.record is not None:
+        said += "<p><small>A result of an earlier input is still in its folder.</small></p>"
+    return said
+
+
+def _to_do(record: ConversionRecord) -> str:
+    said = f"<p>Worth a keyframe: {_frames(record.weak_frames)}</p>" if record.weak_frames else ""
     notes = [f"<li>{isolated(note)}</li>" for note in record.notes[:MOST_NAMED]]
     if len(record.notes) > MOST_NAMED:
         notes.append(f"<li>{len(record.notes) - MOST_NAMED} more in conversion.json</li>")
-    if notes:
-        yield f"<ul>{''.join(notes)}</ul>"
+    return said + (f"<ul>{''.join(notes)}</ul>" if notes else "")
 
 
 def _frames(weak: Sequence[int]) -> str:

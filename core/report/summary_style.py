@@ -65,11 +65,15 @@ input,select{font:inherit;color:var(--ink);background:var(--card);border:1px sol
 border-radius:4px;padding:.2rem .5rem;margin-left:.3rem}
 input{width:15rem;max-width:100%}
 output{color:var(--soft);font-variant-numeric:tabular-nums}
-table{width:100%;border-collapse:collapse}
+table{width:100%;table-layout:fixed;border-collapse:collapse}
 caption{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%);white-space:nowrap}
 thead th{text-align:left;font-weight:400;font-size:.84rem;color:var(--soft);padding:.9rem .7rem .3rem}
+thead th:nth-child(1){width:14%}
+thead th:nth-child(2){width:31%}
+thead th:nth-child(3){width:11%}
+thead th:nth-child(5){width:14%}
 td,tbody th{vertical-align:top;text-align:left;font-weight:400;padding:.8rem .7rem;
-border-top:1px solid var(--line)}
+border-top:1px solid var(--line);overflow-wrap:anywhere}
 th:first-child{padding-left:0}
 td:last-child{padding-right:0}
 .section th{padding:1.9rem 0 .5rem;border-top:0}
@@ -77,14 +81,11 @@ td:last-child{padding-right:0}
 .count{font-weight:400;color:var(--soft)}
 tr[id]{background:var(--paper)}
 tr[id]:target{background:var(--card);box-shadow:0 0 0 2px var(--link)}
-tr[id] th{width:13%;min-width:9rem;overflow-wrap:anywhere}
-th bdi{font-weight:600}
 th a{color:inherit;text-decoration:none}
 th a:hover{text-decoration:underline}
+th bdi{font-weight:600}
 .folder{font-weight:400;color:var(--soft)}
-td:nth-child(2):not([colspan]){width:30rem}
-td:nth-child(3){width:9.5rem}
-td:nth-child(5){width:12.5rem;overflow-wrap:anywhere;font-size:.9rem}
+td:nth-child(5){font-size:.9rem}
 td small,th small{display:block}
 .section small{display:inline}
 img{display:block;width:100%;height:auto;margin-bottom:.25rem;border-radius:3px;background:var(--track)}
@@ -95,7 +96,6 @@ svg .tick{fill:var(--ink)}
 .share{font-size:1.2rem;font-weight:600;font-variant-numeric:tabular-nums}
 td p{margin:0 0 .35rem}
 td ul{margin:0;padding-left:1.1rem;font-size:.9rem;color:var(--soft)}
-td ul,td p{overflow-wrap:anywhere}
 td .error{padding:.45rem .7rem;background:var(--wash);border-left:3px solid var(--failed);border-radius:3px}
 b.failed,h2.failed,a.failed,svg.failed{color:var(--failed)}
 b.poor,h2.poor,a.poor,svg.poor{color:var(--poor)}
@@ -106,10 +106,7 @@ b.not-judged,b.waiting{color:var(--soft)}
 #legend p{max-width:60rem;color:var(--soft);margin:.5rem 0 0}
 ol{columns:17rem;column-gap:2.5rem;padding-left:2.6rem;margin:.7rem 0 0;overflow-wrap:anywhere}
 li::marker{color:var(--soft);font-variant-numeric:tabular-nums}
-@media (max-width:1180px){
-td:nth-child(2):not([colspan]){width:34%}
-}
-@media (max-width:860px){
+@media (max-width:960px){
 body{padding:1.1rem 1rem 2rem}
 html{scroll-padding-top:1rem}
 nav{position:static}
@@ -120,7 +117,6 @@ tr[hidden],tbody[hidden]{display:none}
 tr[id]{padding:.9rem 0;border-top:1px solid var(--line)}
 tr[id] th,td{padding:.25rem 0;border:0}
 td:empty{display:none}
-tr[id] th,td:nth-child(n){width:auto;min-width:0}
 svg{max-width:22rem}
 }
 @media print{
@@ -129,7 +125,6 @@ body{max-width:none;padding:0;font-size:9pt;background:none}
 nav,#names{display:none}
 tr[id],.first,#legend{break-inside:avoid}
 .section{break-after:avoid}
-td:nth-child(2):not([colspan]){width:36%}
 td:nth-child(5),thead th:nth-child(5){display:none}
 a{color:inherit;text-decoration:none}
 svg{print-color-adjust:exact;-webkit-print-color-adjust:exact}

@@ -50,7 +50,7 @@ def address(*parts: str) -> str:
 
 def percent(share: float) -> str:
     """A share from 0 to 1, rounded down: what falls short of a threshold shall not seem to reach it."""
-    return f"{int(100.0 * share + 1e-9)} %"
+    return f"{int(100.0 * share + 1e-9)}\u00a0%"
 
 
 def duration(seconds: float) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from enum import StrEnum
 
+from ..conversion_record import ConversionRecord
 from ..estimate.weak_frames import WEAK_CONFIDENCE
 from ..shoot.outcome import Outcome, Status
 
@@ -26,22 +27,23 @@ class Verdict(StrEnum):
     WAITING = "waiting"
 
 
+def result(outcome: Outcome) -> ConversionRecord | None:
+    """What is recorded of a take's result; None where there is none, or only one of an earlier input."""
+    return outcome.record if outcome.status in (Status.CONVERTED, Status.UNCHANGED) else None
+
+
 def verdict(outcome: Outcome) -> Verdict:
-    """How a take stands."""
+    """How a take stands: if it has a result, by the confidence of its frames and of the weakest twentieth."""
     if outcome.status is Status.FAILED:
         return Verdict.FAILED
-    if outcome.status is Status.WAITING or outcome.record is None:
+    record = result(outcome)
+    if record is None:
         return Verdict.WAITING
-    return judged(outcome.record.confidence, outcome.record.weakest)
-
-
-def judged(confidence: float | None, weakest: float | None) -> Verdict:
-    """Good, fair or poor, by the mean confidence of the frames and that of the weakest twentieth."""
-    if confidence is None:
+    if record.confidence is None:
         return Verdict.UNJUDGED
-    if confidence >= GOOD and (weakest is None or weakest >= GOOD_WEAKEST):
+    if record.confidence >= GOOD and (record.weakest is None or record.weakest >= GOOD_WEAKEST):
         return Verdict.GOOD
-    return Verdict.FAIR if confidence >= FAIR else Verdict.POOR
+    return Verdict.FAIR if record.confidence >= FAIR else Verdict.POOR
 
 
 def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
@@ -53,6 +55,5 @@ def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
 
 
 def _urgency(outcome: Outcome) -> tuple[float, str]:
-    converted = outcome.status in (Status.CONVERTED, Status.UNCHANGED)
-    believed = outcome.record.confidence if converted and outcome.record is not None else None
-    return (0.0 if believed is None else believed, outcome.take)
+    record = result(outcome)
+    return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)

@@ -9,7 +9,8 @@ from ....core.conversion_record import NAME as RECORD
 from ....core.files.json_file import write_whole
 from ....core.report.summary_page import summary_page
 from ....core.report.summary_text import way_to
-from ....core.shoot.outcome import Outcome, Status
+from ....core.report.summary_verdict import result
+from ....core.shoot.outcome import Outcome
 from ....core.shoot.shoot import Shoot
 
 LINES, PAGE = "summary.jsonl", "summary.html"
@@ -46,7 +47,7 @@ def line(outcome: Outcome, output: Path) -> dict[str, Any]:
         "error": outcome.error,
         "seconds": None if outcome.seconds is None else round(outcome.seconds, 3),
     }
-    record = outcome.record if outcome.status in (Status.CONVERTED, Status.UNCHANGED) else None
+    record = result(outcome)
     for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
         said[name] = None if record is None else getattr(record, name)
     for name in ("method", "library", "keyframes", "matched"):
