@@ -139,7 +139,7 @@ def _batch(arguments: argparse.Namespace) -> None:
 
 
 def _merge(arguments: argparse.Namespace) -> None:
-    from .merge import merge_command  # type: ignore[import-not-found]
+    from .merge import merge_command
 
     merge_command(arguments)
 
