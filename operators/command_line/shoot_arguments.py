@@ -104,8 +104,8 @@ def _add_batch(commands: "Commands[LineParser]") -> None:
         "--failed-takes",
         choices=("fail", "pass"),
         default="fail",
-        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm goes "
-        "on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm "
+        "goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
     )
 
 
