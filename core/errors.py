@@ -1,4 +1,4 @@
-"""What can go wrong, in two kinds: the input is unusable, or the conversion failed."""
+"""What can go wrong: the input is unusable, the conversion failed, or another is at work in the same place."""
 
 
 class KeymarkError(Exception):
@@ -11,3 +11,7 @@ class InputError(KeymarkError):
 
 class ConversionError(KeymarkError):
     """The input was usable, yet no motion could be computed or written from it."""
+
+
+class BusyError(KeymarkError):
+    """Another process is writing there just now; later it would work."""
