@@ -1,4 +1,4 @@
-"""What can go wrong: the input is unusable, the conversion failed, or another is at work in the same place."""
+"""What can go wrong: the input is unusable, the conversion failed, or another works there."""
 
 
 class KeymarkError(Exception):

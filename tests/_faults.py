@@ -1,4 +1,4 @@
-"""Processes that die, and disks that fill up, at a chosen call of the operating system, within one process."""
+"""Processes that die, and disks that fill up, at a chosen call of the operating system."""
 
 import errno
 import io

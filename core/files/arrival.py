@@ -63,7 +63,7 @@ class Arrival:
 
 
 def found_arrival(empty: Arrival) -> Arrival | None:
-    """The arrival that another process has begun and not ended; None where there is none, or not all of it."""
+    """The arrival that another process has begun and not ended; None where there is none, or not all."""
     try:
         said = read_json(empty.paper, LARGEST_BYTES)
         made, gone, aside, seal = (said[name] for name in ("made", "gone", "aside", "seal"))

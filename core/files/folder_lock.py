@@ -1,6 +1,6 @@
-"""Locks on places in the file system: one process, and one thread of it, at a time; a lock dies with its process.
+"""Locks on places in the file system: one process and one thread at a time; a lock dies with its process.
 
-A lock is an empty hidden file beside what it guards. That the file is there means nothing: only holding it does.
+A lock is an empty hidden file beside what it guards. That it is there means nothing: only holding it does.
 """
 
 import errno
@@ -35,7 +35,7 @@ else:
 
 
 def hidden_name(name: str) -> str:
-    """The beginning of the names of all hidden files that belong to a place: short, whatever its own name is."""
+    """What the names of all hidden files of a place begin with: short, whatever its own name is."""
     if sys.platform in ("win32", "darwin"):  # where names that differ in case are one
         name = unicodedata.normalize("NFC", name).casefold()
     return HIDDEN + hashlib.sha256(os.fsencode(name)).hexdigest()[:DIGITS]
@@ -72,7 +72,7 @@ def _acquired(file: Path, busy: str, wait: bool) -> int:
         try:
             descriptor = _opened(file)
         except (FileNotFoundError, PermissionError) as error:
-            # Another has just removed the file, or an empty folder that it lies in; Windows then forbids both.
+            # Another has just removed the file, or an empty folder above; Windows then forbids both.
             passing = sys.platform == "win32" or isinstance(error, FileNotFoundError)
             if not passing or tried == TRIES - 1:
                 raise

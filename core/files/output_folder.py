@@ -100,8 +100,14 @@ def _tidy(empty: Arrival) -> None:
             shutil.rmtree(rest)  # which could not be removed: this time say why
 
 
+def real_path(path: Path) -> Path:
+    """A path from the root, links resolved, with one slash before it: two mean something to Blender."""
+    real = os.path.realpath(path)
+    return Path("/" + real.lstrip("/") if real.startswith("//") else real)
+
+
 def _target(path: Path) -> Path:
-    target = Path(os.path.realpath(path))
+    target = real_path(path)
     if os.path.lexists(target) and not target.is_dir():
         raise FileExistsError(errno.EEXIST, "is a file; the output must be a folder, new or old")
     return target

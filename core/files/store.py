@@ -86,7 +86,7 @@ class Store:
                 state = path.stat()
                 if path.suffix == SUFFIX:
                     found.append((state.st_mtime, state.st_size, path))
-                elif path.name.startswith(HIDDEN) and path.name.endswith(WORK):
+                elif path.name.startswith(HIDDEN) and path.is_dir():
                     _remove_abandoned(path)
         total = sum(size for _, size, _ in found)
         for _, size, path in sorted(found):

@@ -81,7 +81,7 @@ def calls_of(folder: Path, kind: str) -> int:
 
 @KINDS
 def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_path: Path) -> None:
-    """Wherever a process dies, what a reader finds is whole or not taken for it, and the next run mends it."""
+    """Wherever a process dies, what a reader finds is whole or not taken for it; the next run mends it."""
     wanted = expected(tmp_path / "wanted", kind)
     total = calls_of(tmp_path / "counted", kind)
     assert total > 25
