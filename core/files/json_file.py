@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ConversionError, InputError
+from .ordinary import ordinary_size
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""
@@ -110,20 +111,18 @@ def shown(value: Any, longest: int = 60) -> str:
 
 
 def _read_text(path: Path, largest_bytes: int) -> str:
-    valid = "it must be a JSON file in UTF-8"
+    valid = "a JSON file in UTF-8"
+    size = ordinary_size(path, valid)
     try:
-        size = path.stat().st_size
         with path.open("rb") as file:
-            content = file.read(largest_bytes + 1)  # a device or a pipe has no size beforehand, or no end
+            content = file.read(largest_bytes + 1)  # it may have grown since
         if len(content) > largest_bytes:
-            found = f"{size / 2**20:.1f} MiB" if size > largest_bytes else "no end in sight"
-            raise InputError(f"{path}: has {found}; at most {largest_bytes / 2**20:g} MiB are read")
+            limit = largest_bytes / 2**20
+            raise InputError(f"{path}: has {max(size, len(content)) / 2**20:.1f} MiB; at most {limit:g} are read")
         return content.decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file; {valid}") from error
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{path}: cannot be read ({reason}); {valid}") from error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
