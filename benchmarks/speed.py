@@ -61,11 +61,14 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     began = time.perf_counter()
     load_project()
     import bpy  # noqa: F401  # loading it is part of the start-up
+    from keymark.core.shoot.description import chosen_settings, describe
     from keymark.operators.command_line.conversion import convert
 
     clock = StageClock()
     started = time.perf_counter() - began
-    result = convert(folder, output, clock)  # type: ignore[arg-type]  # it needs no more of a console
+    description = describe(folder)
+    # No more of a console is needed.
+    result = convert(description, output, clock, chosen_settings(description))  # type: ignore[arg-type]
     frames = len(result.reconstruction.motion.time_s)
     return {
         "frames": frames,

@@ -2,17 +2,19 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take
-from .canvas import write_png
+from .canvas import SCALE, Image, write_png
 from .contact_sheet import chosen_frames
 from .match_sheet import match_sheet, shown_keyframes
-from .overlay_sheet import overlay_sheet
+from .overlay_sheet import CELL_WIDTH, overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
 
@@ -47,10 +49,14 @@ def write_pictures(
     matched = any(keyframe.matched is not None for keyframe in take.keyframes)
     keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
     wanted = sorted({*frames, *keyed})
-    shown = dict(Clip.open(take.clip, fps=take.fps).source.at(wanted))
+    source = Clip.open(take.clip, fps=take.fps).source
+    shown = {frame: _as_shown(image) for frame, image in source.at(wanted)}
+    found = {frame: shown[frame] for frame in frames if frame in shown}
+    if not found:
+        raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     pictures = {
         "speed.png": speed_plot(speed, motion.keyframe_indices, motion.frame_start),
-        "overlay.png": overlay_sheet(take, motion, tracks, {frame: shown[frame] for frame in frames}),
+        "overlay.png": overlay_sheet(take, motion, tracks, found),
         **{f"{view}.png": view_sheet(view, motion, take.camera, frames) for view in VIEWS},
     }
     if matched:
@@ -58,3 +64,13 @@ def write_pictures(
     for name, picture in pictures.items():
         write_png(str(folder / name), picture)
     return tuple(folder / name for name in pictures)
+
+
+def _as_shown(image: Image) -> Image:
+    """A frame no wider than a sheet draws it: dozens of whole ones of an 8K clip would fill the memory."""
+    height, width = image.shape[:2]
+    most = CELL_WIDTH * SCALE
+    if width <= most:
+        return image
+    size = (most, max(1, round(most * height / width)))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)

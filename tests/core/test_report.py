@@ -63,6 +63,26 @@ def test_all_pictures_are_written(take: Take, motion: Motion, tracks: RegionTrac
         assert image is not None and image.std() > 5.0
 
 
+def test_large_frames_are_kept_no_larger_than_drawn(
+    take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a clip in 5K the sheet gets frames of twice its cells' width, in the clip's proportions."""
+    images = tmp_path / "images"
+    images.mkdir()
+    for index in range(2):
+        cv2.imwrite(str(images / f"{index:04d}.jpg"), np.full((2880, 5120, 3), 90, dtype=np.uint8))
+    sizes = []
+
+    def sheet(*given: object) -> np.ndarray:
+        sizes.extend(image.shape[:2] for image in given[-1].values())
+        return np.zeros((8, 8, 3), dtype=np.uint8)
+
+    monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", sheet)
+    speed = np.linspace(0.0, 9.0, FRAMES)
+    write_pictures(tmp_path / "report", replace(take, clip=images), motion, tracks, speed)
+    assert sizes and set(sizes) == {(450, 800)}
+
+
 def test_the_skeleton_lies_on_the_projected_joints(take: Take, motion: Motion, tracks: RegionTracks) -> None:
     """In the sheet's first cell the left elbow has the left's colour where the camera projects it."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
