@@ -15,7 +15,9 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
+from ..core.files.letters import seen
 from .command_line.arguments import build_parser
+from .command_line.blender_silence import codec_silence
 from .command_line.line_parser import UsageError, program_name
 
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
@@ -41,7 +43,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = build_parser().parse_args(words)
         arguments.started = started
-        with _terminable():
+        with _terminable(), codec_silence(debug):
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version
@@ -66,7 +68,7 @@ def _say(sentence: str, status: int, debug: bool) -> int:
     """Write one line on standard error, whatever the sentence holds."""
     if debug:
         traceback.print_exc()
-    line = f"{program_name()}: {' '.join(sentence.split())}"
+    line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
     encoding = sys.stderr.encoding or "utf-8"
     print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
     return status

@@ -2,10 +2,12 @@
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
+from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
@@ -13,8 +15,19 @@ from .ordinary import ordinary_size
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""
+DEEPEST = 50
+"""Levels of lists and objects; no file of ours has ten."""
+MOST_LISTS = 4 * 10**6
+"""Lists and objects of a file, each of which takes many times its two letters once it is read."""
 MOST_DIGITS = 15
 """Whole numbers of more digits have no exact float64."""
+
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+_NO_BRACKETS = re.compile(r"[^\[\]{}]+")
+_SHORT = Repr()
+"""Looks at no more of a value than is shown."""
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 8, 400, 400
+_SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 
 
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
@@ -42,8 +55,10 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
         where: What sentences about it begin with.
 
     Raises:
-        InputError: It is no JSON object, names a field twice or holds a number that is not finite.
+        InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
+            not finite.
     """
+    _check_nesting(text, where)
     try:
         value = json.loads(
             text,
@@ -57,8 +72,6 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
             f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
             "the file may be cut off or edited by mistake"
         ) from error
-    except RecursionError as error:
-        raise InputError(f"{where}: its lists and objects are nested too deeply to be read") from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
     if not isinstance(value, dict):
@@ -103,10 +116,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 def shown(value: Any, longest: int = 60) -> str:
     """A value as people can read it in a sentence: one line, cut where it is long."""
-    try:
-        text = repr(value)
-    except RecursionError:
-        text = f"a {type(value).__name__} that is nested too deeply to be shown"
+    text = _SHORT.repr(value)
     return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
@@ -118,11 +128,29 @@ def _read_text(path: Path, largest_bytes: int) -> str:
             content = file.read(largest_bytes + 1)  # it may have grown since
         if len(content) > largest_bytes:
             limit = largest_bytes / 2**20
-            raise InputError(f"{path}: has {max(size, len(content)) / 2**20:.1f} MiB; at most {limit:g} are read")
+            raise InputError(
+                f"{path}: has {max(size, len(content)) / 2**20:.1f} MiB; at most {limit:g} are read"
+            )
         return content.decode("utf-8-sig")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
+
+
+def _check_nesting(text: str, where: str) -> None:
+    """Refuse lists and objects that are too many or too deep, before room is made for them."""
+    count = text.count("[") + text.count("{")
+    if count <= DEEPEST:
+        return
+    if count > MOST_LISTS:
+        raise InputError(f"{where}: holds {count} lists and objects; at most {MOST_LISTS} are read")
+    depth = 0
+    for mark in _NO_BRACKETS.sub("", _STRING.sub("", text)):
+        depth += 1 if mark in "[{" else -1
+        if depth > DEEPEST:
+            raise InputError(
+                f"{where}: its lists and objects are nested too deeply; {DEEPEST} levels are read"
+            )
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
