@@ -81,10 +81,10 @@ class ImageSequence:
 
 def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, ...]]:
     """Return each image at the place its number says, None where one is missing, and a sentence on that."""
-    parts = [_parts(path) for path in paths]
-    if len(paths) < 2 or len({(head, tail) for head, _, tail in parts}) > 1 or parts[0][1] is None:
+    around = {stem_of_number(path) for path in paths}
+    if len(paths) < 2 or len(around) > 1 or None in around:
         return tuple(paths), ()
-    numbers = [int(number) for _, number, _ in parts if number is not None]
+    numbers = [int(number[0]) for number in map(_LAST_NUMBER.search, (path.stem for path in paths)) if number]
     if len(set(numbers)) < len(paths):
         return tuple(paths), ()
     step = math.gcd(*(number - numbers[0] for number in numbers))
@@ -148,8 +148,7 @@ def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
     """Return the numbered images of a folder without stray ones; all of them where none are numbered."""
     sequences: dict[tuple[str, str], list[Path]] = {}
     for image in images:
-        head, _, tail = _parts(image)
-        sequences.setdefault((head, tail), []).append(image)
+        sequences.setdefault(stem_of_number(image) or ("", image.name), []).append(image)
     several = sorted((found for found in sequences.values() if len(found) > 1), key=len, reverse=True)
     if not several:
         return images
@@ -167,18 +166,16 @@ def is_image(path: Path) -> bool:
     return path.suffix.lower() in _EXTENSIONS and not hidden and path.is_file()
 
 
+def stem_of_number(path: Path) -> tuple[str, str] | None:
+    """What a numbered image's name has before and behind its number; None for a name without one."""
+    number = _LAST_NUMBER.search(path.stem)
+    return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+
+
 def _siblings(path: Path) -> list[Path]:
     """Return the sequence a numbered image belongs to; an image without a number stands alone."""
-    head, number, tail = _parts(path)
-    return [path] if number is None else _numbered(path.parent, head, tail)
-
-
-def _parts(path: Path) -> tuple[str, str | None, str]:
-    """Return what comes before an image's number, the number and what follows; without one, all is tail."""
-    number = _LAST_NUMBER.search(path.stem)
-    if number is None:
-        return "", None, path.name
-    return path.stem[: number.start()], number[0], path.stem[number.end() :] + path.suffix
+    around = stem_of_number(path)
+    return [path] if around is None else _numbered(path.parent, *around)
 
 
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
