@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import MOST_PIXELS
 from ...errors import InputError
+from ...files.ordinary import ordinary_size
 
 Image = NDArray[np.uint8]
 
+LARGEST_BYTES: Final = 2**31
+"""Of one image: four times the pixels that are read, at sixteen bits."""
+MOST_IMAGES: Final = 10**6
+"""Of one folder; eleven hours of film."""
 _EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 _PATTERN = re.compile(r"(#+|%0?\d*d)")
 _LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -77,22 +85,38 @@ def read_image(path: Path) -> Image:
     dropped.
 
     Raises:
-        InputError: the file is missing or is no image that OpenCV can read.
+        InputError: the file is missing, too large, or no image that OpenCV can read.
     """
+    if ordinary_size(path, "an image") > LARGEST_BYTES:
+        raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
     try:
         data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be an image") from error
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    image = _decoded(data)
     if image is None:
-        raise InputError(f"{path}: cannot be decoded; it must be an image that OpenCV can read")
+        raise InputError(
+            f"{path}: cannot be decoded; it must be an image that OpenCV can read, of at most "
+            f"{MOST_PIXELS} pixels"
+        )
     if image.dtype == np.uint16:
-        image = np.round(image / 257.0).astype(np.uint8)
+        image = cv2.convertScaleAbs(image, alpha=1.0 / 257.0)
     elif image.dtype != np.uint8:
         image = np.round(np.clip(np.nan_to_num(image), 0.0, 1.0) * 255.0).astype(np.uint8)
-    if image.ndim == 2 or image.shape[2] == 1:
-        image = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR)
+    if image.ndim == 2 or image.shape[2] < 3:
+        image = cv2.cvtColor(
+            np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0]), cv2.COLOR_GRAY2BGR
+        )
     return np.ascontiguousarray(image[:, :, :3])
+
+
+def _decoded(data: NDArray[np.uint8]) -> NDArray[Any] | None:
+    if not data.size:
+        return None
+    try:
+        return cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+    except cv2.error:  # among them a size above what core/__init__ lets OpenCV read
+        return None
 
 
 def find_images(path: Path) -> list[Path] | None:
@@ -105,7 +129,7 @@ def find_images(path: Path) -> list[Path] | None:
         InputError: a folder or pattern without an image.
     """
     if path.is_dir():
-        found = [file for file in path.iterdir() if is_image(file)]
+        found = _limited(path, (file for file in path.iterdir() if is_image(file)))
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return sorted(found, key=_natural_key)
@@ -127,25 +151,36 @@ def is_image(path: Path) -> bool:
     return path.suffix.lower() in _EXTENSIONS and path.is_file()
 
 
+def stem_of_number(path: Path) -> tuple[str, str] | None:
+    """What a numbered image's name has before and behind its number; None for a name without one."""
+    number = _LAST_NUMBER.search(path.stem)
+    return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+
+
 def _siblings(path: Path) -> list[Path]:
     """Return the sequence a numbered image belongs to; an image without a number stands alone."""
-    number = _LAST_NUMBER.search(path.stem)
-    if number is None:
-        return [path]
-    return _numbered(path.parent, path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+    around = stem_of_number(path)
+    return [path] if around is None else _numbered(path.parent, *around)
 
 
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
     name = re.compile(re.escape(head) + r"\d+" + re.escape(tail) + "$")
     if not folder.is_dir():
         return []
-    return sorted((file for file in folder.iterdir() if name.match(file.name)), key=_natural_key)
+    return sorted(_limited(folder, (f for f in folder.iterdir() if name.match(f.name))), key=_natural_key)
+
+
+def _limited(folder: Path, images: Iterator[Path]) -> list[Path]:
+    found = list(islice(images, MOST_IMAGES + 1))
+    if len(found) > MOST_IMAGES:
+        raise InputError(f"{folder}: holds more than {MOST_IMAGES} images; name a folder of fewer")
+    return found
 
 
 def _natural_key(path: Path) -> list[tuple[int, int, str]]:
     """Order names as people count: digits by their value, the rest as text."""
     parts = re.split(r"(\d+)", path.name.lower())
-    return [(1, int(part), part) if part.isdigit() else (0, 0, part) for part in parts]
+    return [(1, int(part), part) if part.isdecimal() else (0, 0, part) for part in parts]
 
 
 def _names() -> str:

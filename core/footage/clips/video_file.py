@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from .container import check_container, check_pixels
 
 Image = NDArray[np.uint8]
 
@@ -38,12 +39,12 @@ class VideoFile:
         """Open the file and decode its first frame.
 
         Raises:
-            InputError: it is empty, not a video, or broken before the first frame.
+            InputError: it is empty, not a video, too large, or broken before the first frame.
         """
         self.path = path
-        if path.is_file() and path.stat().st_size == 0:
-            raise InputError(f"{path}: the file is empty; it must be a video")
+        check_container(path)
         with self._capture() as capture:
+            check_pixels(path, capture.get(cv2.CAP_PROP_FRAME_WIDTH), capture.get(cv2.CAP_PROP_FRAME_HEIGHT))
             found, image = capture.read()
             if not found or image is None:
                 raise InputError(f"{path}: not one frame can be decoded; the file is damaged or cut off")
@@ -156,11 +157,12 @@ class VideoFile:
 
 def _open_quietly(path: Path) -> cv2.VideoCapture:
     """Open a file without OpenCV's own complaints on standard error, where our one sentence shall stand."""
+    name = os.path.abspath(path)  # where a name begins with a word and a colon, that is a protocol to FFmpeg
     level = cv2.getLogLevel()
     cv2.setLogLevel(0)
     try:
-        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
-        return capture if capture.isOpened() else cv2.VideoCapture(str(path), cv2.CAP_ANY)
+        capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
+        return capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
     finally:
         cv2.setLogLevel(level)
 
