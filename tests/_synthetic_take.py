@@ -1,6 +1,7 @@
 """A small take made on the spot: a figure of thick lines, filmed as numbered images."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def write_synthetic_take(folder: Path, frames: int = 24, keyframe_every: int = 8
     """Write clip, take.json, keyframes.json and truth.json; returns the folder."""
     posture = true_postures(frames)
     points = BODY.points(BODY.pose(posture))
-    _write_clip(folder / "frames", posture)
+    write_images(folder / "frames", posture)
     take = {
         "fps": 30,
         "frame_start": 1,
@@ -59,14 +60,19 @@ def write_synthetic_take(folder: Path, frames: int = 24, keyframe_every: int = 8
         "actor": {"segments_m": dict(BODY.actor.segments_m)},
     }
     write_json(folder / "take.json", take)
-    posed = sorted({*range(0, frames, keyframe_every), frames - 1})
-    rows = [{"frame": index + 1, "points": named(points[index])} for index in posed]
-    write_json(folder / "keyframes.json", {"keyframes": rows})
+    write_keyframes(folder / "keyframes.json", points, keyframe_every)
     write_json(
         folder / "truth.json",
         {"frames": list(range(1, frames + 1)), "points": named(np.swapaxes(points, 0, 1))},
     )
     return folder
+
+
+def write_keyframes(path: Path, points: np.ndarray, every: int) -> None:
+    """Write the points (F, 13, 3) of every so many frames, and of the last."""
+    posed = sorted({*range(0, len(points), every), len(points) - 1})
+    rows = [{"frame": index + 1, "points": named(points[index])} for index in posed]
+    write_json(path, {"keyframes": rows})
 
 
 def named(rows: np.ndarray) -> dict[str, Any]:
@@ -79,8 +85,8 @@ def write_json(path: Path, value: Any) -> None:
     path.write_text(json.dumps(value), encoding="utf-8")
 
 
-def _write_clip(folder: Path, posture: Posture) -> None:
-    folder.mkdir(parents=True)
+def drawn_frames(posture: Posture, seed: int = 7) -> Iterator[np.ndarray]:
+    """Yield a picture of every posture, (120, 160, 3) uint8 blue, green, red."""
     camera = Camera.from_dict(CAMERA)
     pose = BODY.pose(posture)
     ends = {
@@ -88,7 +94,7 @@ def _write_clip(folder: Path, posture: Posture) -> None:
         for segment in BODY.skeleton.segments
     }
     ends["trunk"] = [ends["pelvis"][0], ends["chest"][1]]
-    noise = np.random.default_rng(7)
+    noise = np.random.default_rng(seed)
     for frame in range(posture.batch[0]):
         image = np.full((SIZE[1], SIZE[0], 3), 170, dtype=np.uint8)
         for name, (start, end) in ends.items():
@@ -99,4 +105,11 @@ def _write_clip(folder: Path, posture: Posture) -> None:
             tips = [tuple(int(round(16 * (value - 0.5))) for value in tip[frame]) for tip in (start, end)]
             cv2.line(image, tips[0], tips[1], (blue, green, red), width, cv2.LINE_AA, 4)
         grain = noise.normal(0.0, 1.5, image.shape)
-        cv2.imwrite(str(folder / f"{frame + 1:04d}.png"), np.clip(image + grain, 0, 255).astype(np.uint8))
+        yield np.clip(image + grain, 0, 255).astype(np.uint8)
+
+
+def write_images(folder: Path, posture: Posture) -> None:
+    """Film postures as numbered images."""
+    folder.mkdir(parents=True)
+    for frame, image in enumerate(drawn_frames(posture)):
+        cv2.imwrite(str(folder / f"{frame + 1:04d}.png"), image)

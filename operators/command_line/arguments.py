@@ -6,6 +6,7 @@ from pathlib import Path
 from ...core.shoot.conversion_settings import METHODS
 from .library_arguments import add_library
 from .line_parser import Commands, LineParser, UsageError, add_command, program_name
+from .shoot_arguments import add_shoot_commands
 from .version import version
 
 DESCRIPTION = "Turns one video of a performer wearing coloured markers into an animated armature."
@@ -15,6 +16,7 @@ examples:
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
   {program} convert takes/walk --output out/walk --library walking --floor 0
+  {program} batch shoot --output out --jobs 4
   {program} propose takes/walk --count 12
   {program} library list
 
@@ -35,6 +37,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.set_defaults(run=_no_command)
     commands = parser.add_subparsers(metavar="COMMAND", title="commands")
     _add_convert(commands)
+    add_shoot_commands(commands)
     _add_propose(commands)
     add_library(commands)
     _add_demo(commands)
@@ -124,7 +127,8 @@ def _add_demo(commands: "Commands[LineParser]") -> None:
 
 def _no_command(_arguments: argparse.Namespace) -> None:
     raise UsageError(
-        f"no command is given; convert, propose, library and demo are valid, see {program_name()} --help"
+        "no command is given; convert, new, check, batch, merge, propose, library and demo are valid, see "
+        f"{program_name()} --help"
     )
 
 

@@ -1,0 +1,1 @@
+"""Converting every take of a shoot, several at a time."""
