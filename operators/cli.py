@@ -16,7 +16,7 @@ from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
 from .command_line.arguments import build_parser
-from .command_line.line_parser import UsageError, program_name
+from .command_line.line_parser import UsageError, complain
 
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -46,8 +46,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE
-    except KeyboardInterrupt:
-        return _say("interrupted; nothing was written", INTERRUPTED, debug)
+    except KeyboardInterrupt as stop:
+        return _say(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
     except (UsageError, InputError) as error:
         return _say(str(error), UNUSABLE, debug)
     except KeymarkError as error:
@@ -63,12 +63,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _say(sentence: str, status: int, debug: bool) -> int:
-    """Write one line on standard error, whatever the sentence holds."""
+    """Write one line on standard error."""
     if debug:
         traceback.print_exc()
-    line = f"{program_name()}: {' '.join(sentence.split())}"
-    encoding = sys.stderr.encoding or "utf-8"
-    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+    complain(sentence)
     return status
 
 

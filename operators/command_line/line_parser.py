@@ -27,6 +27,13 @@ def program_name() -> str:
     return "blender --command keymark" if blender is not None and blender.app.binary_path else "keymark"
 
 
+def complain(sentence: str) -> None:
+    """Write one line on standard error, whatever the sentence holds."""
+    line = f"{program_name()}: {' '.join(sentence.split())}"
+    encoding = sys.stderr.encoding or "utf-8"
+    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+
+
 def add_command(
     commands: "Commands[LineParser]",
     name: str,

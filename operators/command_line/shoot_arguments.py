@@ -133,7 +133,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _batch(arguments: argparse.Namespace) -> None:
-    from .batch.command import batch_command  # type: ignore[import-not-found]
+    from .batch.command import batch_command
 
     batch_command(arguments)
 
@@ -145,6 +145,6 @@ def _merge(arguments: argparse.Namespace) -> None:
 
 
 def _worker(_arguments: argparse.Namespace) -> None:
-    from .batch.worker import worker_command  # type: ignore[import-not-found]
+    from .batch.worker import worker_command
 
     worker_command()

@@ -127,12 +127,16 @@ def is_image(path: Path) -> bool:
     return path.suffix.lower() in _EXTENSIONS and path.is_file()
 
 
+def stem_of_number(path: Path) -> tuple[str, str] | None:
+    """What a numbered image's name has before and behind its number; None for a name without one."""
+    number = _LAST_NUMBER.search(path.stem)
+    return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+
+
 def _siblings(path: Path) -> list[Path]:
     """Return the sequence a numbered image belongs to; an image without a number stands alone."""
-    number = _LAST_NUMBER.search(path.stem)
-    if number is None:
-        return [path]
-    return _numbered(path.parent, path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+    around = stem_of_number(path)
+    return [path] if around is None else _numbered(path.parent, *around)
 
 
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:

@@ -96,6 +96,15 @@ class VideoFile:
                 if decoded:
                     yield index, _as_image(picture)
 
+    def sought(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield frames that the file is searched for one by one, as far as they are found; see `packets`."""
+        with self._capture() as capture:
+            for index in indices:
+                found = index == 0 or capture.set(cv2.CAP_PROP_POS_FRAMES, index)
+                decoded, picture = capture.read() if found else (False, None)
+                if decoded:
+                    yield index, _as_image(picture)
+
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
         """Yield time in seconds and image of the frames from about one on.
 
