@@ -102,9 +102,10 @@ class VideoFile:
         with self._capture() as capture:
             for index in indices:
                 found = index == 0 or capture.set(cv2.CAP_PROP_POS_FRAMES, index)
-                decoded, picture = capture.read() if found else (False, None)
-                if decoded:
-                    yield index, _as_image(picture)
+                if found and capture.grab():
+                    decoded, picture = capture.retrieve()
+                    if decoded:
+                        yield index, _as_image(picture)
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
         """Yield time in seconds and image of the frames from about one on.
