@@ -16,7 +16,8 @@ from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
 from .command_line.arguments import build_parser
-from .command_line.line_parser import UsageError, program_name
+from .command_line.blender_silence import codec_silence
+from .command_line.line_parser import UsageError, complain
 
 AS_IN_BLENDER = ["--command", "keymark"]
 """What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
@@ -45,13 +46,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = build_parser().parse_args(words)
         arguments.started = started
-        with _terminable():
+        with _terminable(), codec_silence(debug):
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE
-    except KeyboardInterrupt:
-        return _say("interrupted; nothing was written", INTERRUPTED, debug)
+    except KeyboardInterrupt as stop:
+        return _say(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
     except (UsageError, InputError) as error:
         return _say(str(error), UNUSABLE, debug)
     except KeymarkError as error:
@@ -67,12 +68,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _say(sentence: str, status: int, debug: bool) -> int:
-    """Write one line on standard error, whatever the sentence holds."""
+    """Write one line on standard error."""
     if debug:
         traceback.print_exc()
-    line = f"{program_name()}: {' '.join(sentence.split())}"
-    encoding = sys.stderr.encoding or "utf-8"
-    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+    complain(sentence)
     return status
 
 

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any
 
 from ...core.progress import Progress
+from .line_parser import complain
 
 JOB_SHARE = 0.9
 """What the job is of all a command does; the rest is writing files."""
@@ -60,6 +61,25 @@ class Console:
             self._bar.set_description(name)
         elif name and not self.quiet and not self.as_json:
             self._write(f"{name} ...")
+
+    def overall(self, fraction: float, name: str) -> None:
+        """Show how far many jobs are together, 0 to 1, and in a few words what they are doing."""
+        if self._bar is not None:
+            self._bar.set_description(name, refresh=False)
+            self._bar.update(max(0.0, 100.0 * fraction - self._bar.n))
+
+    def take(self, text: str, error: str | None) -> None:
+        """Say in a line what became of one of many takes; with `--quiet` only if that is an error."""
+        if self.as_json or (self.quiet and error is None):
+            return
+        if self.quiet:
+            complain(error or "")
+            return
+        if self._bar is not None:
+            self._bar.clear()
+        self._write(" ".join(text.split("\n")))
+        if self._bar is not None:
+            self._bar.refresh()
 
     def finish(self, result: dict[str, Any], text: str) -> None:
         """Say the result: the object with `--json`, else the text."""

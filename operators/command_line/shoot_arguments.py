@@ -146,7 +146,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _batch(arguments: argparse.Namespace) -> None:
-    from .batch.command import batch_command  # type: ignore[import-not-found]
+    from .batch.command import batch_command
 
     batch_command(arguments)
 
@@ -158,6 +158,6 @@ def _merge(arguments: argparse.Namespace) -> None:
 
 
 def _worker(_arguments: argparse.Namespace) -> None:
-    from .batch.worker import worker_command  # type: ignore[import-not-found]
+    from .batch.worker import worker_command
 
     worker_command()
