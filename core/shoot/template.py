@@ -50,8 +50,7 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
         for (width, height), count in survey.sizes.most_common()
     ]
     lines += [
-        f"{_count(count)} {_at(fps)}{_examples(survey, fps=fps)}"
-        for fps, count in survey.rates.most_common()
+        f"{_count(count)} {_at(fps)}{_examples(survey, fps=fps)}" for fps, count in survey.rates.most_common()
     ]
     if survey.described:
         lines.append(f"described already, which counts before what stands here: {_named(survey.described)}")
