@@ -1,5 +1,6 @@
 """A take: one recorded performance on disk, read with every field checked, and written."""
 
+import os
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -122,7 +123,7 @@ def read_described(
     camera = _camera(fields, frame_count)
     posed = keyframes or description.keyframes
     optional = keyframes is None and not keyframes_required
-    missing = optional and (fewest_keyframes == 0 or not posed.exists())
+    missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     return Take(
         folder=description.folder,
         clip=description.clip,

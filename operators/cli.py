@@ -16,6 +16,7 @@ from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
 from .command_line.arguments import build_parser
+from .command_line.blender_silence import codec_silence
 from .command_line.line_parser import UsageError, complain
 
 AS_IN_BLENDER = ["--command", "keymark"]
@@ -45,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = build_parser().parse_args(words)
         arguments.started = started
-        with _terminable():
+        with _terminable(), codec_silence(debug):
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,8 @@ from .one_image import read_image
 
 Image = NDArray[np.uint8]
 
+MOST_IMAGES: Final = 10**6
+"""Of one folder; eleven hours of film."""
 _EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 _PATTERN = re.compile(r"(#+|%0?\d*d)")
 _LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -116,7 +120,7 @@ def find_images(path: Path) -> list[Path] | None:
         InputError: a folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
-        found = sorted((file for file in path.iterdir() if is_image(file)), key=_natural_key)
+        found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return _only_sequence(path, found)
@@ -182,7 +186,14 @@ def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
     name = re.compile(re.escape(head) + r"\d+" + re.escape(tail) + "$")
     if not folder.is_dir():
         return []
-    return sorted((file for file in folder.iterdir() if name.match(file.name)), key=_natural_key)
+    return sorted(_limited(folder, (f for f in folder.iterdir() if name.match(f.name))), key=_natural_key)
+
+
+def _limited(folder: Path, images: Iterator[Path]) -> list[Path]:
+    found = list(islice(images, MOST_IMAGES + 1))
+    if len(found) > MOST_IMAGES:
+        raise InputError(f"{folder}: holds more than {MOST_IMAGES} images; name a folder of fewer")
+    return found
 
 
 def _natural_key(path: Path) -> list[tuple[int, int, str]]:

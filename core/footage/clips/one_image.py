@@ -10,11 +10,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import MOST_PIXELS
 from ...errors import InputError
+from ...files.ordinary import ordinary_size
 from .opencv_silence import opencv_silence
 
 Image = NDArray[np.uint8]
 
+LARGEST_BYTES: Final = 2**31
+"""Of one image: four times the pixels that are read, at sixteen bits."""
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
 
 
@@ -25,8 +29,10 @@ def read_image(path: Path) -> Image:
     dropped.
 
     Raises:
-        InputError: the file is missing or is no image that OpenCV can read.
+        InputError: the file is missing, too large, or no image that OpenCV can read.
     """
+    if ordinary_size(path, "an image") > LARGEST_BYTES:
+        raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
     try:
         data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows
     except OSError as error:
@@ -34,15 +40,17 @@ def read_image(path: Path) -> Image:
     image = _decoded(data)
     if image is None:
         raise InputError(
-            f"{path}: cannot be decoded; it must be a whole image that OpenCV can read (without the file its "
-            "frame counts as missing)"
+            f"{path}: cannot be decoded; it must be a whole image that OpenCV can read, of at most "
+            f"{MOST_PIXELS} pixels; without the file its frame counts as missing"
         )
     if image.dtype == np.uint16:
-        image = np.round(image / 257.0).astype(np.uint8)
+        image = cv2.convertScaleAbs(image, alpha=1.0 / 257.0)
     elif image.dtype != np.uint8:
         image = np.round(np.clip(np.nan_to_num(image), 0.0, 1.0) * 255.0).astype(np.uint8)
-    if image.ndim == 2 or image.shape[2] == 1:
-        image = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR)
+    if image.ndim == 2 or image.shape[2] < 3:
+        image = cv2.cvtColor(
+            np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0]), cv2.COLOR_GRAY2BGR
+        )
     return np.ascontiguousarray(image[:, :, :3])
 
 
@@ -53,7 +61,7 @@ def _decoded(data: NDArray[np.uint8]) -> NDArray[Any] | None:
         with opencv_silence():
             image: NDArray[Any] | None = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
             return image
-    except cv2.error:  # larger than OpenCV takes
+    except cv2.error:  # among them a size above what core/__init__ lets OpenCV read
         return None
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from .container import check_container, check_pixels
 from .last_rows import fill_last_rows
 from .opencv_silence import opencv_silence
 
@@ -48,12 +49,12 @@ class VideoFile:
         """Open the file and decode its first frame.
 
         Raises:
-            InputError: it is empty, not a video, or broken before the first frame.
+            InputError: it is empty, not a video, too large, or broken before the first frame.
         """
         self.path = path
-        if path.is_file() and path.stat().st_size == 0:
-            raise InputError(f"{path}: the file is empty; it must be a video")
+        check_container(path)
         with self._capture() as capture:
+            check_pixels(path, capture.get(cv2.CAP_PROP_FRAME_WIDTH), capture.get(cv2.CAP_PROP_FRAME_HEIGHT))
             step = next(_steps(capture), None)
             decoded, image = (False, None) if step is None else capture.retrieve()
             if not decoded or image is None:
@@ -199,9 +200,10 @@ class VideoFile:
 
 
 def _open_quietly(path: Path) -> cv2.VideoCapture:
+    name = os.path.abspath(path)  # where a name begins with a word and a colon, that is a protocol to FFmpeg
     with opencv_silence():
-        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
-        return capture if capture.isOpened() else cv2.VideoCapture(str(path), cv2.CAP_ANY)
+        capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
+        return capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
 
 
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
