@@ -12,6 +12,7 @@ from ...core.files.output_folder import output_folder, real_path
 from ...core.keyframe_file import write_keyframes
 from ...core.library.library import Library
 from ...core.library.library_file import library_digest
+from ...core.match_take import take_to_match
 from ...core.motion import Motion
 from ...core.motion_file import write_motion
 from ...core.progress import run
@@ -25,7 +26,7 @@ from .blender_silence import blender_silence
 from .changed_files import changed_files, kept_note
 from .console import Console
 from .made import Conversion, conversion_record
-from .matching import chosen_libraries, solve, take_to_match
+from .matching import chosen_libraries, solve
 from .version import version
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"

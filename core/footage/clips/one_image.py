@@ -41,16 +41,15 @@ def read_image(path: Path) -> Image:
     if image is None:
         raise InputError(
             f"{path}: cannot be decoded; it must be a whole image that OpenCV can read, of at most "
-            f"{MOST_PIXELS} pixels; without the file its frame counts as missing"
+            f"{MOST_PIXELS} pixels (without the file its frame counts as missing)"
         )
     if image.dtype == np.uint16:
         image = cv2.convertScaleAbs(image, alpha=1.0 / 257.0)
     elif image.dtype != np.uint8:
         image = np.round(np.clip(np.nan_to_num(image), 0.0, 1.0) * 255.0).astype(np.uint8)
     if image.ndim == 2 or image.shape[2] < 3:
-        image = cv2.cvtColor(
-            np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0]), cv2.COLOR_GRAY2BGR
-        )
+        grey = np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0])
+        image = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
     return np.ascontiguousarray(image[:, :, :3])
 
 
