@@ -147,7 +147,7 @@ def _own_scene(name: str) -> Iterator[bpy.types.Scene]:
 @contextmanager
 def _moved_into_place(path: Path) -> Iterator[Path]:
     """A path beside `path`; what is written there is moved to `path` at the end, or removed on failure."""
-    beside = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    beside = path.with_name(f".{path.stem.lstrip('.')}-{os.getpid()}{path.suffix}")
     try:
         yield beside
         os.replace(beside, path)

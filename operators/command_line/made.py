@@ -65,6 +65,7 @@ def conversion_record(
         frame_start=motion.frame_start,
         fps=motion.fps,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
+        matched=tuple(k.index + motion.frame_start for k in take.keyframes if k.matched is not None),
         confidence=round(float(believed.mean()), 4) if len(believed) else None,
         weakest=round(float(np.percentile(believed, WEAKEST)), 4) if len(believed) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in judged.weak_frames),

@@ -87,6 +87,7 @@ def _add_batch(commands: "Commands[LineParser]") -> None:
     batch.add_argument(
         "--library",
         metavar="NAME|FILE|auto",
+        type=_unless_empty,
         help="match takes with this keyframe library where nothing in SHOOT names one",
     )
     batch.add_argument(
@@ -99,6 +100,13 @@ def _add_batch(commands: "Commands[LineParser]") -> None:
         "--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"
     )
     batch.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
+    batch.add_argument(
+        "--failed-takes",
+        choices=("fail", "pass"),
+        default="fail",
+        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm "
+        "goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+    )
 
 
 def _add_merge(commands: "Commands[LineParser]") -> None:
@@ -115,6 +123,11 @@ def _add_merge(commands: "Commands[LineParser]") -> None:
         "--output", "-o", metavar="FILE", type=Path, required=True, help="the .blend to write, new or old"
     )
     merge.add_argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name")
+
+
+def _unless_empty(text: str) -> str | None:
+    """A text; none where it is empty, as farms give what nobody has filled in."""
+    return text or None
 
 
 # Commands are imported when they run: --help and mistakes shall not wait for scipy, OpenCV and Blender.
@@ -139,7 +152,7 @@ def _batch(arguments: argparse.Namespace) -> None:
 
 
 def _merge(arguments: argparse.Namespace) -> None:
-    from .merge import merge_command  # type: ignore[import-not-found]
+    from .merge import merge_command
 
     merge_command(arguments)
 

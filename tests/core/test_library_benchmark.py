@@ -47,4 +47,6 @@ def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
     assert found.right is True and found.chosen == "walking"
     assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]
     assert bench.is_right("dance", bench.NONE) is None
-    assert "(wrong)" in bench.choice_table({"reach": replace(found, right=bench.is_right("reach", "walking"))})
+    assert "(wrong)" in bench.choice_table(
+        {"reach": replace(found, right=bench.is_right("reach", "walking"))}
+    )

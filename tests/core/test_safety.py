@@ -23,7 +23,13 @@ ONLY_IN = {
 }
 """Modules that have an innocent use, and where."""
 CALLS = {"eval", "exec", "compile", "__import__"}
-CALLS |= {"os.system", "os.popen", "np.fromregex", "bpy.ops.script.python_file_run", "bpy.ops.text.run_script"}
+CALLS |= {
+    "os.system",
+    "os.popen",
+    "np.fromregex",
+    "bpy.ops.script.python_file_run",
+    "bpy.ops.text.run_script",
+}
 CALLS |= {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.url_open"}
 METHODS = {"open_connection", "start_server", "create_connection", "create_subprocess_shell", "driver_add"}
 METHODS |= {"as_module", "use_scripts_auto_execute"}
@@ -153,9 +159,7 @@ def watched(repository: Path, *words: str) -> dict[str, object]:
     return answer
 
 
-def test_a_command_opens_no_socket_and_writes_only_where_it_is_told(
-    repository: Path, tmp_path: Path
-) -> None:
+def test_a_command_opens_no_socket_and_writes_only_where_it_is_told(repository: Path, tmp_path: Path) -> None:
     """Converting a take, or where there is no Blender, looking into it, tries nothing of the kind."""
     take, output = write_synthetic_take(tmp_path / "take", 8), tmp_path / "out"
     said = watched(repository, "convert", str(take), "--output", str(output / "take"), "--quiet")
