@@ -46,7 +46,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         InputError: Blender cannot read the clip.
         ConversionError: Blender could not write a file.
     """
-    with _own_scene(f"{take.name} Motion") as scene:
+    with own_scene(f"{take.name} Motion") as scene:
         armature_object = fill_scene(scene, take, motion)
         with _moved_into_place(blend_path) as path:
             _write_blend(scene, path)
@@ -114,7 +114,7 @@ def _write_blend(scene: bpy.types.Scene, path: Path) -> None:
 
 
 @contextmanager
-def _own_scene(name: str) -> Iterator[bpy.types.Scene]:
+def own_scene(name: str) -> Iterator[bpy.types.Scene]:
     """A scene for the time being; it and everything made meanwhile is removed again."""
     collections = [
         getattr(bpy.data, kind)
