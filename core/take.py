@@ -1,5 +1,6 @@
 """A take: one recorded performance on disk, read with every field checked, and written."""
 
+import os
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -122,7 +123,12 @@ def read_described(
     camera = _camera(fields, frame_count)
     posed = keyframes or description.keyframes
     optional = keyframes is None and not keyframes_required
-    missing = optional and (fewest_keyframes == 0 or not posed.exists())
+    missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
+    if not missing and keyframes is None and not os.path.exists(posed):
+        raise InputError(
+            f"{posed}: no such file; a take needs keyframes posed there, or a keyframe library to match, as "
+            'in "library": "auto"'
+        )
     return Take(
         folder=description.folder,
         clip=description.clip,
@@ -145,12 +151,8 @@ def open_clip(take: Take) -> Clip:
         InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
             poses or a keyframe do not fit.
     """
-    clip = _opened(take.clip, take.fps)
-    if clip.size != take.camera.resolution:
-        raise InputError(
-            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
-            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-        )
+    clip = opened(take.clip, take.fps)
+    check_size(take, clip)
     count = clip.frame_count
     if take.frame_count not in (None, count):
         count = len(clip.time_stamps())  # containers may claim a wrong number; decoding tells
@@ -158,7 +160,25 @@ def open_clip(take: Take) -> Clip:
     return clip
 
 
-def _opened(path: Path, fps: float | None) -> Clip:
+def check_size(take: Take, clip: Clip) -> None:
+    """Hold the size of a clip's frames against the take.
+
+    Raises:
+        InputError: The camera's resolution is another.
+    """
+    if clip.size != take.camera.resolution:
+        raise InputError(
+            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
+            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
+        )
+
+
+def opened(path: Path, fps: float | None) -> Clip:
+    """Open a clip, of whatever take; `fps` is the rate of images.
+
+    Raises:
+        InputError: It is missing or unreadable.
+    """
     try:
         return Clip.open(path, fps=fps)
     except OSError as error:
@@ -261,7 +281,7 @@ def _with_the_clip(fields: Fields, path: Path) -> Fields:
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
     if fields.has("fps") and sized:
         return fields
-    clip = _opened(path, None)
+    clip = opened(path, None)
     told: dict[str, Any] = {}
     if not fields.has("fps") and clip.knows_its_rate:
         told["fps"] = clip.fps

@@ -16,8 +16,11 @@ from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
 from .command_line.arguments import build_parser
+from .command_line.blender_silence import codec_silence
 from .command_line.line_parser import UsageError, complain
 
+AS_IN_BLENDER = ["--command", "keymark"]
+"""What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
@@ -33,6 +36,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit status.
     """
     words = list(sys.argv[1:] if argv is None else argv)
+    if words[: len(AS_IN_BLENDER)] == AS_IN_BLENDER:
+        words = words[len(AS_IN_BLENDER) :]
     debug = "--debug" in words
     if "numpy" not in sys.modules:  # which reads these once, when it is loaded
         for variable in ONE_THREAD:
@@ -41,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = build_parser().parse_args(words)
         arguments.started = started
-        with _terminable():
+        with _terminable(), codec_silence(debug):
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version

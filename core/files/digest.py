@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
+from .ordinary import ordinary_size
 
 LENGTH = 32
 """Hexadecimal digits: 128 bits."""
@@ -40,8 +41,10 @@ def file_digest(path: Path) -> str:
     """A digest of a file by its size, its time of change and samples of what is in it.
 
     Raises:
+        InputError: There is no such ordinary file.
         OSError: The file cannot be read.
     """
+    ordinary_size(path, "a file that can be read")
     state = path.stat()
     samples = []
     with path.open("rb") as file:
@@ -59,10 +62,9 @@ def content_digest(path: Path) -> str:
     Raises:
         InputError: The file cannot be read.
     """
+    ordinary_size(path, "a file that can be read")
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file") from error
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error

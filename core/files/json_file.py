@@ -2,18 +2,36 @@
 
 import json
 import os
-import tempfile
+import re
+import shutil
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
+from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
+from .folder_lock import LOCK, folder_lock, hidden_name
+from .ordinary import ordinary_size
+from .to_disk import to_disk
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""
+DEEPEST = 50
+"""Levels of lists and objects; no file of ours has ten."""
+MOST_LISTS = 4 * 10**6
+"""Lists and objects of a file, each of which takes many times its two letters once it is read."""
+WORK = "-work"
+"""What the names of folders in which single files are made end with."""
 MOST_DIGITS = 15
 """Whole numbers of more digits have no exact float64."""
+
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+_NO_BRACKETS = re.compile(r"[^\[\]{}]+")
+_SHORT = Repr()
+"""Looks at no more of a value than is shown."""
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 8, 400, 400
+_SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 
 
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
@@ -41,8 +59,10 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
         where: What sentences about it begin with.
 
     Raises:
-        InputError: It is no JSON object, names a field twice or holds a number that is not finite.
+        InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
+            not finite.
     """
+    _check_nesting(text, where)
     try:
         value = json.loads(
             text,
@@ -56,8 +76,6 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
             f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
             "the file may be cut off or edited by mistake"
         ) from error
-    except RecursionError as error:
-        raise InputError(f"{where}: its lists and objects are nested too deeply to be read") from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
     if not isinstance(value, dict):
@@ -87,43 +105,67 @@ def write_json(path: Path, value: Any, indent: int | None = None) -> None:
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` make a file beside `path` and move it into place, so that `path` is never half a file.
 
+    Who writes the same file meanwhile waits. What a killed process has left goes with the next writing.
+
     Raises:
         ConversionError: The file cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".keymark-", dir=path.parent) as folder:
-            beside = Path(folder) / path.name
-            write(beside)
-            os.replace(beside, path)
+        stem = path.parent / hidden_name(path.name)
+        busy = f"{path}: another process has been writing it for too long; try again when it has finished"
+        with folder_lock(stem.with_name(stem.name + LOCK), busy, wait=True):
+            folder = stem.with_name(stem.name + WORK)
+            try:
+                if os.path.lexists(folder):
+                    shutil.rmtree(folder)
+                folder.mkdir()
+                beside = folder / path.name
+                write(beside)
+                to_disk(beside)
+                os.replace(beside, path)
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
     except OSError as error:
         raise ConversionError(f"{path}: cannot be written ({error.strerror or error})") from error
 
 
 def shown(value: Any, longest: int = 60) -> str:
     """A value as people can read it in a sentence: one line, cut where it is long."""
-    try:
-        text = repr(value)
-    except RecursionError:
-        text = f"a {type(value).__name__} that is nested too deeply to be shown"
+    text = _SHORT.repr(value)
     return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
 def _read_text(path: Path, largest_bytes: int) -> str:
-    valid = "it must be a JSON file in UTF-8"
+    valid = "a JSON file in UTF-8"
+    size = ordinary_size(path, valid)
     try:
-        size = path.stat().st_size
         with path.open("rb") as file:
-            content = file.read(largest_bytes + 1)  # a device or a pipe has no size beforehand, or no end
+            content = file.read(largest_bytes + 1)  # it may have grown since
         if len(content) > largest_bytes:
-            found = f"{size / 2**20:.1f} MiB" if size > largest_bytes else "no end in sight"
-            raise InputError(f"{path}: has {found}; at most {largest_bytes / 2**20:g} MiB are read")
+            limit = largest_bytes / 2**20
+            raise InputError(
+                f"{path}: has {max(size, len(content)) / 2**20:.1f} MiB; at most {limit:g} are read"
+            )
         return content.decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file; {valid}") from error
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{path}: cannot be read ({reason}); {valid}") from error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
+
+
+def _check_nesting(text: str, where: str) -> None:
+    """Refuse lists and objects that are too many or too deep, before room is made for them."""
+    count = text.count("[") + text.count("{")
+    if count <= DEEPEST:
+        return
+    if count > MOST_LISTS:
+        raise InputError(f"{where}: holds {count} lists and objects; at most {MOST_LISTS} are read")
+    depth = 0
+    for mark in _NO_BRACKETS.sub("", _STRING.sub("", text)):
+        depth += 1 if mark in "[{" else -1
+        if depth > DEEPEST:
+            raise InputError(
+                f"{where}: its lists and objects are nested too deeply; {DEEPEST} levels are read"
+            )
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from ..errors import InputError
 from ..files.json_file import shown
+from ..files.letters import is_hidden
 
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60
@@ -22,8 +23,6 @@ _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
 _FILE = re.compile(r".*\.json", re.ASCII)
 """Where a library is named, this means a file."""
-_JOINERS = "\u200c\u200d"
-"""Zero-width, but letters of several scripts need them between them."""
 
 
 def is_identifier(text: object) -> bool:
@@ -66,7 +65,7 @@ def text_fault(text: object, longest: int) -> str:
         return f"must be a text of at most {longest} characters"
     if not text.strip() or text != text.strip():
         return "must be a text that neither is empty nor begins or ends with a space"
-    if any(_is_hidden(letter) for letter in text):
+    if any(is_hidden(letter) for letter in text):
         return "must be one line of text without control characters"
     if not name_key(text):
         return "must be a text in which something can be seen"
@@ -77,7 +76,7 @@ def text_fault(text: object, longest: int) -> str:
 def name_key(name: str) -> str:
     """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
-    return " ".join("".join(letter for letter in folded if not _is_hidden(letter, "")).split())
+    return " ".join("".join(letter for letter in folded if not is_hidden(letter, "")).split())
 
 
 def told_apart(name: str, taken: Iterable[str]) -> str:
@@ -89,8 +88,3 @@ def told_apart(name: str, taken: Iterable[str]) -> str:
         f"{name[: LONGEST_NAME - len(f' {number}')].rstrip()} {number}" for number in range(2, len(keys) + 3)
     )
     return next(candidate for candidate in numbered if name_key(candidate) not in keys)
-
-
-def _is_hidden(letter: str, allowed: str = _JOINERS) -> bool:
-    """Control, formatting (also what turns the direction of writing), halves of characters, line breaks."""
-    return letter not in allowed and unicodedata.category(letter) in ("Cc", "Cf", "Cs", "Zl", "Zp")

@@ -4,15 +4,17 @@ A take is a folder that holds `take.json`; or, where a `shoot.json` above descri
 folder of images, beside which `NAME.take.json` and `NAME.keyframes.json` may say more.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.inherited import Inherited
-from ..files.inside import inside_path
+from ..files.inside import check_links, inside_path
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import is_image
 from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
@@ -61,7 +63,7 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
     own = _own_file(place)
     folder, whole = own.parent, own.name == OWN
     shared = shoot_files(folder)
-    if not own.is_file() and not whole and not shared:
+    if not os.path.isfile(own) and not whole and not shared:
         raise InputError(
             f"{place}: nothing describes this clip; {own.name} beside it, or {NAME} there or in a folder "
             "above, must say what camera, actor and markers it shows"
@@ -72,7 +74,7 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
         fields = fields.patched(read_shoot_file(file), str(file))
         folders[str(file)] = file.parent
     files = [*shared]
-    if own.is_file() or whole:
+    if os.path.isfile(own) or whole:
         fields = fields.patched(read_json(own), str(own))
         folders[str(own)] = folder
         files.append(own)
@@ -88,7 +90,11 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
             else folder / "clip.mp4"
         )
     settings = read_settings(described, folders)
-    usual = folder / KEYFRAMES if whole else beside(place, KEYFRAMES)
+    keyframes = settings.keyframes or (folder / KEYFRAMES if whole else beside(place, KEYFRAMES))
+    used = [*files, clip, keyframes, *_linked_images(clip)]
+    if settings.library is not None and settings.library.endswith(".json"):
+        used.append(Path(settings.library))
+    check_links(used, [shared[0].parent if shared else folder, folder])
     return Description(
         place=place,
         name=place.absolute().name if whole else clip_name(place),
@@ -96,7 +102,7 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
         file=files[-1],
         files=tuple(files),
         clip=clip,
-        keyframes=settings.keyframes or usual,
+        keyframes=keyframes,
         fields=described,
         settings=settings,
         inherits=bool(shared),
@@ -113,19 +119,35 @@ def chosen_settings(
         farther: What counts where the take and its shoots say nothing.
     """
     settings = description.settings.over(farther)
-    if settings.library is not None and settings.keyframes is None and description.keyframes.exists():
+    if settings.library is not None and settings.keyframes is None and os.path.exists(description.keyframes):
         return replace(settings, keyframes=description.keyframes)
     return settings
 
 
 def _own_file(place: Path) -> Path:
     """A take's own file, whether it is there or not."""
-    if place.is_dir():
-        images = not (place / OWN).exists() and any(is_image(file) for file in place.iterdir())
-        return beside(place, OWN) if images else place / OWN
-    if not place.exists():
-        raise InputError(f"{place}: no such folder; a take is a folder that holds {OWN}")
-    return beside(place, OWN)
+    try:
+        kind = place.stat().st_mode
+        images = S_ISDIR(kind) and not (place / OWN).exists() and any(map(is_image, place.iterdir()))
+    except FileNotFoundError as error:
+        raise InputError(f"{place}: no such folder; a take is a folder that holds {OWN}") from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(
+            f"{place}: cannot be read ({reason}); a take is a folder that holds {OWN}"
+        ) from error
+    if not S_ISDIR(kind) and not S_ISREG(kind):
+        raise InputError(f"{place}: is a device, a pipe or a socket; a take is a folder that holds {OWN}")
+    return place / OWN if S_ISDIR(kind) and not images else beside(place, OWN)
+
+
+def _linked_images(clip: Path) -> list[Path]:
+    """The images of a folder that are links."""
+    try:
+        with os.scandir(clip) as entries:
+            return [Path(entry.path) for entry in entries if entry.is_symlink()]
+    except (OSError, ValueError):  # no folder, or none that can be read, which whoever opens the clip says
+        return []
 
 
 def beside(place: Path, ending: str) -> Path:

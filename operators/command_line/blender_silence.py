@@ -46,3 +46,37 @@ def _flush() -> None:
     with suppress(OSError, AttributeError):
         library = ctypes.CDLL("ucrtbase" if os.name == "nt" else None)
         library.fflush(None)
+
+
+@contextmanager
+def codec_silence(debug: bool) -> Iterator[None]:
+    """Send what C code writes meanwhile on standard error to nowhere; Python's own words still come through.
+
+    Decoders of images complain of damaged ones there, where our one sentence shall stand.
+
+    Args:
+        debug: Whether to let the complaints through.
+    """
+    if debug or not _is_descriptor(sys.stderr, 2):
+        yield
+        return
+    before = sys.stderr
+    before.flush()
+    with open(os.dup(2), "w", encoding=before.encoding, errors=before.errors, buffering=1) as own:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        os.close(nowhere)
+        sys.stderr = own
+        try:
+            yield
+        finally:
+            sys.stderr = before
+            own.flush()
+            os.dup2(own.fileno(), 2)
+
+
+def _is_descriptor(stream: object, number: int) -> bool:
+    try:
+        return stream is not None and stream.fileno() == number
+    except (AttributeError, OSError, ValueError):  # a stand-in, or closed
+        return False

@@ -5,6 +5,8 @@ import sys
 from collections.abc import Callable
 from typing import NoReturn
 
+from ...core.files.letters import seen
+
 
 class UsageError(Exception):
     """The command line is unusable; the text is one sentence."""
@@ -29,7 +31,7 @@ def program_name() -> str:
 
 def complain(sentence: str) -> None:
     """Write one line on standard error, whatever the sentence holds."""
-    line = f"{program_name()}: {' '.join(sentence.split())}"
+    line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
     encoding = sys.stderr.encoding or "utf-8"
     print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from .clip_timing import is_variable_frame_rate
-from .image_sequence import ImageSequence, find_images
+from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
 Image = NDArray[np.uint8]
@@ -73,7 +73,7 @@ class Clip:
         path = Path(path)
         images = find_images(path)
         if images is not None:
-            return cls(path, ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS))
+            return cls(path, ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS, left_out(path, images)))
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
         return cls(path, VideoFile(path))

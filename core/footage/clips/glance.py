@@ -18,6 +18,7 @@ MOST_DECODED_PX: Final = 90_000_000
 """Pixels that may be decoded for a glance: about half a second of a processor, at any size."""
 _FRAMES_PER_SEARCH: Final = 18
 """What is decoded for a frame that is quickly found."""
+_MOST_SEARCHES: Final = 12
 _IMAGE_COST: Final = 4
 """Opening an image takes as long as decoding so many frames of a video."""
 _FEWEST: Final = 3
@@ -42,8 +43,8 @@ def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, Cl
         return (yield from sample_clip(clip, min(count, affordable)))
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
-    affordable = max(MOST_DECODED_PX // (_FRAMES_PER_SEARCH * pixels), _FEWEST)
-    middles = (np.arange(min(count, affordable)) + 0.5) * clip.frame_count / min(count, affordable)
+    most = min(count, _MOST_SEARCHES, max(MOST_DECODED_PX // (_FRAMES_PER_SEARCH * pixels), _FEWEST))
+    middles = (np.arange(most) + 0.5) * clip.frame_count / most
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:
         return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
