@@ -198,13 +198,13 @@ def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
         ([{"take": 3}], "line 1: take is 3"),
         ([{"take": "."}], r"line 1: take is '\.'"),
         ([{"take": "a"}, {"take": "A"}], "have one name"),
-        ([{"take": ".keymark/a"}], "where a batch keeps its own .keymark"),
-        (['{"take": "\udcff"}'.encode("utf-8", "surrogateescape").decode("latin-1")], "take is"),
+        ([{"take": ".keymark/a"}], ".*where a batch keeps its own .keymark"),
+        (['{"take": "\\udcff"}'], "line 1: take is"),
     ],
 )
 def test_a_damaged_list_is_one_sentence(lines: list[object], sentence: str, tmp_path: Path) -> None:
     """It names the list, the line, the field and the value."""
-    with pytest.raises(InputError, match=f"night.jsonl.*{sentence}|{sentence}"):
+    with pytest.raises(InputError, match=f"night.jsonl.*{sentence}|^{sentence}"):
         open_shoot(write_list(tmp_path / "night.jsonl", *lines))
 
 
