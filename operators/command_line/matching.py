@@ -1,7 +1,7 @@
 """Converting a take with a keyframe library in place of posed keyframes, or beside them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from ...core.errors import ConversionError
