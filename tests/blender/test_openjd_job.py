@@ -114,6 +114,7 @@ def test_a_task_converts_its_share_and_nothing_else(
     words = ("--step", "Convert", "-tp", "Task=2")
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=2))
     assert done.returncode == 0, done.stdout + done.stderr
+    assert "openjd_status: 1 of 1 take" in done.stdout and "openjd_progress: 100" in done.stdout
     assert [name for name in NAMES if (output / name).exists()] == ["day1/take02"]
     words = ("--step", "Convert", "-tp", "Task=5")
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=5))
