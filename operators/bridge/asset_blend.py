@@ -6,9 +6,10 @@ from pathlib import Path
 
 import bpy
 
-from ...core.errors import ConversionError, InputError
+from ...core.errors import InputError
 from ...core.files.output_folder import output_folder
 from .asset_catalogs import NAME, ensure_catalog, read_catalogs
+from .blend_writer import write_blend
 
 
 def write_asset_blend(
@@ -41,8 +42,4 @@ def write_asset_blend(
             made.add(asset)
         blend = new / path.relative_to(root)
         blend.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            data.libraries.write(str(blend), made, fake_user=True, compress=True)
-        except RuntimeError as error:
-            reason = " ".join(str(error).split())[:200]
-            raise ConversionError(f"{path}: cannot be written ({reason})") from error
+        write_blend(blend, made, data, path, fake_user=True)

@@ -120,8 +120,7 @@ def find_images(path: Path) -> list[Path] | None:
         InputError: a folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
-        images = _limited(path, (file for file in path.iterdir() if is_image(file)))
-        found = sorted(images, key=_natural_key)
+        found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return _only_sequence(path, found)
