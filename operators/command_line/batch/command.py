@@ -69,7 +69,7 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
     tally.finish()
     console.finish(tally.to_dict(), tally.text())
     failed = [outcome.take for outcome in tally.outcomes if outcome.error is not None]
-    if failed:
+    if failed and arguments.failed_takes == "fail":
         where = f"; {tally.files[-1]} says why" if tally.files else ""
         raise ConversionError(f"{len(failed)} of {len(jobs)} takes failed: {listed(failed, NAMED)}{where}")
     if tally.wrong:
