@@ -47,7 +47,8 @@ class ConversionRecord:
     notes: tuple[str, ...]
     """What a person should know, one sentence each."""
     files: Mapping[str, str] = field(default_factory=dict)
-    """SHA-256 of every file of the result, by its path in the folder."""
+    """SHA-256 of every file of the result, by its path in the folder; for motion.blend, in which Blender
+    leaves memory addresses, that of its Action's curves."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:

@@ -126,8 +126,8 @@ def read_described(
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     if not missing and keyframes is None and not os.path.exists(posed):
         raise InputError(
-            f"{posed}: no such file; a take needs keyframes posed in it, or a keyframe library to match, as in "
-            '"library": "auto"'
+            f"{posed}: no such file; a take needs keyframes posed there, or a keyframe library to match, as "
+            'in "library": "auto"'
         )
     return Take(
         folder=description.folder,

@@ -36,9 +36,9 @@ def first_things(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str
     if failed:
         said.append(f"{counted(len(failed), 'take')} failed: {_named(failed, number)}.{_shared(failed)}")
     if poor:
-        said.append(f"{_are(poor, 'poor')} and want keyframes: {_named(poor, number)}.")
+        said.append(f"{_are(poor, 'poor, in need of keyframes')}: {_named(poor, number)}.")
     if fair:
-        said.append(f"{_are(fair, 'fair')} and worth a look: {_named(fair, number)}.")
+        said.append(f"{_are(fair, 'fair, worth a look')}: {_named(fair, number)}.")
     if waiting:
         said.append(
             f"{_are(waiting, 'still to be converted')}: the batch was running when this was written, or was "

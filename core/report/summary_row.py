@@ -115,7 +115,7 @@ def _no_result(outcome: Outcome) -> str:
     if outcome.status is Status.FAILED:
         said = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
     if outcome.record is not None:
-        said += "<p><small>A result of an earlier input is still in its folder.</small></p>"
+        said += "<p><small>An earlier result is still in its folder.</small></p>"
     return said
 
 

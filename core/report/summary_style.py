@@ -64,14 +64,15 @@ label{color:var(--soft)}
 input,select{font:inherit;color:var(--ink);background:var(--card);border:1px solid var(--soft);
 border-radius:4px;padding:.2rem .5rem;margin-left:.3rem}
 input{width:15rem;max-width:100%}
+input::placeholder{color:var(--soft);opacity:1}
 output{color:var(--soft);font-variant-numeric:tabular-nums}
 table{width:100%;table-layout:fixed;border-collapse:collapse}
 caption{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%);white-space:nowrap}
 thead th{text-align:left;font-weight:400;font-size:.84rem;color:var(--soft);padding:.9rem .7rem .3rem}
-thead th:nth-child(1){width:14%}
+thead th:nth-child(1){width:13.5%}
 thead th:nth-child(2){width:31%}
-thead th:nth-child(3){width:11%}
-thead th:nth-child(5){width:14%}
+thead th:nth-child(3){width:12.5%}
+thead th:nth-child(5){width:13.5%}
 td,tbody th{vertical-align:top;text-align:left;font-weight:400;padding:.8rem .7rem;
 border-top:1px solid var(--line);overflow-wrap:anywhere}
 th:first-child{padding-left:0}
@@ -106,7 +107,7 @@ b.not-judged,b.waiting{color:var(--soft)}
 #legend p{max-width:60rem;color:var(--soft);margin:.5rem 0 0}
 ol{columns:17rem;column-gap:2.5rem;padding-left:2.6rem;margin:.7rem 0 0;overflow-wrap:anywhere}
 li::marker{color:var(--soft);font-variant-numeric:tabular-nums}
-@media (max-width:960px){
+@media screen and (max-width:960px){
 body{padding:1.1rem 1rem 2rem}
 html{scroll-padding-top:1rem}
 nav{position:static}
@@ -120,14 +121,19 @@ td:empty{display:none}
 svg{max-width:22rem}
 }
 @media print{
-body{max-width:none;padding:0;font-size:9pt;background:none}
-@page{size:A4 landscape;margin:12mm}
+@page{size:A4 landscape;margin:10mm}
+html{font-size:8.5pt}
+body{max-width:none;padding:0;font-size:1rem;background:none}
 nav,#names{display:none}
+tr[id]{background:none}
 tr[id],.first,#legend{break-inside:avoid}
 .section{break-after:avoid}
-td:nth-child(5),thead th:nth-child(5){display:none}
+.section th{padding-top:1.2rem}
+thead th:nth-child(2){width:36%}
+thead th:nth-child(5){width:0}
+td:nth-child(5),thead th:nth-child(5){visibility:hidden;padding:0;font-size:0}
 a{color:inherit;text-decoration:none}
-svg{print-color-adjust:exact;-webkit-print-color-adjust:exact}
+svg,.first{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 td .error{background:none}
 }
 """

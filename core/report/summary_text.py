@@ -45,7 +45,7 @@ def way_to(folder: Path, output: Path) -> str:
 def address(*parts: str) -> str:
     """A link along a way, whatever letters it holds: none of them can end it or make it another kind."""
     way = "/".join(parts)
-    return html.escape(quote(way.encode("utf-8", "surrogateescape"), safe="/"), quote=True)
+    return html.escape(quote(way.encode("utf-8", "surrogatepass"), safe="/"), quote=True)
 
 
 def percent(share: float) -> str:

@@ -1,6 +1,5 @@
 """A new `shoot.json`: what clips tell filled in, and comments on what a person must say."""
 
-from collections.abc import Mapping
 from typing import Any
 
 from ..footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
@@ -24,8 +23,8 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         "//": [
             "Describes all clips in this folder and below. Fill in every null, look at what is called a",
             "guess, then run keymark check on the folder: it says what is missing or seems wrong.",
-            "What begins with // is a comment. What holds for some clips only goes into a shoot.json in their",
-            "folder, or into NAME.take.json beside the clip NAME: the nearest file counts, field by field.",
+            "What begins with // is a comment. What holds for some clips only goes into a shoot.json in",
+            "their folder, or into NAME.take.json beside the clip NAME: the nearest file counts.",
         ],
         "//clips": clip_lines(survey),
         "schema_version": SCHEMA_VERSION,
@@ -60,7 +59,7 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
     return lines
 
 
-def _rate(survey: ClipSurvey) -> Mapping[str, Any]:
+def _rate(survey: ClipSurvey) -> dict[str, Any]:
     rates = {fps for fps in survey.rates if fps is not None}
     images = survey.rates[None]
     if len(rates) == 1:
@@ -71,7 +70,7 @@ def _rate(survey: ClipSurvey) -> Mapping[str, Any]:
     return {"//fps": "left out, for the clips differ: each tells its own"}
 
 
-def _camera(survey: ClipSurvey) -> Mapping[str, Any]:
+def _camera(survey: ClipSurvey) -> dict[str, Any]:
     size = survey.sizes.most_common(1)[0][0]
     lens = guess_lens(size)
     distance = -first_stand(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
@@ -84,13 +83,13 @@ def _camera(survey: ClipSurvey) -> Mapping[str, Any]:
         said["resolution"] = list(size)
     else:
         said["//resolution"] = [
-            "left out, for the clips differ: each tells its own; say so nearer to those that were filmed with",
-            "another lens or from elsewhere",
+            "left out, for the clips differ: each tells its own; say so nearer to those that were filmed",
+            "with another lens or from elsewhere",
         ]
     said["//matrix_world"] = [
-        "where the camera stood, in metres, as four rows. That of a camera in Blender, in its Python console:",
+        "where the camera stood, in metres, as four rows. Blender's Python console tells that of a camera:",
         "[list(row) for row in bpy.context.scene.camera.matrix_world]",
-        "Of one that stood level, H above the floor and D in front of the performer, who is at the origin:",
+        "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
         "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",
         f"With this lens a whole person fits the picture from D = {distance:.1f} on at H = {EYE_HEIGHT_M:g}.",
     ]
@@ -98,11 +97,11 @@ def _camera(survey: ClipSurvey) -> Mapping[str, Any]:
     return said
 
 
-def _markers(survey: ClipSurvey) -> Mapping[str, Any]:
+def _markers(survey: ClipSurvey) -> dict[str, Any]:
     said: dict[str, Any] = {
         "//": [
-            "red, green and blue from 0 to 255, as an eyedropper gives them on the marker in a clip; .L is the",
-            "performer's own left. Take out markers that were not worn.",
+            "red, green and blue from 0 to 255, as an eyedropper gives them on the marker in a clip; .L is",
+            "the performer's own left. Take out markers that were not worn.",
         ]
     }
     if survey.colours:
@@ -116,15 +115,15 @@ def _markers(survey: ClipSurvey) -> Mapping[str, Any]:
     return said | {name: {"color_srgb": None} for name in MARKERS}
 
 
-def _library(survey: ClipSurvey) -> Mapping[str, Any]:
+def _library(survey: ClipSurvey) -> dict[str, Any]:
     if not survey.unposed:
         return {}
     missing = "no clip has" if survey.unposed == len(survey.clips) else f"{survey.unposed} clips have no"
     return {
         "//library": [
-            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): these are matched with a keyframe",
-            "library, auto for the likeliest or a name out of keymark library list. Posed keyframes are more",
-            "exact; with a library some are enough.",
+            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): these are matched with a",
+            "keyframe library, auto for the likeliest or a name out of keymark library list. Posed keyframes",
+            "are more exact; with a library some are enough.",
         ],
         "library": AUTO,
         "//floor_m": "height of the floor where the matrix above says how high the camera stood",

@@ -8,7 +8,7 @@ from ..files.inherited import child_place
 
 _CAMERA = {
     "lens_mm": "the focal length in millimetres",
-    "sensor_width_mm": "the sensor's width in millimetres, 36 where the focal length is stated for full frame",
+    "sensor_width_mm": "the sensor's width in millimetres, 36 where lens_mm is that of full frame",
     "matrix_world": "where the camera stood, four rows of four numbers",
 }
 _COLOUR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"

@@ -38,12 +38,10 @@ def write_library_blend(
             file.
         ConversionError: A file cannot be written.
     """
-
-    def add(data: bpy.types.BlendData) -> list[tuple[bpy.types.Action, str]]:
-        catalogs = [catalog_of(library, posture) for posture in library.postures]
-        return list(zip(add_assets(library, data, pictures), catalogs, strict=True))
-
-    write_asset_blend(path, root or path.parent, add)
+    catalogs = [catalog_of(library, posture) for posture in library.postures]
+    with bpy.data.temp_data() as data:
+        assets = zip(add_assets(library, data, pictures), catalogs, strict=True)
+        write_asset_blend(path, root or path.parent, data, assets)
 
 
 def read_library_blend(path: Path) -> tuple[Library, ...]:

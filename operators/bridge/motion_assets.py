@@ -1,4 +1,4 @@
-"""Whole motions as Action assets, made without any armature.
+"""Whole motions as assets: Actions, and actors that they animate.
 
 The curves are those that `convert` writes: of an armature as Keymark builds it, at the world's origin, every
 bone in the rotation mode it is built with. All its actors have the same bones, so that any of them can be
@@ -13,15 +13,20 @@ import bpy
 
 from ...core.motion import Motion
 from ...core.report.thumbnail import thumbnail
-from .actions import new_channelbag
+from .actions import assign_action, new_channelbag
+from .armature import build_armature
 from .asset_blend import write_asset_blend
-from .assets import AssetDetails, mark_action
+from .assets import AssetDetails, mark_asset
 from .bone_channels import channels_at_rest
 from .bones import bone_models, rest_matrices, usual_mode
 from .fcurves import channel_columns
 from .frame_times import scene_frames
 from .keys import add_generated_keys
 from .object_space import AT_ORIGIN
+from .scene_file import own_scene
+
+MOTIONS, ACTORS = "Keymark", "Keymark Actors"
+"""Above the catalogs of all shoots."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,24 +35,10 @@ class MotionAsset:
 
     name: str
     catalog: str
-    """Path of its catalog, with slashes."""
+    """Path of its catalog below `MOTIONS` and `ACTORS`, with slashes."""
     description: str
     tags: tuple[str, ...]
     motion: Motion
-
-
-def add_motion_asset(data: bpy.types.BlendData, asset: MotionAsset) -> bpy.types.Action:
-    """Add an Action with a motion, marked as asset, to a file.
-
-    Args:
-        data: The file.
-        asset: The motion, with what is said of it; its catalog is the caller's to enter.
-    """
-    action = data.actions.new(asset.name)
-    write_motion_curves(action, asset.motion)
-    details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
-    mark_action(action, details, thumbnail(asset.motion))
-    return action
 
 
 def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
@@ -65,7 +56,10 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
 
 
 def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
-    """Write motions as Action assets into a .blend, and their catalogs into the file beside it.
+    """Write motions as assets into a .blend, and their catalogs into the file beside it.
+
+    Each is there twice: as an Action, which any actor can be given; and as an actor that it animates, because
+    only objects can be dragged from an asset browser into a scene.
 
     Args:
         path: The .blend; one that is there is replaced, while catalogs that are there are kept.
@@ -75,9 +69,26 @@ def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
         InputError: As `write_asset_blend`.
         ConversionError: As `write_asset_blend`.
     """
+    with own_scene("Motions") as scene:
+        write_asset_blend(path, path.parent, bpy.data, _made(scene, assets))
 
-    def add(data: bpy.types.BlendData) -> Iterator[tuple[bpy.types.Action, str]]:
-        for asset in assets:
-            yield add_motion_asset(data, asset), asset.catalog
 
-    write_asset_blend(path, path.parent, add)
+def _made(scene: bpy.types.Scene, assets: Iterable[MotionAsset]) -> Iterator[tuple[bpy.types.ID, str]]:
+    """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
+    actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
+    for asset in assets:
+        picture = thumbnail(asset.motion)
+        details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
+        action = bpy.data.actions.new(asset.name)
+        write_motion_curves(action, asset.motion)
+        mark_asset(action, details, picture)
+        yield action, f"{MOTIONS}/{asset.catalog}"
+        body = asset.motion.body
+        lengths = tuple(sorted(body.actor.segments_m.items()))
+        if lengths not in actors:
+            actors[lengths] = build_armature(scene, body)
+        actor = actors[lengths].copy()
+        actor.name = asset.name
+        assign_action(actor, action)
+        mark_asset(actor, details, picture)
+        yield actor, f"{ACTORS}/{asset.catalog}"

@@ -7,6 +7,12 @@ from ...core.conversion_record import NAME, read_record
 from ...core.errors import InputError
 from ...core.files.arrival import free_name
 from ...core.files.digest import content_digest
+from ...core.files.json_file import read_json, write_json
+
+AS_MADE = ".as_made.json"
+"""SHA-256 of files as they were made, beside the results; for those that differ from run to run, though
+what they hold does not, so that the record itself is always the same."""
+MOST_BYTES = 2**16
 
 
 def changed_files(
@@ -28,7 +34,7 @@ def changed_files(
         InputError: A file cannot be read.
     """
     try:
-        made = read_record(output).files
+        made = {**read_record(output).files, **read_json(output / AS_MADE, MOST_BYTES)}
     except InputError:
         made = {}
     kept = {}
@@ -41,6 +47,15 @@ def changed_files(
         if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
             kept[name] = free_name(there).relative_to(output).as_posix()
     return kept
+
+
+def note_as_made(place: Path, name: str) -> None:
+    """Write down what a file is like as long as nobody has worked in it.
+
+    Raises:
+        ConversionError: It cannot be written.
+    """
+    write_json(place / AS_MADE, {name: content_digest(place / name)})
 
 
 def kept_note(name: str, other: str) -> str:

@@ -23,7 +23,7 @@ from ...core.shoot.description import Description
 from ...core.take import Take, read_described
 from .blender_places import check_places
 from .blender_silence import blender_silence
-from .changed_files import changed_files, kept_note
+from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
 from .console import Console
 from .made import Conversion, conversion_record
 from .matching import chosen_libraries, solve
@@ -63,7 +63,7 @@ def convert(
     require_blender("writing motion.blend needs")
     check_places(description, output)
     aside: dict[str, str] = {}
-    with output_folder(output, BELONGINGS, RECORD, aside) as place:
+    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
         inputs = _inputs(description, output, settings)
         return _convert_into(place, output, inputs, console, debug, aside)
 
@@ -84,7 +84,7 @@ def convert_if_changed(
     require_blender("writing motion.blend needs")
     check_places(description, output)
     aside: dict[str, str] = {}
-    with output_folder(output, BELONGINGS, RECORD, aside) as place:
+    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
         inputs = _inputs(description, output, settings)
         if is_finished(output, inputs.digest):
             return None
@@ -126,7 +126,8 @@ def _convert_into(
     if solved.choice is not None:
         write_keyframes(place / KEYFRAMES, take.keyframes, take.body, take.frame_start)
     console.stage("Writing Blender's files")
-    _write_scene(take, result.motion, place, real_path(output), debug)
+    curves = _write_scene(take, result.motion, place, real_path(output), debug)
+    note_as_made(place, BLEND)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
         write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
@@ -135,7 +136,7 @@ def _convert_into(
     aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
     left_aside = (*_left_aside(description, settings), *(kept_note(*names) for names in aside.items()))
     conversion = Conversion(take, result, files, solved.choice, left_aside)
-    write_record(place, conversion_record(conversion, inputs.digest, place, made))
+    write_record(place, conversion_record(conversion, inputs.digest, place, made, {BLEND: curves}))
     return conversion
 
 
@@ -171,8 +172,8 @@ def require_blender(what: str) -> None:
         )
 
 
-def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> None:
-    """Let Blender write into `place`.
+def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> str:
+    """Let Blender write into `place`; returns the digest of the curves in the .blend.
 
     Blender stores the clip's path relative to where it writes, which must therefore lie as deep as `output`:
     where `place` does not, the files are written into `output` under hidden names first.
@@ -183,9 +184,10 @@ def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: b
         with blender_silence(debug):
             from ..bridge.scene_file import write_scene
 
-            write_scene(take, motion, hidden[BLEND], hidden[BVH])
+            curves = write_scene(take, motion, hidden[BLEND], hidden[BVH])
         for name, file in hidden.items():
             os.replace(file, place / name)
+        return curves
     finally:
         for file in hidden.values():
             file.unlink(missing_ok=True)

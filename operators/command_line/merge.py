@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ..bridge.motion_assets import MotionAsset
 
 ENDING = ".blend"
-CATALOGS = "Keymark"
-"""Above the catalogs of all shoots."""
 LONGEST_NAME = 63
 """Bytes of a data-block's name in Blender 4.5; later ones hold more."""
 LONGEST_TAG = 63
@@ -85,7 +83,7 @@ class Gathering:
             name = asset_name(result.name, names)
             names.add(name)
             catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
-            yield MotionAsset(name, f"{CATALOGS}/{catalog}", description(result), tags(result), motion)
+            yield MotionAsset(name, catalog, description(result), tags(result), motion)
         if not names:
             raise ConversionError(f"none of the results can be used: {_listed(self.damaged)}")
 

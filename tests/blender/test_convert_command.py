@@ -56,6 +56,7 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     ]
     assert main(words) == 0
     assert sorted(path.name for path in out.iterdir()) == [
+        ".as_made.json",
         "conversion.json",
         "motion.blend",
         "motion.bvh",

@@ -161,6 +161,32 @@ def test_curves_are_those_of_the_converted_scene(results: Path, tmp_path: Path) 
         assert max(abs(said[key] - expected[key]) for key in expected) < 3e-6
 
 
+def test_an_actor_that_is_dragged_into_a_scene_moves(
+    add_result: AddResult,
+    results: Path,
+    tmp_path: Path,
+    wave_motion: Motion,
+    shown_points: Callable[[bpy.types.Object], np.ndarray],
+) -> None:
+    """Each take's motion is there as an actor as well, in catalogs of their own, all on one armature."""
+    for name in ("day1/a", "day1/b"):
+        add_result(name)
+    assert merge(results, tmp_path / "library.blend") == 0
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), assets_only=True) as (found, wanted):
+        wanted.objects = list(found.objects)
+    actors = {actor.name: actor for actor in wanted.objects}
+    assert sorted(actors) == ["day1 a", "day1 b"]
+    assert len({actor.data for actor in actors.values()}) == 1
+    actor = actors["day1 b"]
+    assert catalogs(tmp_path)[actor.asset_data.catalog_id] == "Keymark Actors/results/day1"
+    assert tuple(actor.preview.image_size) == (256, 256)
+    assert actor.animation_data.action.name == "day1 b" and actor.animation_data.action.asset_data
+    bpy.context.scene.collection.objects.link(actor)
+    for frame in (1, 8, 13):
+        bpy.context.scene.frame_set(frame)
+        np.testing.assert_allclose(shown_points(actor), wave_motion.points[frame - 1], atol=1e-5)
+
+
 def test_merging_again_replaces_the_motions_and_keeps_the_catalogs(
     add_result: AddResult, results: Path, tmp_path: Path
 ) -> None:
