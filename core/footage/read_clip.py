@@ -59,8 +59,10 @@ def read_clip(
         seen = yield from sight_markers(watched(clip, watch, album), styles, expected)
     except InputError as error:
         why = watch.nothing_seen()
-        if why is None:
-            raise
-        raise InputError(f"{clip.path}: {why}") from error
+        if why is not None:
+            raise InputError(f"{clip.path}: {why}") from error
+        if clip.notes:
+            raise InputError("; ".join([str(error), *clip.notes])) from error
+        raise
     yield 1.0
     return Reading(tell_markers(seen, styles, expected), album, seen, key=key, noticed=watch.noticed())

@@ -33,6 +33,7 @@ def dynamic_range(path: Path) -> str | None:
 
 def _movie_box(path: Path) -> bytes:
     """Return the box in which MP4 and QuickTime describe their tracks; nothing where there is none."""
+    whole = path.stat().st_size
     with path.open("rb") as file:
         while len(head := file.read(8)) == 8:
             size = int.from_bytes(head[:4], "big")
@@ -40,7 +41,7 @@ def _movie_box(path: Path) -> bytes:
                 size = int.from_bytes(file.read(8), "big") - 8
             if head[4:] == b"moov":
                 return file.read(min(max(size - 8, 0), _LARGEST_INDEX))
-            if size < 8:
+            if not 8 <= size <= whole:
                 break
             file.seek(size - 8, 1)
     return b""
