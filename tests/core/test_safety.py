@@ -78,7 +78,7 @@ def _says(node: ast.AST | None, value: object) -> bool:
 
 
 def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path) -> None:
-    """Neither core nor operators load, call or name what could; what starts processes does so in one place."""
+    """Neither core nor operators load, call or name what could; processes are started in one place."""
     found = []
     for folder in ("core", "operators"):
         for file in sorted((repository / folder).rglob("*.py")):
@@ -111,7 +111,7 @@ def test_what_could_is_found(source: str) -> None:
 
 
 def test_what_is_innocent_passes() -> None:
-    """Processes where the batch starts them, arrays without pickles, patterns, and the package's own modules."""
+    """Processes where the batch starts them, arrays without pickles, patterns, own modules."""
     assert list(faults("operators.command_line.batch.pool", "import subprocess\nimport asyncio")) == []
     source = "np.load(path, allow_pickle=False)\nre.compile(text)\nfrom .code import x\nimport json"
     assert list(faults("core.take", source)) == []
@@ -137,8 +137,8 @@ import _boot
 _boot.load_package()
 from keymark.operators.cli import main
 seen = []
-FORBIDDEN = ("socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "urllib.",
-             "pickle.", "http.", "ftplib.", "webbrowser.")
+FORBIDDEN = ("socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork",
+             "urllib.", "pickle.", "http.", "ftplib.", "webbrowser.")
 def watch(event, given):
     if event.startswith(FORBIDDEN):
         seen.append([event, repr(given)[:80]])
