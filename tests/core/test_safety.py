@@ -22,6 +22,8 @@ ONLY_IN = {
     "asyncio": ("operators.command_line.batch",),
 }
 """Modules that have an innocent use, and where."""
+HARMLESS = {"urllib.parse"}
+"""Parts of a forbidden module that only take text apart."""
 CALLS = {"eval", "exec", "compile", "__import__"}
 CALLS |= {
     "os.system",
@@ -46,12 +48,13 @@ def dotted(node: ast.AST) -> str:
 
 
 def imported(node: ast.AST) -> list[str]:
-    """Names of the modules from elsewhere that a statement loads."""
+    """Names of the modules from elsewhere that a statement loads, up to the first dot."""
+    names: list[str] = []
     if isinstance(node, ast.Import):
-        return [alias.name.split(".")[0] for alias in node.names]
+        names = [alias.name for alias in node.names]
     if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-        return [node.module.split(".")[0]]
-    return []
+        names = [node.module]
+    return [name.split(".")[0] for name in names if name not in HARMLESS]
 
 
 def faults(module: str, source: str) -> Iterator[str]:
@@ -143,7 +146,7 @@ def watch(event, given):
     if event.startswith(FORBIDDEN):
         seen.append([event, repr(given)[:80]])
         raise RuntimeError(f"{event} is not allowed here")
-    if event == "open" and isinstance(given[2], int) and given[2] & (os.O_WRONLY | os.O_RDWR):
+    if event == "open" and not isinstance(given[0], int) and given[2] & (os.O_WRONLY | os.O_RDWR):
         seen.append(["write", os.path.realpath(os.fsdecode(given[0]))])
 sys.addaudithook(watch)
 status = main(words)
