@@ -44,7 +44,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory, page: str) -> Path:
 def test_its_commands_run(
     folder: Path, page: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`new` never replaces the file that is there; `check` names what is missing; words and paths are right."""
+    """`new` does not replace the file that is there, and `check` names the one that is missing."""
     monkeypatch.chdir(folder)
     lines = re.findall(r"^keymark (.*)$", page, flags=re.MULTILINE)
     said = {}

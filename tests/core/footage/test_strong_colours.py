@@ -27,11 +27,7 @@ def test_of_grey_pictures_there_is_nothing_to_say() -> None:
 def test_hues_have_names() -> None:
     """Red lies at both ends of the circle."""
     names = {(200, 30, 30): "red", (200, 30, 60): "red", (220, 190, 40): "yellow", (40, 150, 70): "green"}
-    names |= {
-        (50, 80, 220): "blue",
-        (190, 50, 150): "pink",
-        (120, 50, 160): "purple",
-        (220, 120, 50): "orange",
-    }
+    names |= {(50, 80, 220): "blue", (190, 50, 150): "pink", (120, 50, 160): "purple"}
+    names |= {(220, 120, 50): "orange", (46, 98, 114): "cyan"}
     for color, name in names.items():
         assert StrongColour(color, 0.01).hue == name
