@@ -10,7 +10,11 @@ import numpy as np
 import pytest
 from _shoot import write_frames, write_shoot
 from _synthetic_take import drawn_frames, true_postures
+from keymark.core.shoot.shoot import Shoot, ShootTake
+from keymark.core.shoot_check.take_check import TakeCheck
 from keymark.operators.cli import main
+from keymark.operators.command_line import check as command
+from keymark.operators.command_line.check_text import check_text
 
 FRAMES = 10
 TAKE = "day1/take01"
@@ -200,6 +204,37 @@ def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[
     assert check(shoot)[0] == 1
     status, said = check(shoot, "--library", "waving")
     assert status == 0 and {take["library"] for take in said["takes"]} == {"waving"}
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
+    pristine: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, jobs: str
+) -> None:
+    """The first is said of the take, without a traceback; the second is status 130."""
+    raised: list[BaseException] = [ZeroDivisionError("two\nlines")]
+
+    def fail(take: ShootTake, *_more: object) -> TakeCheck:
+        if take.name == TAKE:
+            raise raised[0]
+        return TakeCheck(take.name, (), ())
+
+    monkeypatch.setattr(command, "check_take", fail)
+    assert main(["check", str(pristine), "--jobs", jobs]) == 1
+    said = capsys.readouterr()
+    assert "take01.mp4: looking at it failed unexpectedly (ZeroDivisionError: two lines)" in said.out
+    assert said.out.count("\nready") == 2 and said.err == "keymark: 1 of 3 takes would not convert\n"
+    raised[0] = KeyboardInterrupt()
+    assert main(["check", str(pristine), "--jobs", jobs]) == 130
+    assert capsys.readouterr().err == "keymark: interrupted; nothing was written\n"
+
+
+def test_sentences_are_broken_to_the_terminal() -> None:
+    """Below their first word; what is no terminal gets whole lines."""
+    shoot = Shoot(Path("shoot"), ())
+    check = TakeCheck("one", ("a word " * 30,), ())
+    whole, broken = check_text(shoot, [check]).splitlines(), check_text(shoot, [check], 70).splitlines()
+    assert max(map(len, whole)) > 200 and max(map(len, broken[:6])) <= 70
+    assert broken[2].startswith("       ! a word") and broken[3].startswith("         word")
 
 
 def test_an_unusable_shoot_is_one_line_and_status_two(
