@@ -37,9 +37,9 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck]) -> str:
     together: dict[tuple[str, ...], list[str]] = {}
     for sentence, takes in shared.items():
         together.setdefault(tuple(takes), []).append(sentence)
-    for takes, sentences in together.items():
-        where = f"{len(takes)} takes ({listed(takes, MOST_NAMED)})"
-        lines += ["", f"In {'all takes' if len(takes) == len(checks) else where}:"]
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
         lines += [f"  {sentence}" for sentence in sentences]
     return "\n".join([*lines, "", _last_line(checks)])
 
