@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from clock import least_time
+from speed import COLUMNS, StageClock
 from takes import chosen_takes, load_project, write_results
 
 USUAL, USUAL_JOBS = "demo/aerobic", 2
@@ -25,7 +25,11 @@ TAKES, LOOPED = 12, 3
 MB_OF_MAXRSS = 2**20 if sys.platform == "darwin" else 2**10
 STATISTICS = Path("/proc/stat")
 NEEDED = ("take.json", "keyframes.json")
-LOOP, ONE, SEVERAL, AGAIN, CHECK = "loop", "one", "several", "again", "check"
+LOOP, ONE, SEVERAL, AGAIN, START, CHECK = "loop", "one", "several", "again", "start", "check"
+CONVERSIONS = 5
+"""So many are averaged for what a conversion is made of."""
+CORE = ("extract", "estimate")
+"""Columns of `speed.py` that are the core's own work; all others are what surrounds it."""
 
 
 @dataclass(frozen=True)
@@ -96,18 +100,24 @@ def cost(takes: int, *commands: Sequence[str]) -> Cost:
     return Cost(takes, wall_s, processor_s, peak, others)
 
 
-def core_s(take: Path) -> float:
-    """Processor time of reading and reconstructing a take alone, on one thread [s]: the shortest of three."""
+def conversion_s(take: Path) -> dict[str, float]:
+    """Processor time of a conversion's parts [s] as workers do it, on one thread: a mean after a first."""
     load_project()
     import cv2
-    from keymark.core.progress import run
-    from keymark.core.reconstruct import reconstruct
-    from keymark.core.take import read_take
+    from keymark.core.shoot.description import chosen_settings, describe
+    from keymark.operators.command_line.conversion import convert
 
     cv2.setNumThreads(1)
-    read = read_take(take)
-    run(reconstruct(read))
-    return least_time(lambda: run(reconstruct(read)))
+    description = describe(take)
+    spent = dict.fromkeys(COLUMNS, 0.0)
+    with tempfile.TemporaryDirectory() as temporary:
+        for number in range(CONVERSIONS + 1):
+            clock = StageClock(time.process_time)
+            output = Path(temporary) / str(number)
+            convert(description, output, clock, chosen_settings(description))  # type: ignore[arg-type]
+            if number:  # the first starts Blender
+                spent = {name: spent[name] + value for name, value in clock.seconds().items()}
+    return {name: value / CONVERSIONS for name, value in spent.items()}
 
 
 def measure(take: Path, count: int, jobs: int) -> dict[str, Cost]:
@@ -126,26 +136,28 @@ def measure(take: Path, count: int, jobs: int) -> dict[str, Cost]:
             ONE: cost(count, batch("one", 1)),
             SEVERAL: cost(count, batch("several", jobs)),
             AGAIN: cost(count, batch("several", 1)),
+            START: cost(1, [*batch("several", 1), "--take", looped[0].relative_to(shoot).as_posix()]),
             CHECK: cost(count, ["check", str(shoot), "--quiet"]),
         }
 
 
-def report(name: str, jobs: int, costs: dict[str, Cost], core: float, start: Cost) -> str:
+def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]) -> str:
     """Everything as Markdown."""
     titles = {
         LOOP: "`convert` in a loop",
         ONE: "`batch --jobs 1`",
         SEVERAL: f"`batch --jobs {jobs}`",
         AGAIN: "the same again",
+        START: "one take of it again",
         CHECK: "`check`",
     }
-    one = costs[ONE]
+    one, again, start = costs[ONE], costs[AGAIN], costs[START]
     lines = [
         f"Take {name}, {one.takes} copies; seconds and processor seconds a take, with starting up, and the "
-        "most memory a process held [MB]. `of one` is the throughput as a share of one job's; `others` is how "
-        "many processors others kept busy meanwhile.",
+        "most memory a process held [MB]. `of one` is the throughput as a share of one job's, by the clock "
+        "and by what the processors did; `others` is how many processors others kept busy meanwhile.",
         "",
-        "| way | takes | s a take | processor s | of one | of one, by processor time | MB | others |",
+        "| way | takes | s a take | processor s | of one | by processor | MB | others |",
         "|---|---:|---:|---:|---:|---:|---:|---:|",
     ]
     for key, found in costs.items():
@@ -157,22 +169,24 @@ def report(name: str, jobs: int, costs: dict[str, Cost], core: float, start: Cos
             f"| {titles[key]} | {found.takes} | {wall_s:.2f} | {processor_s:.2f} | {share:.2f} | "
             f"{by_processor:.2f} | {found.peak_mb:.0f} | {others} |"
         )
+    core = sum(parts[column] for column in CORE)
+    whole = sum(parts.values())
+    surrounding = ", ".join(
+        f"{title} {parts[title]:.2f}" for title in COLUMNS if title not in (*CORE, "start-up")
+    )
+    each = (again.processor_s - start.processor_s) / max(again.takes - 1, 1)
+    checked = costs[CHECK].processor_s / costs[CHECK].takes
     return "\n".join(
         [
             *lines,
             "",
-            f"Reading and reconstructing a take costs {core:.2f} s of processor time, a worker's start "
-            f"{start.processor_s:.2f} s. What one job spends beyond both, a take: "
-            f"{overhead_s(one, core, start):.2f} s. Checking a take costs "
-            f"{costs[CHECK].a_take[1] / one.a_take[1]:.0%} of converting it, finding it converted "
-            f"{costs[AGAIN].a_take[1] / one.a_take[1]:.0%}.",
+            f"In a worker that has started, a take costs {whole:.2f} s of processor time, {core:.2f} s of "
+            f"it for reading the footage and estimating; the rest ({surrounding}) is {whole - core:.2f} s. "
+            f"Starting a batch and its worker takes {start.processor_s:.2f} s, finding a take converted "
+            f"{each:.3f} s, checking one {checked:.2f} s: {each / whole:.1%} and {checked / whole:.0%} of "
+            "converting it.",
         ]
     )
-
-
-def overhead_s(one: Cost, core: float, start: Cost) -> float:
-    """Processor time a take beyond the core's work, with the start of the batch itself [s]."""
-    return (one.processor_s - start.processor_s) / one.takes - core
 
 
 def main(arguments: list[str]) -> int:
@@ -188,14 +202,10 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--jobs", metavar="N", type=int, default=USUAL_JOBS, help="workers at once")
     options = parser.parse_args(arguments)
     ((name, folder),) = chosen_takes([options.take]).items()
-    start = cost(1, ["worker"])
-    costs = measure(folder, options.takes, options.jobs)
-    core = core_s(folder)
-    values = {"take": name, "jobs": options.jobs, "core_s": core, "start": asdict(start)}
+    costs, parts = measure(folder, options.takes, options.jobs), conversion_s(folder)
+    values = {"take": name, "jobs": options.jobs, "conversion_s": parts}
     values["costs"] = {key: asdict(found) for key, found in costs.items()}
-    write_results(
-        "batch", report(name, options.jobs, costs, core, start), json.dumps(values, indent=1, default=str)
-    )
+    write_results("batch", report(name, options.jobs, costs, parts), json.dumps(values, indent=1))
     return 0
 
 

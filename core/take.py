@@ -170,6 +170,7 @@ def check_size(take: Take, clip: Clip) -> None:
         raise InputError(
             f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
             f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
+            f"{_turned(take, clip)}"
         )
 
 
@@ -185,8 +186,23 @@ def opened(path: Path, fps: float | None) -> Clip:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
 
 
-def check_frame_count(take: Take, count: int) -> None:
+def _turned(take: Take, clip: Clip) -> str:
+    """What to do where width and height are swapped."""
+    if clip.size != take.camera.resolution[::-1]:
+        return ""
+    return (
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and give "
+        "sensor_width_mm and the pose of the camera as it was held"
+    )
+
+
+def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """Hold the number of frames that a clip really has against the take.
+
+    Args:
+        take: The take.
+        count: The frames that there are.
+        claimed: Those that the clip's file says there are.
 
     Raises:
         InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
@@ -195,7 +211,7 @@ def check_frame_count(take: Take, count: int) -> None:
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
-            f"{take.clip.name} holds {count} frames that can be decoded"
+            f"{take.clip.name} holds {count} frames that can be decoded{_cut_off(count, claimed)}"
         )
     if take.camera.is_moving and len(take.camera.matrix_world) < count:
         poses = len(take.camera.matrix_world)
@@ -208,7 +224,15 @@ def check_frame_count(take: Take, count: int) -> None:
             raise InputError(
                 f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
                 f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
+                f"{_cut_off(count, claimed)}"
             )
+
+
+def _cut_off(count: int, claimed: int) -> str:
+    """What may be the matter where a file claims more frames than there are."""
+    if count >= claimed:
+        return ""
+    return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
 
 
 def check_in_front(take: Take) -> None:

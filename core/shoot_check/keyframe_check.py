@@ -23,7 +23,7 @@ def check_keyframes(take: Take, frames: int, with_library: bool, said: Findings)
         with_library: Whether a library says what lies between them.
         said: Takes the sentences.
     """
-    said.warn(*take.notes)
+    _check_fit(take, said)
     with said.noting():
         check_in_front(take)
     if said.problems or not take.keyframes:
@@ -31,6 +31,18 @@ def check_keyframes(take: Take, frames: int, with_library: bool, said: Findings)
     if not with_library:
         _check_gaps(take, frames, said)
     _check_picture(take, said)
+
+
+def _check_fit(take: Take, said: Findings) -> None:
+    if len(take.notes) <= MOST_NAMED:
+        said.warn(*take.notes)
+        return
+    residual = [keyframe.residual_m for keyframe in take.keyframes]
+    said.warn(
+        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to {100 * max(residual):.0f} "
+        "cm on average from any posture of this actor; check the actor's lengths, and whether these are the "
+        "performer's own keyframes"
+    )
 
 
 def _check_gaps(take: Take, frames: int, said: Findings) -> None:

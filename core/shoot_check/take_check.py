@@ -69,9 +69,10 @@ def check_take(
     clip = None
     with said.noting():
         clip = opened(description.clip, None)
-    said.problem(*unfilled(description.fields))
+    missing = unfilled(description.fields)
+    said.problem(*missing)
     frames = None if clip is None else count_frames(clip, said)
-    take = None if said.problems else _read(description, settings, said)
+    take = None if missing or clip is None else _read(description, settings, said)
     markers: tuple[MarkerReadout, ...] = ()
     if take is not None and clip is not None and frames is not None:
         markers = check_footage(take, clip, frames, said)
@@ -101,7 +102,7 @@ def _checked(
 ) -> TakeCheck:
     asked = None
     if clip is not None and frames is not None and not said.problems:
-        asked = effort(frames, clip.size, settings.method or METHODS[0], settings.library is not None)
+        asked = effort(frames, clip.size, settings.method or METHODS[0], settings.library)
     return TakeCheck(
         name=name,
         problems=said.problems,

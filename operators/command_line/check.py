@@ -10,6 +10,7 @@ from ...core.progress import Job, Progress, run
 from ...core.shoot.conversion_settings import ConversionSettings
 from ...core.shoot.open_shoot import open_shoot
 from ...core.shoot.shoot import Shoot
+from ...core.shoot_check.odd_takes import with_odd_ones
 from ...core.shoot_check.take_check import TakeCheck, check_take
 from .check_text import check_summary, check_text
 from .console import arguments_console
@@ -53,7 +54,7 @@ def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int) -> Job[list[Ta
     for index, check in _some_at_a_time(looks, jobs):
         checks[index] = check
         yield Progress(STAGE, len(checks) / len(looks))
-    return [checks[index] for index in sorted(checks)]
+    return with_odd_ones([checks[index] for index in sorted(checks)])
 
 
 def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:

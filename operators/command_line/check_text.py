@@ -10,6 +10,8 @@ from ...core.shoot_check.take_check import TakeCheck
 
 READY, LOOK, FAILS = "ready", "look", "fails"
 """It would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before what stops a conversion, and before what is only likely to go wrong."""
 FEWEST_IN_COMMON = 3
 """Takes that must share a sentence for it to be said once."""
 SHARE_IN_COMMON = 0.5
@@ -32,9 +34,13 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck]) -> str:
     """What was found, for people."""
     shared = _shared(checks)
     lines = _table(shoot, checks, shared)
+    together: dict[tuple[str, ...], list[str]] = {}
     for sentence, takes in shared.items():
+        together.setdefault(tuple(takes), []).append(sentence)
+    for takes, sentences in together.items():
         where = f"{len(takes)} takes ({listed(takes, MOST_NAMED)})"
-        lines += ["", f"In {'all takes' if len(takes) == len(checks) else where}:", f"  {sentence}"]
+        lines += ["", f"In {'all takes' if len(takes) == len(checks) else where}:"]
+        lines += [f"  {sentence}" for sentence in sentences]
     return "\n".join([*lines, "", _last_line(checks)])
 
 
@@ -49,9 +55,17 @@ def _table(shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str]) -> 
     lines = [_aligned(titles, widths)]
     for check, row in zip(checks, rows, strict=True):
         lines.append(_aligned(row, widths))
-        own = [sentence for sentence in (*check.problems, *check.warnings) if sentence not in said_once]
+        own = [sentence for sentence in _marked(check) if sentence not in said_once]
         lines += [f"{'':{widths[0]}}  {sentence}" for sentence in own]
     return lines
+
+
+def _marked(check: TakeCheck) -> tuple[str, ...]:
+    """All sentences on a take, those marked that stop its conversion."""
+    return (
+        *(f"{STOPS} {sentence}" for sentence in check.problems),
+        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
+    )
 
 
 def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
@@ -79,7 +93,7 @@ def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
     """Sentences that many takes share, with these: a mistake in a shoot's description is one mistake."""
     found: dict[str, list[str]] = {}
     for check in checks:
-        for sentence in (*check.problems, *check.warnings):
+        for sentence in _marked(check):
             found.setdefault(sentence, []).append(check.name)
     fewest = max(FEWEST_IN_COMMON, SHARE_IN_COMMON * len(checks))
     return {sentence: takes for sentence, takes in found.items() if len(takes) >= fewest}
@@ -90,7 +104,7 @@ def _last_line(checks: Sequence[TakeCheck]) -> str:
     said = [
         f"{counts[READY]} ready",
         f"{counts[LOOK]} to look at",
-        f"{counts[FAILS]} that would not convert",
+        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
     efforts = [check.effort for check in checks if check.effort is not None]
     line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(said)}."

@@ -35,19 +35,18 @@ class ImageSequence:
         size: width and height of every image in pixels.
         fps: frames per second.
         frame_count: number of frames.
-        notes: sentences on what is missing or left out.
+        notes: sentences on what is missing.
     """
 
-    def __init__(self, paths: Sequence[Path], fps: float, notes: Sequence[str] = ()) -> None:
-        """Take the files in order and read the first; more notes may be known already.
+    def __init__(self, paths: Sequence[Path], fps: float) -> None:
+        """Take the files in order and read the first.
 
         Raises:
             InputError: the first image cannot be read, or the rate is not above 0.
         """
         if not (np.isfinite(fps) and fps > 0.0):
             raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
-        self.paths, missing = _placed(paths)
-        self.notes = (*notes, *missing)
+        self.paths, self.notes = _placed(paths)
         self.fps = float(fps)
         self.frame_count = len(self.paths)
         first = read_image(paths[0])
@@ -120,8 +119,7 @@ def find_images(path: Path) -> list[Path] | None:
         InputError: a folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
-        images = _limited(path, (file for file in path.iterdir() if is_image(file)))
-        found = sorted(images, key=_natural_key)
+        found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return _only_sequence(path, found)

@@ -60,7 +60,7 @@ def _decoded(data: NDArray[np.uint8]) -> NDArray[Any] | None:
         with opencv_silence():
             image: NDArray[Any] | None = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
             return image
-    except cv2.error:  # larger than OpenCV takes
+    except cv2.error:  # among them a size above what core/__init__ lets OpenCV read
         return None
 
 

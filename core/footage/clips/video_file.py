@@ -15,6 +15,7 @@ from ...errors import InputError
 from .container import check_container, check_pixels
 from .last_rows import fill_last_rows
 from .opencv_silence import opencv_silence
+from .video_notes import video_notes
 
 Image = NDArray[np.uint8]
 
@@ -43,6 +44,7 @@ class VideoFile:
         size: width and height in pixels, after the rotation that the file asks for.
         fps: nominal frames per second.
         frame_count: number of frames the file claims, at least 1.
+        notes: sentences on what a person should know of it.
     """
 
     def __init__(self, path: Path) -> None:
@@ -66,6 +68,7 @@ class VideoFile:
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             self.fps: float = fps if 0.0 < fps < _HIGHEST_PLAUSIBLE_FPS else _FALLBACK_FPS
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
+            self.notes = video_notes(path, capture)
         most = path.stat().st_size // _SMALLEST_FRAME_BYTES
         self.frame_count: int = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
