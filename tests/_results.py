@@ -7,6 +7,7 @@ import bpy
 from _faults import tree
 from keymark.core.conversion_record import read_record
 from keymark.core.files.digest import content_digest
+from keymark.core.files.output_folder import real_path
 from keymark.operators.bridge.curve_digest import curve_digest
 from keymark.operators.command_line.changed_files import AS_MADE
 
@@ -34,10 +35,11 @@ def is_whole(folder: Path) -> bool:
 
 def blend_is_of(folder: Path) -> bool:
     """Whether the curves in motion.blend are those of the record."""
-    with bpy.data.temp_data() as data:
-        with data.libraries.load(str(folder / "motion.blend")) as (found, wanted):
-            wanted.objects = found.objects
-        digests = {curve_digest(thing) for thing in wanted.objects if thing.type == "ARMATURE"}
+    before = set(bpy.data.user_map())
+    with bpy.data.libraries.load(str(real_path(folder / "motion.blend"))) as (found, wanted):
+        wanted.objects = found.objects
+    digests = {curve_digest(thing) for thing in wanted.objects if thing.type == "ARMATURE"}
+    bpy.data.batch_remove(set(bpy.data.user_map()) - before)
     return digests == {read_record(folder).files["motion.blend"]}
 
 
