@@ -148,8 +148,14 @@ def choose(name: str, trial: Trial, libraries: Sequence[Library]) -> Chosen:
     choice, matching_ms = matched(name, trial.take, trial.reading, libraries)
     ranking = tuple((library.identifier, round(share, 4)) for library, share in choice.ranking)
     taken = NONE if choice.match is None else choice.match.library.identifier
-    right = taken in FITTING[name] if name in FITTING else None if taken == NONE else False
-    return Chosen(ranking, taken, right, choice.reason, matching_ms)
+    return Chosen(ranking, taken, is_right(name, taken), choice.reason, matching_ms)
+
+
+def is_right(name: str, chosen: str) -> bool | None:
+    """Whether a take shows what was chosen; None where it shows nothing that is shipped, and none was."""
+    if name in FITTING:
+        return chosen in FITTING[name]
+    return None if chosen == NONE else False
 
 
 def accuracy_table(results: dict[str, Measured]) -> str:

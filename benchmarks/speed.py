@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,14 +33,15 @@ COLUMNS = ("start-up", "read", "extract", "estimate", "write", "blend, bvh", "pi
 
 
 class StageClock:
-    """Takes the part of the command line's console and notes when each stage begins."""
+    """Takes the part of the command line's console and notes when each stage begins, by some clock."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self.began: list[tuple[str, float]] = []
+        self._clock = clock
 
     def stage(self, name: str) -> None:
         """A new stage begins."""
-        self.began.append((name, time.perf_counter()))
+        self.began.append((name, self._clock()))
 
     def progress(self, progress: Any) -> None:
         """A job goes on; its stage may have changed."""
@@ -48,7 +50,7 @@ class StageClock:
 
     def seconds(self) -> dict[str, float]:
         """Duration of each column's stages."""
-        ends = [*(moment for _, moment in self.began[1:]), time.perf_counter()]
+        ends = [*(moment for _, moment in self.began[1:]), self._clock()]
         durations = dict.fromkeys(COLUMNS, 0.0)
         for (name, moment), end in zip(self.began, ends, strict=True):
             if name in STAGES:

@@ -43,6 +43,8 @@ class ConversionRecord:
     fps: float
     keyframes: tuple[int, ...]
     """Scene frames."""
+    matched: tuple[int, ...]
+    """Those of them that were matched with a library; a person posed the others."""
     confidence: float | None
     """Mean over the frames of what a review believes, 0 to 1; None for a method without uncertainty."""
     weakest: float | None
@@ -52,7 +54,8 @@ class ConversionRecord:
     notes: tuple[str, ...]
     """What a person should know, one sentence each."""
     files: Mapping[str, str] = field(default_factory=dict)
-    """SHA-256 of every file of the result, by its path in the folder."""
+    """SHA-256 of every file of the result, by its path in the folder; for motion.blend, in which Blender
+    leaves memory addresses, that of its Action's curves."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
@@ -85,6 +88,7 @@ def read_record(folder: Path) -> ConversionRecord:
         frame_start=fields.whole("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
         fps=fields.number("fps", 1e-3, 1e4),
         keyframes=_frames(fields, "keyframes"),
+        matched=_frames(fields, "matched"),
         confidence=_share(fields, "confidence"),
         weakest=_share(fields, "weakest"),
         weak_frames=_frames(fields, "weak_frames"),

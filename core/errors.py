@@ -11,3 +11,7 @@ class InputError(KeymarkError):
 
 class ConversionError(KeymarkError):
     """The input was usable, yet no motion could be computed or written from it."""
+
+
+class BusyError(KeymarkError):
+    """Another process is at work on the same results; what it leaves may be what was wanted."""

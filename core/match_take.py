@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from .prior.matching.match import LibraryMatch, Prepared, Sought, match_library,
 from .prior.speed import marker_speed, propose_keyframes
 from .progress import Job, Progress, stretch, within
 from .reconstruct import read_footage
-from .take import Take
+from .shoot.description import Description
+from .take import Take, read_described
 
 TRIED = 5
 """So many libraries at most are matched as a whole where the first look leaves several."""
@@ -55,6 +57,19 @@ class LibraryChoice:
     reading: Reading | None = None
     """The clip as it was read again with the match to tell where each marker is; None where that changed
     nothing, and what was given holds."""
+
+
+def take_to_match(description: Description, keyframes: Path | None) -> Take:
+    """Read a take with the keyframes that a person posed; without a file named, with none.
+
+    What an earlier run has matched in that file is left out, since it is matched anew.
+
+    Raises:
+        InputError: The take or the keyframe file is unusable.
+    """
+    fewest = 0 if keyframes is None else 1
+    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
 def match_take(

@@ -173,8 +173,8 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     reading = yield from within(
         FOLLOWING, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0
     )
-    check_frame_count(take, reading.tracks.frame_count)
-    return replace(reading, notes=clip_notes(take, clip, reading.tracks))
+    check_frame_count(take, reading.tracks.frame_count, clip.frame_count)
+    return replace(reading, notes=clip_notes(take, clip, reading))
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:

@@ -128,6 +128,11 @@ def read_described(
     posed = keyframes or description.keyframes
     optional = keyframes is None and not keyframes_required
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
+    if not missing and keyframes is None and not os.path.exists(posed):
+        raise InputError(
+            f"{posed}: no such file; a take needs keyframes posed there, or a keyframe library to match, as "
+            'in "library": "auto"'
+        )
     return Take(
         folder=description.folder,
         clip=description.clip,
@@ -150,12 +155,8 @@ def open_clip(take: Take) -> Clip:
         InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
             poses or a keyframe do not fit.
     """
-    clip = _opened(take.clip, take.fps)
-    if clip.size != take.camera.resolution:
-        raise InputError(
-            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
-            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-        )
+    clip = opened(take.clip, take.fps)
+    check_size(take, clip)
     count = clip.frame_count
     if take.frame_count not in (None, count):
         count = len(clip.time_stamps())  # containers may claim a wrong number; decoding tells
@@ -163,15 +164,49 @@ def open_clip(take: Take) -> Clip:
     return clip
 
 
-def _opened(path: Path, fps: float | None) -> Clip:
+def check_size(take: Take, clip: Clip) -> None:
+    """Hold the size of a clip's frames against the take.
+
+    Raises:
+        InputError: The camera's resolution is another.
+    """
+    if clip.size != take.camera.resolution:
+        raise InputError(
+            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
+            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
+            f"{_turned(take, clip)}"
+        )
+
+
+def opened(path: Path, fps: float | None) -> Clip:
+    """Open a clip, of whatever take; `fps` is the rate of images.
+
+    Raises:
+        InputError: It is missing or unreadable.
+    """
     try:
         return Clip.open(path, fps=fps)
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
 
 
-def check_frame_count(take: Take, count: int) -> None:
+def _turned(take: Take, clip: Clip) -> str:
+    """What to do where width and height are swapped."""
+    if clip.size != take.camera.resolution[::-1]:
+        return ""
+    return (
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and give "
+        "sensor_width_mm and the pose of the camera as it was held"
+    )
+
+
+def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """Hold the number of frames that a clip really has against the take.
+
+    Args:
+        take: The take.
+        count: The frames that there are.
+        claimed: Those that the clip's file says there are.
 
     Raises:
         InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
@@ -180,7 +215,7 @@ def check_frame_count(take: Take, count: int) -> None:
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
-            f"{take.clip.name} holds {count} frames that can be decoded"
+            f"{take.clip.name} holds {count} frames that can be decoded{_cut_off(count, claimed)}"
         )
     if take.camera.is_moving and len(take.camera.matrix_world) < count:
         poses = len(take.camera.matrix_world)
@@ -193,7 +228,15 @@ def check_frame_count(take: Take, count: int) -> None:
             raise InputError(
                 f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
                 f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
+                f"{_cut_off(count, claimed)}"
             )
+
+
+def _cut_off(count: int, claimed: int) -> str:
+    """What may be the matter where a file claims more frames than there are."""
+    if count >= claimed:
+        return ""
+    return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
 
 
 def check_in_front(take: Take) -> None:
@@ -266,7 +309,7 @@ def _with_the_clip(fields: Fields, path: Path) -> Fields:
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
     if fields.has("fps") and sized:
         return fields
-    clip = _opened(path, None)
+    clip = opened(path, None)
     told: dict[str, Any] = {}
     if not fields.has("fps") and clip.knows_its_rate:
         told["fps"] = clip.fps

@@ -15,11 +15,12 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ..core.errors import InputError, KeymarkError
-from ..core.files.letters import seen
 from .command_line.arguments import build_parser
 from .command_line.blender_silence import codec_silence
-from .command_line.line_parser import UsageError, program_name
+from .command_line.line_parser import UsageError, complain
 
+AS_IN_BLENDER = ["--command", "keymark"]
+"""What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
@@ -35,6 +36,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit status.
     """
     words = list(sys.argv[1:] if argv is None else argv)
+    if words[: len(AS_IN_BLENDER)] == AS_IN_BLENDER:
+        words = words[len(AS_IN_BLENDER) :]
     debug = "--debug" in words
     if "numpy" not in sys.modules:  # which reads these once, when it is loaded
         for variable in ONE_THREAD:
@@ -48,8 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE
-    except KeyboardInterrupt:
-        return _say("interrupted; nothing was written", INTERRUPTED, debug)
+    except KeyboardInterrupt as stop:
+        return _say(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
     except (UsageError, InputError) as error:
         return _say(str(error), UNUSABLE, debug)
     except KeymarkError as error:
@@ -65,12 +68,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _say(sentence: str, status: int, debug: bool) -> int:
-    """Write one line on standard error, whatever the sentence holds."""
+    """Write one line on standard error."""
     if debug:
         traceback.print_exc()
-    line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
-    encoding = sys.stderr.encoding or "utf-8"
-    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+    complain(sentence)
     return status
 
 

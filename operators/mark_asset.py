@@ -25,7 +25,7 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
         """Add the catalog to its file, then mark the Action."""
         with reported(self):
             from .bridge.asset_catalogs import catalog_file, ensure_catalog
-            from .bridge.assets import AssetDetails, action_picture, mark_action
+            from .bridge.assets import AssetDetails, action_picture, mark_asset
 
             take = active_take(context.scene)
             settings, action = take.finish, take.finish.action or take.motion_action
@@ -33,7 +33,7 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
             catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
             tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
             details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
-            mark_action(action, details, picture)
+            mark_asset(action, details, picture)
             refresh_asset_browsers(context)
             warn_if_outdated(self, take)
             say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)

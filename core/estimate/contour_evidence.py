@@ -34,6 +34,8 @@ SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """How far a performer's parts are from average ones: thickness at both ends, and place."""
 EDGE_STD_M = 0.012
 FEWEST_EDGES = 20
+FEWEST_SEEN = 0.1
+"""Share of the frames in which something must be to be seen."""
 DEGREES = 4.0
 
 
@@ -61,7 +63,7 @@ class ContourEvidence:
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
         for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-            pictures = _pictures(album, frame[chunk])
+            pictures = album.pictures(frame[chunk])
             predicted, edges = _look(model, album, self.appearance, posture[chunk], frame[chunk], pictures)
             found = np.isfinite(edges.variance)
             place = predicted.pixel + edges.distance[..., None] * predicted.normal
@@ -87,13 +89,15 @@ def learn_contours(
         keyframes: Frames whose posture is known best.
 
     Returns:
-        None where no background can be trusted: before a moving camera, or where pictures are missing.
+        None where no background can be trusted: before a moving camera, or where most pictures are missing.
     """
-    frame = np.arange(posture.batch[0])
-    if camera.is_moving or not all(int(index) in album for index in frame):
+    seen = np.array([index in album for index in range(posture.batch[0])])
+    keyframes = keyframes[seen[keyframes]]
+    if camera.is_moving or np.mean(seen) < FEWEST_SEEN or len(keyframes) == 0:
         return None
+    frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
-    appearance = yield from _learn(model, album, posture, frame)
+    appearance = yield from _learn(model, album, posture[frame], frame)
     if not appearance.steady:
         return None
     known = keyframes[evenly_chosen(keyframes, MOST_KEYFRAMES)]
@@ -115,21 +119,20 @@ def _learn(
     return learn_appearance(images, labels, len(model.parts.segments))
 
 
-def _pictures(album: Album, frame: NDArray[np.intp]) -> NDArray[np.uint8]:
-    return np.stack([album.picture(int(index)) for index in frame])
-
-
 def _look(
     model: ContourModel,
     album: Album,
     appearance: Appearance,
     posture: Posture,
     frame: NDArray[np.intp],
-    pictures: NDArray[np.uint8],
+    pictures: tuple[NDArray[np.uint8], NDArray[np.bool_]],
 ) -> tuple[ContourPrediction, Edges]:
     pose = model.body.pose(posture)
     predicted = model.evaluate(pose, frame)
-    return predicted, find_edges(model, predicted, pose, frame, pictures, album.factor, appearance)
+    image, known = pictures
+    edges = find_edges(model, predicted, pose, frame, image, album.factor, appearance)
+    edges.distance[~known], edges.variance[~known] = 0.0, np.inf
+    return predicted, edges
 
 
 def _fitted(
@@ -137,7 +140,7 @@ def _fitted(
 ) -> Generator[None, None, ContourModel]:
     """The model with shapes that explain the edges of postures known best."""
     stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)
-    pictures = [_pictures(album, frame[chunk]) for chunk in stretches]
+    pictures = [album.pictures(frame[chunk]) for chunk in stretches]
     for _ in range(ROUNDS):
         known = []
         for chunk, seen in zip(stretches, pictures, strict=True):

@@ -3,7 +3,7 @@
 import json
 import os
 import re
-import tempfile
+import shutil
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
@@ -11,7 +11,9 @@ from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
+from .folder_lock import LOCK, folder_lock, hidden_name
 from .ordinary import ordinary_size
+from .to_disk import to_disk
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""
@@ -19,6 +21,8 @@ DEEPEST = 50
 """Levels of lists and objects; no file of ours has ten."""
 MOST_LISTS = 4 * 10**6
 """Lists and objects of a file, each of which takes many times its two letters once it is read."""
+WORK = "-work"
+"""What the names of folders in which single files are made end with."""
 MOST_DIGITS = 15
 """Whole numbers of more digits have no exact float64."""
 
@@ -103,15 +107,26 @@ def write_json(path: Path, value: Any, indent: int | None = None) -> None:
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` make a file beside `path` and move it into place, so that `path` is never half a file.
 
+    Who writes the same file meanwhile waits. What a killed process has left goes with the next writing.
+
     Raises:
         ConversionError: The file cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".keymark-", dir=path.parent) as folder:
-            beside = Path(folder) / path.name
-            write(beside)
-            os.replace(beside, path)
+        stem = path.parent / hidden_name(path.name)
+        busy = f"{path}: another process has been writing it for too long; try again when it has finished"
+        with folder_lock(stem.with_name(stem.name + LOCK), busy, wait=True):
+            folder = stem.with_name(stem.name + WORK)
+            try:
+                if os.path.lexists(folder):
+                    shutil.rmtree(folder)
+                folder.mkdir()
+                beside = folder / path.name
+                write(beside)
+                to_disk(beside)
+                os.replace(beside, path)
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
     except OSError as error:
         raise ConversionError(f"{path}: cannot be written ({error.strerror or error})") from error
 

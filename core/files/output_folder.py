@@ -1,72 +1,143 @@
-"""A folder of results that appears whole or not at all."""
+"""A folder of results that appears whole or not at all, whatever ends the process that makes it."""
 
 import errno
 import os
-import secrets
 import shutil
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..errors import ConversionError, InputError
+from ..errors import ConversionError, InputError, KeymarkError
+from .arrival import Arrival, announce, clear, files_below, found_arrival, move_in, undo
+from .folder_lock import LOCK, folder_lock, hidden_name
+from .to_disk import LOSSES
+
+NOTHING_ASIDE: Mapping[str, str] = {}
 
 
 @contextmanager
-def output_folder(path: Path, belongings: Collection[str] = ()) -> Iterator[Path]:
+def output_folder(
+    path: Path,
+    belongings: Collection[str] = (),
+    seal: str | None = None,
+    aside: Mapping[str, str] = NOTHING_ASIDE,
+) -> Iterator[Path]:
     """Give an empty folder beside `path`; when the block ends well, what is in it moves into `path`.
 
-    Until then, and for good where the block raises, `path` stays as it was; a folder that was not there is
-    not there afterwards either. Files of other names in `path` are kept. A reader may see the files of a set
-    arrive one after the other, but each of them whole.
+    Until then, and for good where the block raises or makes nothing, `path` stays as it was; a folder that
+    was not there is not there afterwards either. Files of other names in `path` are kept. A folder that was
+    not there appears at once; in one that was, a reader sees the files of a set arrive one after the other,
+    each of them whole, and the seal only while all are there and of one set.
+
+    Where a process was killed, the next that comes to `path` ends what it had completed and removes what it
+    had not, before the block begins.
 
     Args:
         path: The folder; made with its parents where it is missing.
         belongings: Names, relative to `path`, of all files that such a block may make. Those left from an
             earlier run that this one does not make are removed, so that a set is never of two runs.
+        seal: Name of the file that vouches for the others.
+        aside: Names of files in `path` that would be replaced or removed, and the names that they get
+            instead; it is looked at when the block has ended.
 
     Raises:
         InputError: `path` is no folder, or nothing can be written there.
+        BusyError: Another process or thread works on the same folder.
         ConversionError: The files cannot be moved into place.
     """
-    target = Path(os.path.realpath(path))
-    if target.exists() and not target.is_dir():
-        raise InputError(f"{path}: is a file; the output must be a folder, new or old")
-    above = [folder for folder in target.parents if not folder.exists()]
     try:
-        new = _work_folder(target)
-    except OSError as error:
-        _remove_empty(above)
-        raise InputError(f"{path}: cannot be written ({error.strerror}); name a folder that can") from error
-    old = new.with_name(f"{new.name}-old")
+        target = _target(path)
+        above = [folder for folder in target.parents if not folder.exists()]
+        stem = _level(target) / hidden_name(target.name)
+    except (OSError, ValueError) as error:
+        raise _refused(path, error) from error
+    busy = f"{path}: another process is writing there; try again when it has finished"
+    entered = False
     try:
-        yield new
-        _move_into(target, new, old, belongings)
+        with folder_lock(stem.with_name(stem.name + LOCK), busy):
+            empty = Arrival(target, stem, seal)
+            _tidy(empty)
+            empty.new.mkdir()
+            entered = True
+            yield from _filled(empty, belongings, aside)
+    except KeymarkError:
+        raise
     except OSError as error:
-        raise ConversionError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise _failed(path, error) if entered else _refused(path, error) from error
     finally:
-        shutil.rmtree(new, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)
         _remove_empty(above)
 
 
-def _work_folder(target: Path) -> Path:
-    """Make a folder from which files can be moved into `target`: beside it, or else inside it.
+def _filled(empty: Arrival, belongings: Collection[str], aside: Mapping[str, str]) -> Iterator[Path]:
+    """Let the set be made, then move it in."""
+    done: list[tuple[Path, Path]] = []
+    try:
+        yield empty.new
+        made = files_below(empty.new)
+        if made:
+            gone = tuple(sorted(set(belongings) - set(made)))
+            arrival = Arrival(empty.target, empty.stem, empty.seal, made, gone, dict(aside))
+            announce(arrival)
+            move_in(arrival, done)
+    except BaseException:
+        undo(empty, done)  # where this fails, the next to come ends what was begun
+        clear(empty)
+        raise
+    clear(empty)
 
-    Beside is not possible where `target` is a mounted volume or its parent is not ours to write.
+
+def _tidy(empty: Arrival) -> None:
+    """End or remove what a killed process has left."""
+    found = found_arrival(empty)
+    if found is not None:
+        move_in(found, [])
+    clear(empty)
+    if empty.stem.parent == empty.target:
+        for rest in empty.target.glob(f"{empty.stem.name}-*"):  # Blender's files, see `blend_place`
+            rest.unlink(missing_ok=True)
+    for rest in (empty.new, empty.old):
+        if os.path.lexists(rest):
+            shutil.rmtree(rest)  # which could not be removed: this time say why
+
+
+def real_path(path: Path) -> Path:
+    """A path from the root, links resolved, with one slash before it: two mean something to Blender."""
+    real = os.path.realpath(path)
+    return Path("/" + real.lstrip("/") if real.startswith("//") else real)
+
+
+def _target(path: Path) -> Path:
+    target = real_path(path)
+    if os.path.lexists(target) and not target.is_dir():
+        raise FileExistsError(errno.EEXIST, "is a file; the output must be a folder, new or old")
+    return target
+
+
+def _level(target: Path) -> Path:
+    """The folder from which files can be moved into `target`: that it lies in, or else itself.
+
+    The first is not possible where `target` is a mounted volume or its parent is not ours to write.
     """
-    if target.is_dir() and not os.access(target, os.W_OK | os.X_OK):
-        raise PermissionError(errno.EACCES, "no permission")
-    token = secrets.token_hex(4)
-    folder = target.parent / f".{target.name}-{token}"
     if not target.is_dir():
-        folder.mkdir(parents=True)
-        return folder
-    if os.access(target.parent, os.W_OK | os.X_OK) and target.stat().st_dev == target.parent.stat().st_dev:
-        folder.mkdir()
-        return folder
-    inside = target / f".keymark-{token}"
-    inside.mkdir()
-    return inside
+        return target.parent
+    if not os.access(target, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, "no permission")
+    beside = os.access(target.parent, os.W_OK | os.X_OK)
+    return target.parent if beside and target.stat().st_dev == target.parent.stat().st_dev else target
+
+
+def _refused(path: Path, error: Exception) -> KeymarkError:
+    """The sentence on a place where nothing can be begun."""
+    if isinstance(error, OSError) and error.errno in LOSSES:
+        return _failed(path, error)
+    if isinstance(error, FileExistsError) and error.filename is None:
+        return InputError(f"{path}: {error.strerror}")
+    reason = (error.strerror if isinstance(error, OSError) else None) or error
+    return InputError(f"{path}: cannot be written ({reason}); name a folder that can")
+
+
+def _failed(path: Path, error: OSError) -> ConversionError:
+    return ConversionError(f"{path}: cannot be written ({error.strerror or error})")
 
 
 def _remove_empty(folders: Sequence[Path]) -> None:
@@ -76,32 +147,3 @@ def _remove_empty(folders: Sequence[Path]) -> None:
             folder.rmdir()
         except OSError:
             return
-
-
-def _move_into(target: Path, new: Path, old: Path, belongings: Collection[str]) -> None:
-    """Move all files below `new` into `target`; put everything back where one cannot be moved."""
-    made = {file.relative_to(new) for file in new.rglob("*") if file.is_file()}
-    replaced = sorted(made | {Path(name) for name in belongings})
-    undo: list[tuple[Path, Path]] = []
-    was_there = target.exists()
-    try:
-        for name in replaced:
-            if (target / name).is_file():
-                _move(target / name, old / name, undo)
-        for name in sorted(made):
-            _move(new / name, target / name, undo)
-    except BaseException:
-        for source, destination in reversed(undo):
-            os.replace(destination, source)
-        if not was_there:
-            shutil.rmtree(target, ignore_errors=True)
-        raise
-    for folder in {(target / name).parent for name in replaced} - {target}:
-        if folder.is_dir() and not any(folder.iterdir()):
-            folder.rmdir()
-
-
-def _move(source: Path, destination: Path, undo: list[tuple[Path, Path]]) -> None:
-    destination.parent.mkdir(parents=True, exist_ok=True)
-    os.replace(source, destination)
-    undo.append((source, destination))

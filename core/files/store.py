@@ -12,21 +12,20 @@ import zlib
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from time import time
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .json_file import write_whole
+from ..errors import BusyError
+from .folder_lock import HIDDEN, LOCK, folder_lock
+from .json_file import WORK, write_whole
 
 Arrays = dict[str, NDArray[Any]]
 
 SUFFIX = ".npz"
 LARGEST_BYTES = 2 * 2**30
 """Some hundred takes of a minute."""
-ABANDONED_S = 24.0 * 3600.0
-"""What is half-written and has lain so long, its writer has left behind."""
 _KEY = re.compile(r"[a-z0-9][a-z0-9-]{0,120}")
 _DAMAGED = (OSError, ValueError, EOFError, KeyError, NotImplementedError, zipfile.BadZipFile, zlib.error)
 
@@ -87,8 +86,8 @@ class Store:
                 state = path.stat()
                 if path.suffix == SUFFIX:
                     found.append((state.st_mtime, state.st_size, path))
-                elif path.name.startswith(".keymark-") and time() - state.st_mtime > ABANDONED_S:
-                    shutil.rmtree(path, ignore_errors=True)
+                elif path.name.startswith(HIDDEN) and path.is_dir():
+                    _remove_abandoned(path)
         total = sum(size for _, size, _ in found)
         for _, size, path in sorted(found):
             if total <= self.largest_bytes:
@@ -97,3 +96,10 @@ class Store:
                 with suppress(OSError):
                     path.unlink()
                 total -= size
+
+
+def _remove_abandoned(folder: Path) -> None:
+    """Remove what was never finished, unless its writer is alive."""
+    lock = folder.with_name(folder.name.removesuffix(WORK) + LOCK)
+    with suppress(BusyError), folder_lock(lock, f"{folder}: is being written"):
+        shutil.rmtree(folder, ignore_errors=True)

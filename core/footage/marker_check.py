@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,11 +56,14 @@ class MarkerCheck:
         readouts: one a marker.
         model: the colours as they were learned, for previews.
         groups: of each colour, the markers that bear it.
+        missing: of each marker whose colour is nowhere, by index, a sentence that begins with its name; the
+            extraction refuses such a clip.
     """
 
     readouts: tuple[MarkerReadout, ...]
     model: ColourModel
     groups: tuple[tuple[int, ...], ...]
+    missing: Mapping[int, str]
 
 
 def check_markers(
@@ -101,7 +104,7 @@ def check_markers(
     ]
     yield 1.0
     groups = tuple(tuple(group) for group in colours.groups)
-    return MarkerCheck(tuple(readouts), colours.model, groups)
+    return MarkerCheck(tuple(readouts), colours.model, groups, complaints)
 
 
 def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:

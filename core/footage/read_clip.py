@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 
-from .clips.album import Album, watched
+from ..errors import InputError
+from .clips.album import Album
 from .clips.clip import Clip
+from .clips.frame_watch import FrameWatch
+from .clips.watched import watched
 from .marker_style import MarkerStyle
 from .markers import sight_markers, still_hold, tell_markers
 from .reading import Reading
@@ -39,7 +42,8 @@ def read_clip(
         The same, to the last digit, as without what was kept.
 
     Raises:
-        InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
+        InputError: nothing is to be seen in the clip, a marker's colour matches nothing, or a frame cannot be
+            read.
     """
     yield 0.0
     key = reading_key(clip.path, clip.fps, styles, expected)
@@ -50,7 +54,15 @@ def read_clip(
         seen = kept.sightings
         if seen is not None and of_same_footage(kept.key, key) and still_hold(seen, styles, expected):
             return replace(kept, tracks=tell_markers(seen, styles, expected), key=key)
-    album = Album() if with_album else None
-    seen = yield from sight_markers(clip if album is None else watched(clip, album), styles, expected)
+    album, watch = Album() if with_album else None, FrameWatch()
+    try:
+        seen = yield from sight_markers(watched(clip, watch, album), styles, expected)
+    except InputError as error:
+        why = watch.nothing_seen()
+        if why is not None:
+            raise InputError(f"{clip.path}: {why}") from error
+        if clip.notes:
+            raise InputError("; ".join([str(error), *clip.notes])) from error
+        raise
     yield 1.0
-    return Reading(tell_markers(seen, styles, expected), album, seen, key=key)
+    return Reading(tell_markers(seen, styles, expected), album, seen, key=key, noticed=watch.noticed())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .clips.album import Album
+from .clips.frame_watch import NOTHING_NOTICED, Noticed
 from .sightings import Sightings
 from .tracks import RegionTracks
 
@@ -19,6 +20,7 @@ class Reading:
         sightings: all regions of the markers' colours; None where they were not kept.
         notes: sentences on what may be wrong with the clip.
         key: of what it was read from and how, see `reading_key`; empty where nobody knows.
+        noticed: what is to be known of the frames themselves.
     """
 
     tracks: RegionTracks
@@ -26,3 +28,4 @@ class Reading:
     sightings: Sightings | None = None
     notes: tuple[str, ...] = ()
     key: str = ""
+    noticed: Noticed = NOTHING_NOTICED

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clips.album import Album
+from .clips.frame_watch import Noticed
 from .reading import Reading
 from .segmentation.regions import Regions
 from .sightings import Lesson, Sightings
@@ -27,6 +28,9 @@ def reading_arrays(reading: Reading) -> Arrays:
     arrays |= {
         "key": np.array(reading.key),
         "notes": _text(reading.notes),
+        "noticed.blank": np.array(reading.noticed.blank, dtype=np.int64),
+        "noticed.cuts": np.array(reading.noticed.cuts, dtype=np.int64),
+        "noticed.rest": np.array([reading.noticed.frames, reading.noticed.interlaced], dtype=np.int64),
         "tracks.names": _text(tracks.names),
         "tracks.notes": _text(tracks.notes),
         "tracks.size": np.array(tracks.size),
@@ -53,7 +57,10 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
     )
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
     seen = _sightings(_under("seen", arrays), tracks) if "seen.start" in arrays else None
-    return Reading(tracks, album, seen, tuple(arrays["notes"].tolist()), str(arrays["key"]))
+    frames, interlaced = arrays["noticed.rest"].tolist()
+    blank, cuts = (tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts"))
+    noticed = Noticed(frames, blank, cuts, bool(interlaced))
+    return Reading(tracks, album, seen, tuple(arrays["notes"].tolist()), str(arrays["key"]), noticed)
 
 
 def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:

@@ -12,7 +12,7 @@ from .clips.image_sequence import find_images
 from .marker_style import MarkerStyle
 from .tracks import ExpectedRegions
 
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 """Raised whenever a clip is read in another way, or kept in another form."""
 _MOST_SAMPLED: Final = 24
 """Of a folder of more images, this many, evenly spread, are looked into."""

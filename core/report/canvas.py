@@ -127,11 +127,16 @@ def write_png(path: str, image: Image) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 4])
-    if not done:
-        raise OSError(f"{path}: the picture cannot be encoded")
-    with open(path, "wb") as file:
-        file.write(data.tobytes())
+    _write(path, image, ".png", [cv2.IMWRITE_PNG_COMPRESSION, 4])
+
+
+def write_jpg(path: str, image: Image) -> None:
+    """Write a picture as JPEG, on every system to every path.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    _write(path, image, ".jpg", [cv2.IMWRITE_JPEG_QUALITY, 85])
 
 
 def ticks(low: float, high: float, most: int) -> Sequence[float]:
@@ -150,6 +155,14 @@ def _fixed(points: NDArray[np.float64]) -> NDArray[np.int32]:
     reach = 2.0**14  # far outside every picture; more would overflow
     places = np.clip(points * SCALE - 0.5, -reach, reach)
     return np.round(places * 2**SHIFT).astype(np.int32)[:, None]
+
+
+def _write(path: str, image: Image, kind: str, options: Sequence[int]) -> None:
+    done, data = cv2.imencode(kind, image, options)
+    if not done:
+        raise OSError(f"{path}: the picture cannot be encoded")
+    with open(path, "wb") as file:
+        file.write(data.tobytes())
 
 
 def _width(thickness: float) -> int:

@@ -11,15 +11,19 @@ from ..footage.clips.clip import Clip
 from ..footage.tracks import RegionTracks
 from ..motion import Motion
 from ..take import Take
-from .canvas import SCALE, Image, write_png
+from .canvas import SCALE, Image, write_jpg, write_png
 from .contact_sheet import chosen_frames
+from .film_strip import PICTURES as STRIP_FRAMES
+from .film_strip import film_strip
 from .match_sheet import match_sheet, shown_keyframes
 from .overlay_sheet import CELL_WIDTH, overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
 
 VIEWS = ("front", "side", "top")
-PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS))
+STRIP = "strip.jpg"
+"""The one that stands for the take in a list of many."""
+PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRIP)
 """Names of the pictures."""
 MATCHES = "matches.png"
 """Another, where keyframes were matched with a library."""
@@ -48,7 +52,8 @@ def write_pictures(
     frames = chosen_frames(len(motion.time_s))
     matched = any(keyframe.matched is not None for keyframe in take.keyframes)
     keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
-    wanted = sorted({*frames, *keyed})
+    in_strip = chosen_frames(len(motion.time_s), STRIP_FRAMES)
+    wanted = sorted({*frames, *in_strip, *keyed})
     source = Clip.open(take.clip, fps=take.fps).source
     shown = {frame: _as_shown(image) for frame, image in source.at(wanted)}
     found = {frame: shown[frame] for frame in frames if frame in shown}
@@ -63,7 +68,10 @@ def write_pictures(
         pictures[MATCHES] = match_sheet(take, shown)
     for name, picture in pictures.items():
         write_png(str(folder / name), picture)
-    return tuple(folder / name for name in pictures)
+    strip = {frame: shown[frame] for frame in in_strip if frame in shown}
+    write_jpg(str(folder / STRIP), film_strip(take, motion, strip))
+    matches = (MATCHES,) if matched else ()
+    return tuple(folder / name for name in (*PICTURES, *matches))
 
 
 def _as_shown(image: Image) -> Image:

@@ -2,6 +2,15 @@
 
 import bpy
 
+SLOT = "Actor"
+"""Of an Action that was made for no armature in particular."""
+
+
+def new_channelbag(action: bpy.types.Action) -> bpy.types.ActionChannelbag:
+    """The F-curves of an empty Action that any armature may be given."""
+    slot = action.slots.new(id_type="OBJECT", name=SLOT)
+    return action.layers.new("Layer").strips.new(type="KEYFRAME").channelbag(slot, ensure=True)
+
 
 def channelbag_for(action: bpy.types.Action, datablock: bpy.types.ID) -> bpy.types.ActionChannelbag:
     """The F-curves of `datablock` in `action`; slot, layer, strip and bag are added where missing."""

@@ -32,16 +32,16 @@ class AssetDetails:
     description: str
 
 
-def mark_action(action: bpy.types.Action, details: AssetDetails, picture: Image | None) -> None:
-    """Make an Action an asset, or change what is said of one.
+def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None) -> None:
+    """Make a data-block an asset, or change what is said of one.
 
     Args:
-        action: The Action.
+        asset: The data-block, an Action for example.
         details: What to say of it; its tags replace those it has.
         picture: (S, S, 3) blue, green, red: its preview; None keeps the one it has.
     """
-    action.asset_mark()
-    data = action.asset_data
+    asset.asset_mark()
+    data = asset.asset_data
     if details.catalog:
         data.catalog_id = details.catalog
     data.author, data.license = details.author, details.license
@@ -51,13 +51,13 @@ def mark_action(action: bpy.types.Action, details: AssetDetails, picture: Image 
     for name in details.tags:
         data.tags.new(name, skip_if_exists=True)
     if picture is not None:
-        _set_preview(action, picture)
+        _set_preview(asset, picture)
 
 
-def _set_preview(action: bpy.types.Action, picture: Image) -> None:
+def _set_preview(asset: bpy.types.ID, picture: Image) -> None:
     """Blender keeps previews from the bottom row up, red, green, blue, alpha from 0 to 1."""
     rgba = cv2.cvtColor(picture, cv2.COLOR_BGR2RGBA)[::-1].astype(np.float32) / 255.0
-    preview = action.preview_ensure()
+    preview = asset.preview_ensure()
     preview.image_size = (picture.shape[1], picture.shape[0])
     preview.image_pixels_float.foreach_set(np.ascontiguousarray(rgba).ravel())
 

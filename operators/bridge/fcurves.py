@@ -1,5 +1,7 @@
 """A motion as F-curves of an Action that animates the actor's armature."""
 
+from collections.abc import Callable, Iterable
+
 import bpy
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +11,7 @@ from ...core.body.skeleton import Skeleton
 from ...core.motion import Motion
 from .actions import assign_action, channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
-from .bone_channels import bone_channels
+from .bone_channels import BoneChannels, bone_channels
 from .keys import add_generated_keys, copy_as_generated, ensure_fcurve, remove_generated_keys
 from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
 
@@ -26,9 +28,17 @@ def posture_columns(
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
     """
+    bones = armature_object.pose.bones
+    return channel_columns(bone_channels(armature_object, postures), lambda bone: bones[bone].rotation_mode)
+
+
+def channel_columns(
+    channels: Iterable[BoneChannels], mode_of: Callable[[str], str]
+) -> list[tuple[str, int, str, Array]]:
+    """The same for channels of any bones, whose rotation modes `mode_of` knows by their names."""
     rows = []
-    for channel in bone_channels(armature_object, postures):
-        mode = armature_object.pose.bones[channel.bone].rotation_mode
+    for channel in channels:
+        mode = mode_of(channel.bone)
         values = {rotation_path(mode): rotation_values(channel.rotation, mode)}
         if channel.location is not None:
             values["location"] = channel.location

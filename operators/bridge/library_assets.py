@@ -25,7 +25,7 @@ from ...core.library.texts import LONGEST_NAME, text_fault, told_apart
 from ...core.report.canvas import Image
 from ...core.report.posture_picture import posture_picture
 from .asset_catalogs import catalog_identifier
-from .assets import AssetDetails, mark_action
+from .assets import AssetDetails, mark_asset
 from .posture_curves import read_posture_curves, write_posture_curves
 
 HEADER, POSTURE = "keymark_library", "keymark_posture"
@@ -107,7 +107,7 @@ def show_asset(
         license=library.license,
         description=library.description,
     )
-    mark_action(action, details, picture)
+    mark_asset(action, details, picture)
     alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
     asset = {"name": action.name, "tags": _asset_tags(action)}
     action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})

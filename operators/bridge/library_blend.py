@@ -1,18 +1,16 @@
 """Keyframe libraries as .blend files of pose assets with their catalogs: written, and read from strangers."""
 
-import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
 
-from ...core.errors import ConversionError, InputError
-from ...core.files.output_folder import output_folder
+from ...core.errors import InputError
 from ...core.library.library import Library
 from ...core.library.library_fields import MOST_POSTURES
 from ...core.report.canvas import Image
-from .asset_catalogs import NAME, ensure_catalog, read_catalogs
+from .asset_blend import write_asset_blend
 from .library_assets import add_assets, catalog_of, is_posture, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
@@ -40,22 +38,10 @@ def write_library_blend(
             file.
         ConversionError: A file cannot be written.
     """
-    root = root or path.parent
-    if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
-        raise InputError(f"{path}: is the open file, of which only pose assets would be left; name another")
-    read_catalogs(root / NAME)  # a sentence on its copy would name a file that is gone by then
-    with output_folder(root) as new, bpy.data.temp_data() as data:
-        if (root / NAME).exists():
-            shutil.copyfile(root / NAME, new / NAME)
-        actions = add_assets(library, data, pictures)
-        for action, posture in zip(actions, library.postures, strict=True):
-            action.asset_data.catalog_id = ensure_catalog(new / NAME, catalog_of(library, posture))
-        blend = new / path.relative_to(root)
-        blend.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            data.libraries.write(str(blend), set(actions), fake_user=True, compress=True)
-        except RuntimeError as error:
-            raise ConversionError(f"{path}: cannot be written ({_one_line(error)})") from error
+    catalogs = [catalog_of(library, posture) for posture in library.postures]
+    with bpy.data.temp_data() as data:
+        assets = zip(add_assets(library, data, pictures), catalogs, strict=True)
+        write_asset_blend(path, root or path.parent, data, assets)
 
 
 def read_library_blend(path: Path) -> tuple[Library, ...]:

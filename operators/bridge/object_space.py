@@ -33,6 +33,9 @@ class ObjectSpace:
         return np.asarray((places - self.location) @ self.rotation / self.scale)
 
 
+AT_ORIGIN = ObjectSpace(np.eye(3), np.zeros(3), 1.0)
+
+
 def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
     """The object's place in the world as it is evaluated, parents and constraints included.
 

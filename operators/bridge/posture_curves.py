@@ -16,12 +16,13 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind
 from ...core.finish.rig import channel_count
+from .actions import new_channelbag
 from .bone_channels import channels_at_rest
 from .bones import BoneModel, bone_models, rest_matrices, usual_mode
 from .fcurves import bone_path
 from .joint_frames import posture_from_frames
 from .keys import set_posed_keys
-from .object_space import ObjectSpace
+from .object_space import AT_ORIGIN
 from .rig import rig_at_rest
 from .rotation_modes import rotation_path, rotation_values
 
@@ -31,8 +32,6 @@ Values = dict[str, Array]
 
 FRAME = 1.0
 """The only frame of a pose asset."""
-SLOT = "Actor"
-AT_ORIGIN = ObjectSpace(np.eye(3), np.zeros(3), 1.0)
 SAME = 2e-6
 """Relative difference of channels that storing them in single precision makes, at most."""
 LARGEST_LOCATION_M = 1000.0
@@ -46,8 +45,7 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
         body: The body that was posed.
         posture: A single posture, the floor at z = 0.
     """
-    slot = action.slots.new(id_type="OBJECT", name=SLOT)
-    channelbag = action.layers.new("Layer").strips.new(type="KEYFRAME").channelbag(slot, ensure=True)
+    channelbag = new_channelbag(action)
     values = channel_values(body, posture)
     for model in _models(body):
         if model.chain:

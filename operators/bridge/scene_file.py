@@ -16,7 +16,9 @@ from ...core.errors import ConversionError
 from ...core.motion import Motion
 from ...core.take import Take
 from .armature import build_armature
+from .blend_writer import write_blend
 from .body_mesh import build_body_mesh
+from .curve_digest import curve_digest
 from .fcurves import write_motion
 from .footage import clip_rate
 from .frame_times import scene_frames
@@ -29,7 +31,7 @@ BVH_ORDER = "ZXY"
 """One order of rotation channels for all joints: some readers take the first joint's for all."""
 
 
-def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> None:
+def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
     """Write a motion as a .blend and, if asked for, as a BVH.
 
     The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
@@ -42,17 +44,21 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         blend_path: The .blend's place; its folder exists.
         bvh_path: The BVH's place, or None for none.
 
+    Returns:
+        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
+
     Raises:
         InputError: Blender cannot read the clip.
         ConversionError: Blender could not write a file.
     """
-    with _own_scene(f"{take.name} Motion") as scene:
+    with own_scene(f"{take.name} Motion") as scene:
         armature_object = fill_scene(scene, take, motion)
         with _moved_into_place(blend_path) as path:
-            _write_blend(scene, path)
+            write_blend(path, {scene}, path_remap="RELATIVE_ALL", fake_user=False)
         if bvh_path is not None:
             with _moved_into_place(bvh_path) as path:
                 write_bvh(armature_object, path)
+        return curve_digest(armature_object)
 
 
 def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.Object:
@@ -104,17 +110,8 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
             raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
-def _write_blend(scene: bpy.types.Scene, path: Path) -> None:
-    try:
-        bpy.data.libraries.write(
-            str(path), {scene}, path_remap="RELATIVE_ALL", fake_user=False, compress=True
-        )
-    except (RuntimeError, OSError) as error:
-        raise ConversionError(f"{path}: Blender could not write the file ({str(error).strip()})") from error
-
-
 @contextmanager
-def _own_scene(name: str) -> Iterator[bpy.types.Scene]:
+def own_scene(name: str) -> Iterator[bpy.types.Scene]:
     """A scene for the time being; it and everything made meanwhile is removed again."""
     collections = [
         getattr(bpy.data, kind)
@@ -147,7 +144,7 @@ def _own_scene(name: str) -> Iterator[bpy.types.Scene]:
 @contextmanager
 def _moved_into_place(path: Path) -> Iterator[Path]:
     """A path beside `path`; what is written there is moved to `path` at the end, or removed on failure."""
-    beside = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    beside = path.with_name(f".{path.stem.lstrip('.')}-{os.getpid()}{path.suffix}")
     try:
         yield beside
         os.replace(beside, path)

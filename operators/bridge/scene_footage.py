@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.errors import InputError
+from ...core.files.output_folder import real_path
 from ...core.footage.camera import Camera
 from ...core.footage.clips.image_sequence import find_images
 from .actions import assign_action, channelbag_for
@@ -51,7 +52,7 @@ def clip_file(path: Path) -> Path:
 
 def stored_path(file: Path) -> str:
     """How Blender notes a file: relative to the .blend, where that has a place and the animator wants so."""
-    place = str(file.resolve())
+    place = str(real_path(file))
     if not (bpy.data.filepath and bpy.context.preferences.filepaths.use_relative_paths):
         return place
     try:

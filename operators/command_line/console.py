@@ -10,6 +10,8 @@ from types import TracebackType
 from typing import Any
 
 from ...core.progress import Progress
+from .farm_progress import FarmProgress, is_wanted
+from .line_parser import complain
 
 JOB_SHARE = 0.9
 """What the job is of all a command does; the rest is writing files."""
@@ -19,7 +21,8 @@ class Console:
     """Progress, text and results of one command, as its options ask for; also its stopwatch.
 
     On a terminal progress is a bar on standard error, where tqdm is at hand; else a line of text for each
-    stage. With `--json` standard output gets one object and nothing else, with `--quiet` nothing at all.
+    stage, or the lines that a render farm asks for. With `--json` standard output gets one object and nothing
+    else, with `--quiet` nothing at all.
     """
 
     def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
@@ -29,6 +32,8 @@ class Console:
         self._stage = "Starting"
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
+        if is_wanted() and not quiet and not as_json:
+            self._bar = FarmProgress(self._write)
 
     def __enter__(self) -> "Console":
         """Start the command."""
@@ -60,6 +65,25 @@ class Console:
             self._bar.set_description(name)
         elif name and not self.quiet and not self.as_json:
             self._write(f"{name} ...")
+
+    def overall(self, fraction: float, name: str) -> None:
+        """Show how far many jobs are together, 0 to 1, and in a few words what they are doing."""
+        if self._bar is not None:
+            self._bar.set_description(name, refresh=False)
+            self._bar.update(max(0.0, 100.0 * fraction - self._bar.n))
+
+    def take(self, text: str, error: str | None) -> None:
+        """Say in a line what became of one of many takes; with `--quiet` only if that is an error."""
+        if self.as_json or (self.quiet and error is None):
+            return
+        if self.quiet:
+            complain(error or "")
+            return
+        if self._bar is not None:
+            self._bar.clear()
+        self._write(" ".join(text.split("\n")))
+        if self._bar is not None:
+            self._bar.refresh()
 
     def finish(self, result: dict[str, Any], text: str) -> None:
         """Say the result: the object with `--json`, else the text."""

@@ -8,10 +8,11 @@ from pathlib import Path
 from ...core.conversion_record import NAME as RECORD
 from ...core.conversion_record import is_finished, write_record
 from ...core.errors import ConversionError, InputError
-from ...core.files.output_folder import output_folder
+from ...core.files.output_folder import output_folder, real_path
 from ...core.keyframe_file import write_keyframes
 from ...core.library.library import Library
 from ...core.library.library_file import library_digest
+from ...core.match_take import take_to_match
 from ...core.motion import Motion
 from ...core.motion_file import write_motion
 from ...core.progress import run
@@ -20,10 +21,12 @@ from ...core.shoot.conversion_digest import conversion_digest
 from ...core.shoot.conversion_settings import METHODS, ConversionSettings
 from ...core.shoot.description import Description
 from ...core.take import Take, read_described
+from .blender_places import check_places
 from .blender_silence import blender_silence
+from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
 from .console import Console
 from .made import Conversion, conversion_record
-from .matching import chosen_libraries, solve, take_to_match
+from .matching import chosen_libraries, solve
 from .version import version
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
@@ -31,6 +34,8 @@ KEYFRAMES = "keyframes.json"
 BELONGINGS = (RECORD, MOTION, BLEND, BVH, *(f"{REPORT}/{name}" for name in PICTURES), f"{REPORT}/{MATCHES}")
 """Every file that a conversion may make, but for the keyframes: these a person may have corrected meanwhile,
 and only a conversion that makes them anew may replace them."""
+WORKED_IN = (BLEND, KEYFRAMES)
+"""What people go on working in; one that no record vouches for is taken to be theirs."""
 
 
 def convert(
@@ -56,9 +61,11 @@ def convert(
     """
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
-    with output_folder(output, BELONGINGS) as place:
+    check_places(description, output)
+    aside: dict[str, str] = {}
+    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
         inputs = _inputs(description, output, settings)
-        return _convert_into(place, output, inputs, console, debug)
+        return _convert_into(place, output, inputs, console, debug, aside)
 
 
 def convert_if_changed(
@@ -75,11 +82,13 @@ def convert_if_changed(
     """
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
-    with output_folder(output, BELONGINGS) as place:
+    check_places(description, output)
+    aside: dict[str, str] = {}
+    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
         inputs = _inputs(description, output, settings)
         if is_finished(output, inputs.digest):
             return None
-        return _convert_into(place, output, inputs, console, debug)
+        return _convert_into(place, output, inputs, console, debug, aside)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +108,14 @@ def _inputs(description: Description, output: Path, settings: ConversionSettings
     return _Inputs(description, settings, libraries, made_of)
 
 
-def _convert_into(place: Path, output: Path, inputs: _Inputs, console: Console, debug: bool) -> Conversion:
+def _convert_into(
+    place: Path,
+    output: Path,
+    inputs: _Inputs,
+    console: Console,
+    debug: bool,
+    aside: dict[str, str],
+) -> Conversion:
     description, settings = inputs.description, inputs.settings
     take = _take(description, settings, output)
     solving = solve(take, inputs.libraries, settings.method or METHODS[0], settings.floor_m)
@@ -110,15 +126,17 @@ def _convert_into(place: Path, output: Path, inputs: _Inputs, console: Console, 
     if solved.choice is not None:
         write_keyframes(place / KEYFRAMES, take.keyframes, take.body, take.frame_start)
     console.stage("Writing Blender's files")
-    _write_scene(take, result.motion, place, Path(os.path.realpath(output)), debug)
+    curves = _write_scene(take, result.motion, place, real_path(output), debug)
+    note_as_made(place, BLEND)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
         write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
     made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
     files = tuple(output / name for name in (*made, RECORD))
-    left_aside = _left_aside(description, settings)
+    aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
+    left_aside = (*_left_aside(description, settings), *(kept_note(*names) for names in aside.items()))
     conversion = Conversion(take, result, files, solved.choice, left_aside)
-    write_record(place, conversion_record(conversion, inputs.digest, place, made))
+    write_record(place, conversion_record(conversion, inputs.digest, place, made, {BLEND: curves}))
     return conversion
 
 
@@ -154,8 +172,8 @@ def require_blender(what: str) -> None:
         )
 
 
-def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> None:
-    """Let Blender write into `place`.
+def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> str:
+    """Let Blender write into `place`; returns the digest of the curves in the .blend.
 
     Blender stores the clip's path relative to where it writes, which must therefore lie as deep as `output`:
     where `place` does not, the files are written into `output` under hidden names first.
@@ -166,9 +184,10 @@ def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: b
         with blender_silence(debug):
             from ..bridge.scene_file import write_scene
 
-            write_scene(take, motion, hidden[BLEND], hidden[BVH])
+            curves = write_scene(take, motion, hidden[BLEND], hidden[BVH])
         for name, file in hidden.items():
             os.replace(file, place / name)
+        return curves
     finally:
         for file in hidden.values():
             file.unlink(missing_ok=True)

@@ -5,6 +5,8 @@ import sys
 from collections.abc import Callable
 from typing import NoReturn
 
+from ...core.files.letters import seen
+
 
 class UsageError(Exception):
     """The command line is unusable; the text is one sentence."""
@@ -25,6 +27,13 @@ def program_name() -> str:
     """How the user calls this program: by its own name, or as a command of Blender."""
     blender = sys.modules.get("bpy")
     return "blender --command keymark" if blender is not None and blender.app.binary_path else "keymark"
+
+
+def complain(sentence: str) -> None:
+    """Write one line on standard error, whatever the sentence holds."""
+    line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
+    encoding = sys.stderr.encoding or "utf-8"
+    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
 
 
 def add_command(

@@ -1,6 +1,6 @@
 """What a conversion made, and what is recorded of it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,7 +40,7 @@ class Conversion:
 
 
 def conversion_record(
-    conversion: Conversion, digest: str, place: Path, names: Sequence[str]
+    conversion: Conversion, digest: str, place: Path, names: Sequence[str], same: Mapping[str, str]
 ) -> ConversionRecord:
     """What is recorded of a conversion.
 
@@ -49,6 +49,7 @@ def conversion_record(
         digest: Of what it was made from.
         place: Where its files lie.
         names: Their paths from there.
+        same: Digests of files that differ from run to run, of that in them which does not.
     """
     take, motion = conversion.take, conversion.reconstruction.motion
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
@@ -65,9 +66,10 @@ def conversion_record(
         frame_start=motion.frame_start,
         fps=motion.fps,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
+        matched=tuple(k.index + motion.frame_start for k in take.keyframes if k.matched is not None),
         confidence=round(float(believed.mean()), 4) if len(believed) else None,
         weakest=round(float(np.percentile(believed, WEAKEST)), 4) if len(believed) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in judged.weak_frames),
         notes=conversion.notes,
-        files={name: content_digest(place / name) for name in names},
+        files={name: same.get(name) or content_digest(place / name) for name in names},
     )

@@ -1,8 +1,7 @@
 """Converting a take with a keyframe library in place of posed keyframes, or beside them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 from ...core.errors import ConversionError
@@ -12,8 +11,7 @@ from ...core.library.texts import EVERY_LIBRARY
 from ...core.match_take import LibraryChoice, match_take, with_matches
 from ...core.progress import Job, stretch
 from ...core.reconstruct import Reconstruction, read_footage, reconstruct
-from ...core.shoot.description import Description
-from ...core.take import Take, read_described
+from ...core.take import Take
 from .libraries import library_folders
 
 NAMED = 3
@@ -43,19 +41,6 @@ def chosen_libraries(wanted: str) -> tuple[Library, ...]:
     if wanted != EVERY_LIBRARY:
         return (find_library(wanted, folders),)
     return tuple(found.library for found in shelved(folders) if found.library is not None)
-
-
-def take_to_match(description: Description, keyframes: Path | None) -> Take:
-    """Read a take with the keyframes that a person posed; without a file named, with none.
-
-    What an earlier run has matched in that file is left out, since it is matched anew.
-
-    Raises:
-        InputError: The take or the keyframe file is unusable.
-    """
-    fewest = 0 if keyframes is None else 1
-    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
-    return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
 def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None) -> Job[Solved]:

@@ -46,6 +46,7 @@ def _add_check(commands: "Commands[LineParser]") -> None:
     )
     check.add_argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take")
     check.add_argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time")
+    _add_defaults(check)
 
 
 def _add_batch(commands: "Commands[LineParser]") -> None:
@@ -84,21 +85,34 @@ def _add_batch(commands: "Commands[LineParser]") -> None:
         help="convert this take only, named by its way from SHOOT; may be given several times",
     )
     batch.add_argument("--again", action="store_true", help="convert takes anew that are converted already")
+    _add_defaults(batch)
+    batch.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
     batch.add_argument(
+        "--failed-takes",
+        choices=("fail", "pass"),
+        default="fail",
+        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm "
+        "goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+    )
+
+
+def _add_defaults(command: LineParser) -> None:
+    """Add what counts where a shoot says nothing."""
+    command.add_argument(
         "--library",
         metavar="NAME|FILE|auto",
+        type=_unless_empty,
         help="match takes with this keyframe library where nothing in SHOOT names one",
     )
-    batch.add_argument(
+    command.add_argument(
         "--floor",
         metavar="HEIGHT",
         type=float,
         help="height of the floor in metres where nothing in SHOOT says it",
     )
-    batch.add_argument(
+    command.add_argument(
         "--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"
     )
-    batch.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
 
 
 def _add_merge(commands: "Commands[LineParser]") -> None:
@@ -117,34 +131,39 @@ def _add_merge(commands: "Commands[LineParser]") -> None:
     merge.add_argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name")
 
 
+def _unless_empty(text: str) -> str | None:
+    """A text; none where it is empty, as farms give what nobody has filled in."""
+    return text or None
+
+
 # Commands are imported when they run: --help and mistakes shall not wait for scipy, OpenCV and Blender.
 
 
 def _new(arguments: argparse.Namespace) -> None:
-    from .new import new_command  # type: ignore[import-not-found]
+    from .new import new_command
 
     new_command(arguments)
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from .check import check_command  # type: ignore[import-not-found]
+    from .check import check_command
 
     check_command(arguments)
 
 
 def _batch(arguments: argparse.Namespace) -> None:
-    from .batch.command import batch_command  # type: ignore[import-not-found]
+    from .batch.command import batch_command
 
     batch_command(arguments)
 
 
 def _merge(arguments: argparse.Namespace) -> None:
-    from .merge import merge_command  # type: ignore[import-not-found]
+    from .merge import merge_command
 
     merge_command(arguments)
 
 
 def _worker(_arguments: argparse.Namespace) -> None:
-    from .batch.worker import worker_command  # type: ignore[import-not-found]
+    from .batch.worker import worker_command
 
     worker_command()

@@ -55,7 +55,13 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
         "--quiet",
     ]
     assert main(words) == 0
-    assert sorted(path.name for path in out.iterdir()) == ["motion.blend", "motion.bvh", "motion.json"]
+    assert sorted(path.name for path in out.iterdir()) == [
+        ".as_made.json",
+        "conversion.json",
+        "motion.blend",
+        "motion.bvh",
+        "motion.json",
+    ]
     bpy.ops.wm.open_mainfile(filepath=str(out / "motion.blend"))
     (clip,) = bpy.data.movieclips
     assert Path(os.path.normpath(bpy.path.abspath(clip.filepath))).is_file()

@@ -113,11 +113,11 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(
     target = tmp_path / "motion.blend"
     target.write_bytes(b"old")
 
-    def fail(scene: bpy.types.Scene, path: Path) -> None:
+    def fail(path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
         path.write_bytes(b"half")
         raise ConversionError("the disk is full")
 
-    monkeypatch.setattr(scene_file, "_write_blend", fail)
+    monkeypatch.setattr(scene_file, "write_blend", fail)
     with pytest.raises(ConversionError, match="disk is full"):
         write_scene(tiny_take, wave_motion, target, None)
     assert target.read_bytes() == b"old"

@@ -30,6 +30,7 @@ HEIGHTS = {
     "core.reconstruct": 7,
     "core.report": 8,
     "core.review": 8,
+    "core.shoot_check": 8,
     "operators.bridge": 9,
     "operators": 10,
 }

@@ -43,8 +43,10 @@ def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None
 
 def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
     """A take that shows something known must be recognised; others may go without a library."""
-    walking = [read_library(SHIPPED / "walking.json")]
-    assert bench.choose("walk", trial, walking).right is True
-    assert bench.choose("reach", trial, walking).right is False
-    assert bench.choose("dance", trial, walking).right is False
-    assert "(wrong)" in bench.choice_table({"reach": bench.choose("reach", trial, walking)})
+    found = bench.choose("walk", trial, [read_library(SHIPPED / "walking.json")])
+    assert found.right is True and found.chosen == "walking"
+    assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]
+    assert bench.is_right("dance", bench.NONE) is None
+    assert "(wrong)" in bench.choice_table(
+        {"reach": replace(found, right=bench.is_right("reach", "walking"))}
+    )

@@ -4,6 +4,8 @@ The skeleton's foot is rigid with its shin; a person's is not. Heights are those
 or ball is on the floor, and the foot as drawn with the skeleton may reach a little below.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
@@ -110,9 +112,12 @@ def pelvis_rotation(moment: Moment) -> Array:
     return _turn(moment.pelvis.turn, moment.pelvis.bow, moment.pelvis.lean)
 
 
+@lru_cache(maxsize=4096)  # a moment is solved a dozen times while its hips are moved, and turns nothing else
 def _turn(yaw: float, pitch: float = 0.0, roll: float = 0.0) -> Array:
-    """(3, 3) of angles [degrees]."""
-    return turned(np.array(yaw), np.array(pitch), np.array(roll))
+    """(3, 3) of angles [degrees]; it may not be written to."""
+    rotation = turned(np.array(yaw), np.array(pitch), np.array(roll))
+    rotation.setflags(write=False)
+    return rotation
 
 
 def _sole(place: tuple[float, float, float], body: Body) -> Array:

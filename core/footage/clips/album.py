@@ -6,7 +6,7 @@ a coarse grid. Compressed pictures of that grid take some kilobytes each: ten mi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
-from .clip import Clip, FrameSource
 
 Image = NDArray[np.uint8]
 
@@ -68,44 +67,27 @@ class Album:
         """Whether there is a picture of a frame."""
         return index in self._pictures
 
+    def pictures(self, indices: Sequence[int] | NDArray[np.intp]) -> tuple[Image, NDArray[np.bool_]]:
+        """Return the small pictures of F frames, (F, rows, columns, 3), and (F,) which of them there are.
+
+        Those that are missing are black.
+
+        Raises:
+            KeyError: there is not one picture in the album.
+        """
+        known = np.array([int(index) in self for index in indices], dtype=np.bool_)
+        if not self._pictures:
+            raise KeyError("the album is empty")
+        blank = np.zeros_like(self.picture(next(iter(self._pictures))))
+        seen = [
+            self.picture(int(index)) if there else blank for index, there in zip(indices, known, strict=True)
+        ]
+        return np.stack(seen), known
+
     def picture(self, index: int) -> Image:
         """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that colour decides.
 
         Raises:
-            KeyError: the frame was never read.
+            KeyError: the frame was never read, or nothing is to be seen in it.
         """
         return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
-
-
-@dataclass(eq=False)
-class _WatchedSource:
-    """A source of frames that puts every frame it yields in order into an album."""
-
-    size: tuple[int, int]
-    fps: float
-    frame_count: int
-    source: FrameSource
-    album: Album
-
-    def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Yield every frame after keeping a picture of it."""
-        for index, time_s, image in self.source.frames():
-            self.album.add(index, image)
-            yield index, time_s, image
-
-    def time_stamps(self) -> Iterator[float]:
-        """Yield the time of every frame."""
-        return self.source.time_stamps()
-
-    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        """Yield the frames of ascending indices."""
-        return self.source.at(indices)
-
-    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield the frames from about one on."""
-        return self.source.onward(first)
-
-
-def watched(clip: Clip, album: Album) -> Clip:
-    """Return the clip as one that fills an album while its frames are read in order."""
-    return Clip(clip.path, _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, album))

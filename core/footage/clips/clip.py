@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from .clip_timing import is_variable_frame_rate
-from .image_sequence import ImageSequence, find_images
+from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
 Image = NDArray[np.uint8]
@@ -52,10 +52,12 @@ class Clip:
     Attributes:
         path: the file, the folder or the pattern it was opened from.
         source: decoder of the frames.
+        notes: sentences on what a person should know of the file itself.
     """
 
     path: Path
     source: FrameSource
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def open(cls, path: str | Path, fps: float | None = None) -> Clip:
@@ -73,10 +75,12 @@ class Clip:
         path = Path(path)
         images = find_images(path)
         if images is not None:
-            return cls(path, ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS))
+            sequence = ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS)
+            return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
-        return cls(path, VideoFile(path))
+        video = VideoFile(path)
+        return cls(path, video, video.notes)
 
     @property
     def size(self) -> tuple[int, int]:

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import MOST_PIXELS
 from ...errors import InputError
-from ...files.ordinary import ordinary_size
+from ...files.fields import listed
+from .one_image import read_image
 
 Image = NDArray[np.uint8]
 
-LARGEST_BYTES: Final = 2**31
-"""Of one image: four times the pixels that are read, at sixteen bits."""
 MOST_IMAGES: Final = 10**6
 """Of one folder; eleven hours of film."""
 _EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
@@ -30,11 +28,14 @@ _LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 class ImageSequence:
     """Images in the order of their numbers.
 
+    A number that is missing, as of an image that was lost, keeps its place: its frame is black.
+
     Attributes:
-        paths: the files, in order.
+        paths: the file of every frame, in order; None where it is missing.
         size: width and height of every image in pixels.
         fps: frames per second.
-        frame_count: number of files.
+        frame_count: number of frames.
+        notes: sentences on what is missing.
     """
 
     def __init__(self, paths: Sequence[Path], fps: float) -> None:
@@ -45,10 +46,10 @@ class ImageSequence:
         """
         if not (np.isfinite(fps) and fps > 0.0):
             raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
-        self.paths = tuple(paths)
+        self.paths, self.notes = _placed(paths)
         self.fps = float(fps)
         self.frame_count = len(self.paths)
-        first = read_image(self.paths[0])
+        first = read_image(paths[0])
         self.size: tuple[int, int] = (first.shape[1], first.shape[0])
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
@@ -69,54 +70,43 @@ class ImageSequence:
         yield from ((index / self.fps, self._read(index)) for index in range(max(first, 0), self.frame_count))
 
     def _read(self, index: int) -> Image:
-        image = read_image(self.paths[index])
+        path = self.paths[index]
+        if path is None:
+            return np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
+        image = read_image(path)
         if (image.shape[1], image.shape[0]) != self.size:
             raise InputError(
-                f"{self.paths[index]}: the image is {image.shape[1]} x {image.shape[0]} pixels; "
+                f"{path}: the image is {image.shape[1]} x {image.shape[0]} pixels; "
                 f"it must be {self.size[0]} x {self.size[1]} like the sequence's first"
             )
         return image
 
 
-def read_image(path: Path) -> Image:
-    """Read an image as (height, width, 3) uint8 blue, green, red.
-
-    Sixteen-bit and floating images are brought to eight bits, grey ones to three channels, and alpha is
-    dropped.
-
-    Raises:
-        InputError: the file is missing, too large, or no image that OpenCV can read.
-    """
-    if ordinary_size(path, "an image") > LARGEST_BYTES:
-        raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
-    try:
-        data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); it must be an image") from error
-    image = _decoded(data)
-    if image is None:
-        raise InputError(
-            f"{path}: cannot be decoded; it must be an image that OpenCV can read, of at most "
-            f"{MOST_PIXELS} pixels"
+def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, ...]]:
+    """Return each image at the place its number says, None where one is missing, and a sentence on that."""
+    around = {stem_of_number(path) for path in paths}
+    if len(paths) < 2 or len(around) > 1 or None in around:
+        return tuple(paths), ()
+    numbers = [int(number[0]) for number in map(_LAST_NUMBER.search, (path.stem for path in paths)) if number]
+    if len(set(numbers)) < len(paths):
+        return tuple(paths), ()
+    step = math.gcd(*(number - numbers[0] for number in numbers))
+    places = [(number - numbers[0]) // step for number in numbers]
+    missing = places[-1] + 1 - len(places)
+    if missing == 0:
+        return tuple(paths), ()
+    if missing > len(paths):
+        return tuple(paths), (
+            f"the numbers of the images in {paths[0].parent} have more gaps than images; they are taken one "
+            f"after the other, from {paths[0].name} to {paths[-1].name}",
         )
-    if image.dtype == np.uint16:
-        image = cv2.convertScaleAbs(image, alpha=1.0 / 257.0)
-    elif image.dtype != np.uint8:
-        image = np.round(np.clip(np.nan_to_num(image), 0.0, 1.0) * 255.0).astype(np.uint8)
-    if image.ndim == 2 or image.shape[2] < 3:
-        image = cv2.cvtColor(
-            np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0]), cv2.COLOR_GRAY2BGR
-        )
-    return np.ascontiguousarray(image[:, :, :3])
-
-
-def _decoded(data: NDArray[np.uint8]) -> NDArray[Any] | None:
-    if not data.size:
-        return None
-    try:
-        return cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
-    except cv2.error:  # among them a size above what core/__init__ lets OpenCV read
-        return None
+    found = dict(zip(places, paths, strict=True))
+    lost = [str(numbers[0] + step * place) for place in range(places[-1] + 1) if place not in found]
+    note = (
+        f"{missing} of {places[-1] + 1} images are missing in {paths[0].parent}, number {listed(lost, 3)}: "
+        "their frames count as seen by nobody; Blender shows the sequence up to the first gap only"
+    )
+    return tuple(found.get(place) for place in range(places[-1] + 1)), (note,)
 
 
 def find_images(path: Path) -> list[Path] | None:
@@ -126,13 +116,13 @@ def find_images(path: Path) -> list[Path] | None:
         path: a folder, a pattern (`img_####.png`, `img_%04d.png`), or one image of a numbered sequence.
 
     Raises:
-        InputError: a folder or pattern without an image.
+        InputError: a folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
-        found = _limited(path, (file for file in path.iterdir() if is_image(file)))
+        found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
-        return sorted(found, key=_natural_key)
+        return _only_sequence(path, found)
     if path.suffix.lower() not in _EXTENSIONS:
         return None
     if path.is_file():
@@ -146,17 +136,49 @@ def find_images(path: Path) -> list[Path] | None:
     return found
 
 
+def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
+    """Return a sentence where a folder holds images that are not of its sequence."""
+    if not path.is_dir():
+        return ()
+    used = {image.name for image in images}
+    others = sorted(file.name for file in path.iterdir() if file.name not in used and is_image(file))
+    if not others:
+        return ()
+    return (f"{path}: holds also {listed(others, 3)}, left out: not of the sequence from {images[0].name}",)
+
+
+def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
+    """Return the numbered images of a folder without stray ones; all of them where none are numbered."""
+    sequences: dict[tuple[str, str], list[Path]] = {}
+    for image in images:
+        sequences.setdefault(stem_of_number(image) or ("", image.name), []).append(image)
+    several = sorted((found for found in sequences.values() if len(found) > 1), key=len, reverse=True)
+    if not several:
+        return images
+    if len(several) > 1:
+        raise InputError(
+            f"{folder}: holds {len(several)} sequences of images, as {several[0][0].name} and "
+            f"{several[1][0].name}; name one by a pattern, as in img_####.png, or keep each in its own folder"
+        )
+    return several[0]
+
+
 def is_image(path: Path) -> bool:
     """Tell whether a path is a file that is named like an image."""
-    return path.suffix.lower() in _EXTENSIONS and path.is_file()
+    hidden = path.name.startswith(".")  # beside every file that macOS copies to other discs lies one
+    return path.suffix.lower() in _EXTENSIONS and not hidden and path.is_file()
+
+
+def stem_of_number(path: Path) -> tuple[str, str] | None:
+    """What a numbered image's name has before and behind its number; None for a name without one."""
+    number = _LAST_NUMBER.search(path.stem)
+    return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
 
 
 def _siblings(path: Path) -> list[Path]:
     """Return the sequence a numbered image belongs to; an image without a number stands alone."""
-    number = _LAST_NUMBER.search(path.stem)
-    if number is None:
-        return [path]
-    return _numbered(path.parent, path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
+    around = stem_of_number(path)
+    return [path] if around is None else _numbered(path.parent, *around)
 
 
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:

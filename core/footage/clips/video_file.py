@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from .container import check_container, check_pixels
+from .last_rows import fill_last_rows
+from .opencv_silence import opencv_silence
+from .video_notes import video_notes
 
 Image = NDArray[np.uint8]
 
@@ -20,6 +23,14 @@ _FALLBACK_FPS = 24.0
 _HIGHEST_PLAUSIBLE_FPS = 2000.0
 _FRAMES_PER_SEEK = 125
 """Seeking decodes from the last key picture on: half of an encoder's usual 250 frames between them."""
+_PATIENCE = 500
+"""Failures in a row after which nothing more is expected of a file: two key pictures' distance."""
+_LONGEST_PAUSE_S = 3600.0
+"""A time stamp farther ahead of the last is none."""
+_SMALLEST_FRAME_BYTES = 8
+"""Of the smallest frames, what a container writes of each: a claim of more is not believed."""
+
+_CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
 
 # The decoder reads its verbosity once a process, when it is first used.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -33,6 +44,7 @@ class VideoFile:
         size: width and height in pixels, after the rotation that the file asks for.
         fps: nominal frames per second.
         frame_count: number of frames the file claims, at least 1.
+        notes: sentences on what a person should know of it.
     """
 
     def __init__(self, path: Path) -> None:
@@ -45,35 +57,36 @@ class VideoFile:
         check_container(path)
         with self._capture() as capture:
             check_pixels(path, capture.get(cv2.CAP_PROP_FRAME_WIDTH), capture.get(cv2.CAP_PROP_FRAME_HEIGHT))
-            found, image = capture.read()
-            if not found or image is None:
-                raise InputError(f"{path}: not one frame can be decoded; the file is damaged or cut off")
+            step = next(_steps(capture), None)
+            decoded, image = (False, None) if step is None else capture.retrieve()
+            if not decoded or image is None:
+                raise InputError(
+                    f"{path}: not one frame of this {_codec(capture)} video can be decoded; it is damaged, "
+                    f"cut off or coded in a way that OpenCV cannot read here; {_CONVERT}"
+                )
             self.size: tuple[int, int] = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             self.fps: float = fps if 0.0 < fps < _HIGHEST_PLAUSIBLE_FPS else _FALLBACK_FPS
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
-            self.frame_count: int = max(int(claimed), 1) if np.isfinite(claimed) else 1
+            self.notes = video_notes(path, capture)
+        most = path.stat().st_size // _SMALLEST_FRAME_BYTES
+        self.frame_count: int = int(min(claimed, most)) if np.isfinite(claimed) else 0
+        if self.frame_count < 2:  # it claims nothing
+            self.frame_count = sum(1 for _ in self.time_stamps())
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Yield index, time in seconds and image of every frame; see `Clip.frames`."""
+        """Yield index, time in seconds and image of every frame; see `Clip.frames`.
+
+        Frames that cannot be decoded, with others after them, come black: those after keep their places.
+        """
         with self._capture() as capture:
-            index, previous = 0, -np.inf
-            while True:
-                found, image = capture.read()
-                if not found:
-                    break
-                previous = self._stamp(capture, index, previous)
-                yield index, previous, _as_image(image)
-                index += 1
+            for index, (stamp, found) in enumerate(self._stamped(capture)):
+                yield index, stamp, self._picture(capture, index) if found else self._nothing()
 
     def time_stamps(self) -> Iterator[float]:
         """Yield the time in seconds of every frame."""
         with self._capture() as capture:
-            index, previous = 0, -np.inf
-            while capture.grab():
-                previous = self._stamp(capture, index, previous)
-                yield previous
-                index += 1
+            yield from (stamp for stamp, _ in self._stamped(capture))
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices, as far as they exist.
@@ -85,17 +98,21 @@ class VideoFile:
             for done, index in enumerate(indices):
                 if index - position > _FRAMES_PER_SEEK:
                     found = capture.set(cv2.CAP_PROP_POS_FRAMES, index) and capture.grab()
-                    if not found:
-                        yield from self._run_through(indices[done:])
-                        return
                 else:
                     found = all(capture.grab() for _ in range(index + 1 - position))
-                if not found:
+                if not found:  # damaged here; a pass from the beginning counts what is lost
+                    yield from self._run_through(indices[done:])
                     return
                 position = index + 1
-                decoded, picture = capture.retrieve()
-                if decoded:
-                    yield index, _as_image(picture)
+                yield index, self._picture(capture, index)
+
+    def sought(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield frames that the file is searched for one by one, as far as they are found; see `packets`."""
+        with self._capture() as capture:
+            for index in indices:
+                found = index == 0 or capture.set(cv2.CAP_PROP_POS_FRAMES, index)
+                if found and capture.grab():
+                    yield index, self._picture(capture, index)
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
         """Yield time in seconds and image of the frames from about one on.
@@ -104,41 +121,80 @@ class VideoFile:
         times are its own.
         """
         with self._capture() as capture:
-            index, previous = 0, -np.inf
+            index = 0
             if first > _FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
                 index = first
-            while capture.grab():
-                previous = self._stamp(capture, index, previous)
-                if index >= first:
-                    decoded, picture = capture.retrieve()
-                    if decoded:
-                        yield previous, _as_image(picture)
-                index += 1
+            for place, (stamp, found) in enumerate(self._stamped(capture, index), index):
+                if place >= first:
+                    yield stamp, self._picture(capture, place) if found else self._nothing()
 
     def _run_through(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         wanted = set(indices)
         with self._capture() as capture:
-            for index in range(indices[-1] + 1):
-                if not capture.grab():
+            for index, (_, found) in enumerate(self._stamped(capture)):
+                if index > indices[-1]:
                     return
                 if index in wanted:
-                    decoded, picture = capture.retrieve()
-                    if decoded:
-                        yield index, _as_image(picture)
+                    yield index, self._picture(capture, index) if found else self._nothing()
 
-    def _stamp(self, capture: cv2.VideoCapture, index: int, previous: float) -> float:
-        """Return the time of the frame just read; where the file has no usable stamps, count frames."""
+    def _stamped(self, capture: cv2.VideoCapture, index: int = 0) -> Iterator[tuple[float, bool]]:
+        """Yield the time of every frame from the one of an index on, and whether it was decoded.
+
+        Decoders leave out what they cannot decode, and may give what they could decode late. Once one has
+        failed, the frames' times tell how many are lost.
+        """
+        damaged, previous = False, -np.inf
+        for failures in _steps(capture):
+            damaged = damaged or failures > 0
+            stamp = self._stamp(capture, index, previous)
+            if stamp is None and damaged:
+                continue
+            if stamp is None:  # no usable stamps: count
+                stamp = max(index / self.fps, previous + 0.5 / self.fps)
+            elif damaged and index > 0:
+                lost = round((stamp - previous) * self.fps) - 1
+                for _ in range(min(lost, self.frame_count - index - 1)):
+                    previous += 1.0 / self.fps
+                    yield previous, False
+                    index += 1
+            yield stamp, True
+            previous = stamp
+            index += 1
+
+    def _stamp(self, capture: cv2.VideoCapture, index: int, previous: float) -> float | None:
+        """Return the time of the frame just read; None where that cannot be."""
         stamp = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0
-        if np.isfinite(stamp) and stamp > previous and (index == 0 or stamp > 0.0):
-            return stamp
-        return index / self.fps if index / self.fps > previous else previous + 1.0 / self.fps
+        if np.isinf(previous):
+            return stamp if 0.0 <= stamp < max(_LONGEST_PAUSE_S, 2.0 * index / self.fps) else index / self.fps
+        return stamp if previous < stamp < previous + _LONGEST_PAUSE_S else None
+
+    def _picture(self, capture: cv2.VideoCapture, index: int) -> Image:
+        """Return the frame just read; black where its picture turns out not to be there."""
+        decoded, image = capture.retrieve()
+        if not decoded or image is None:
+            return self._nothing()
+        size = (int(image.shape[1]), int(image.shape[0]))
+        if size != self.size:
+            raise InputError(
+                f"{self.path}: the picture changes its size from {self.size[0]} x {self.size[1]} to "
+                f"{size[0]} x {size[1]} pixels after {index} frames; it must stay the same; {_CONVERT}"
+            )
+        picture = np.ascontiguousarray(image, dtype=np.uint8)
+        fill_last_rows(capture, picture)
+        return picture
+
+    def _nothing(self) -> Image:
+        return np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
 
     @contextmanager
     def _capture(self) -> Iterator[cv2.VideoCapture]:
         capture = _open_quietly(self.path)
         try:
             if not capture.isOpened():
-                raise InputError(f"{self.path}: cannot be decoded; it must be a video that OpenCV can read")
+                raise InputError(
+                    f"{self.path}: cannot be decoded; it must be a video whose picture OpenCV can read, "
+                    "and whole: where recording or copying was broken off, the index at its end is missing"
+                )
             # Blender always shows the rotated picture; OpenCV's default differs between versions.
             capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
             yield capture
@@ -147,16 +203,25 @@ class VideoFile:
 
 
 def _open_quietly(path: Path) -> cv2.VideoCapture:
-    """Open a file without OpenCV's own complaints on standard error, where our one sentence shall stand."""
     name = os.path.abspath(path)  # where a name begins with a word and a colon, that is a protocol to FFmpeg
-    level = cv2.getLogLevel()
-    cv2.setLogLevel(0)
-    try:
+    with opencv_silence():
         capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
         return capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
-    finally:
-        cv2.setLogLevel(level)
 
 
-def _as_image(image: NDArray[np.generic]) -> Image:
-    return np.ascontiguousarray(image, dtype=np.uint8)
+def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
+    """Go from frame to frame; yield how often the decoder has failed on the way to each."""
+    failures = 0
+    while failures <= _PATIENCE:
+        if capture.grab():
+            yield failures
+            failures = 0
+        else:
+            failures += 1
+
+
+def _codec(capture: cv2.VideoCapture) -> str:
+    """The name of the coding, as in h264."""
+    code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
+    name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
+    return name if name.isalnum() and name.isascii() else "unknown"

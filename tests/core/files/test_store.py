@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.errors import ConversionError
+from keymark.core.files.folder_lock import folder_lock
 from keymark.core.files.store import Store
 
 ARRAYS = {
@@ -83,14 +84,18 @@ def test_what_was_unused_for_longest_goes_first(tmp_path: Path) -> None:
     assert store.load("e") is None and store.load("d") is not None
 
 
-def test_a_half_written_file_of_long_ago_is_removed(tmp_path: Path) -> None:
-    """One that is being written now stays."""
-    for name in (".keymark-old", ".keymark-new"):
+def test_a_half_written_file_is_removed_unless_its_writer_lives(tmp_path: Path) -> None:
+    """Whatever the clock says."""
+    for name in (".keymark-dead-work", ".keymark-live-work"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "a.npz").write_bytes(b"half")
-    os.utime(tmp_path / ".keymark-old", (1000, 1000))
-    Store(tmp_path).save("a", {"x": np.zeros(1)})
-    assert {path.name for path in tmp_path.iterdir()} == {".keymark-new", "a.npz"}
+    with folder_lock(tmp_path / ".keymark-live.lock", "is being written"):
+        Store(tmp_path).save("a", {"x": np.zeros(1)})
+        assert {path.name for path in tmp_path.iterdir()} == {
+            ".keymark-live-work",
+            ".keymark-live.lock",
+            "a.npz",
+        }
 
 
 def test_a_folder_that_cannot_be_written_is_said_so(tmp_path: Path) -> None:

@@ -1,0 +1,27 @@
+"""Pictures in which nothing is to be seen: black or white ones, and what stands for frames that are lost."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+
+_LOOKED_AT: Final = 64
+"""Rows and columns that tell enough, about."""
+_CONTRAST: Final = 12
+"""Levels between the darkest and the brightest of nothing, but for noise."""
+_STRAY: Final = 0.005
+"""Share of pixels that noise or a clock in a corner may make brighter or darker."""
+
+
+def is_blank(image: Image) -> bool:
+    """Tell whether a picture (rows, columns, 3) shows one even colour and nothing else."""
+    step = max(min(image.shape[:2]) // _LOOKED_AT, 1)
+    levels = image[step // 2 :: step, step // 2 :: step].reshape(-1, 3)
+    stray = int(_STRAY * len(levels))
+    ordered = np.partition(levels, (stray, len(levels) - 1 - stray), axis=0)
+    contrast = ordered[len(levels) - 1 - stray].astype(np.int64) - ordered[stray]
+    return bool(contrast.max() <= _CONTRAST)

@@ -1,0 +1,65 @@
+"""A few frames from all over a clip, for little: the longer and larger it is, the fewer are decoded."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from typing import Final
+
+import numpy as np
+
+from ...errors import InputError
+from ..segmentation.working_image import halvings, measuring_image
+from .clip import Clip, Image
+from .clip_samples import SAMPLED_FRAMES, ClipSamples, sample_clip
+from .packets import quickly_found
+from .video_file import VideoFile
+
+MOST_DECODED_PX: Final = 90_000_000
+"""Pixels that may be decoded for a glance: about half a second of a processor, at any size."""
+_FRAMES_PER_SEARCH: Final = 18
+"""What is decoded for a frame that is quickly found."""
+_MOST_SEARCHES: Final = 12
+_IMAGE_COST: Final = 4
+"""Opening an image takes as long as decoding so many frames of a video."""
+_FEWEST: Final = 3
+
+
+def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+    """Take frames from all over a clip as `sample_clip` does, but never decode much of it.
+
+    Args:
+        clip: the footage.
+        count: how many at most.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Raises:
+        InputError: not one of them can be read.
+    """
+    pixels = clip.size[0] * clip.size[1]
+    if not isinstance(clip.source, VideoFile):
+        affordable = max(MOST_DECODED_PX // (_IMAGE_COST * pixels), _FEWEST)
+        return (yield from sample_clip(clip, min(count, affordable)))
+    if clip.frame_count * pixels <= MOST_DECODED_PX:
+        return (yield from sample_clip(clip, count))
+    most = min(count, _MOST_SEARCHES, max(MOST_DECODED_PX // (_FRAMES_PER_SEARCH * pixels), _FEWEST))
+    middles = (np.arange(most) + 0.5) * clip.frame_count / most
+    indices = quickly_found(clip.path, [int(index) for index in middles])
+    if indices:
+        return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
+    # Some files cannot be searched; what is left of them is their beginning.
+    first = range(0, min(clip.frame_count, MOST_DECODED_PX // pixels + 1), _FRAMES_PER_SEARCH)
+    return (yield from _kept(clip, clip.source.at(first), len(first)))
+
+
+def _kept(clip: Clip, frames: Iterator[tuple[int, Image]], count: int) -> Generator[float, None, ClipSamples]:
+    times = halvings(clip.size)
+    found = []
+    yield 0.0
+    for index, image in frames:
+        found.append((index, measuring_image(image, times)))
+        yield min(len(found) / count, 1.0)
+    if not found:
+        raise InputError(f"{clip.path}: none of the frames looked at can be read; the file is damaged")
+    return ClipSamples(clip.path, clip.size, tuple(i for i, _ in found), tuple(image for _, image in found))

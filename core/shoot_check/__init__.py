@@ -1,0 +1,1 @@
+"""Looking through takes before they are converted."""

@@ -1,0 +1,71 @@
+"""`keymark check`."""
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache, partial
+
+from ...core.errors import ConversionError
+from ...core.progress import Job, Progress, run
+from ...core.shoot.conversion_settings import ConversionSettings
+from ...core.shoot.open_shoot import open_shoot
+from ...core.shoot.shoot import Shoot
+from ...core.shoot_check.odd_takes import with_odd_ones
+from ...core.shoot_check.take_check import TakeCheck, check_take
+from .check_text import check_summary, check_text
+from .console import arguments_console
+from .line_parser import UsageError
+from .matching import chosen_libraries
+
+MOST_JOBS = 64
+STAGE = "Looking at the takes"
+
+
+def check_command(arguments: argparse.Namespace) -> None:
+    """Look through the takes that the command line names, and say what is wrong with each.
+
+    Raises:
+        InputError: The shoot is unusable.
+        ConversionError: Some take would not convert.
+    """
+    jobs = 1 if arguments.jobs is None else arguments.jobs
+    if not 1 <= jobs <= MOST_JOBS:
+        raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
+    farther = ConversionSettings(library=arguments.library, method=arguments.method)
+    with arguments_console(arguments) as console:
+        shoot = open_shoot(arguments.shoot)
+        checks = run(_checks(shoot, farther, jobs), console.progress)
+        console.finish(check_summary(checks), check_text(shoot, checks))
+    failing = sum(not check.converts for check in checks)
+    if failing:
+        raise ConversionError(f"{failing} of {_takes(len(checks))} would not convert")
+
+
+def _takes(count: int) -> str:
+    return "1 take" if count == 1 else f"{count} takes"
+
+
+def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int) -> Job[list[TakeCheck]]:
+    """Look at all takes, some at a time; decoders leave the interpreter to others meanwhile."""
+    find_libraries = cache(chosen_libraries)
+    looks = [partial(check_take, take, find_libraries, farther) for take in shoot.takes]
+    checks: dict[int, TakeCheck] = {}
+    yield Progress(STAGE, 0.0)
+    for index, check in _some_at_a_time(looks, jobs):
+        checks[index] = check
+        yield Progress(STAGE, len(checks) / len(looks))
+    return with_odd_ones([checks[index] for index in sorted(checks)])
+
+
+def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
+    if jobs == 1:
+        for index, look in enumerate(looks):
+            yield index, look()
+        return
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        running = {pool.submit(look): index for index, look in enumerate(looks)}
+        for done in as_completed(running):
+            yield running[done], done.result()
+    finally:
+        pool.shutdown(cancel_futures=True)

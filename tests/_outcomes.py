@@ -1,0 +1,42 @@
+"""What became of takes that never were, for the pages that show it."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from keymark.core.conversion_record import ConversionRecord
+from keymark.core.shoot.outcome import Outcome, Status
+
+FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
+RECORD = ConversionRecord(
+    digest="00",
+    keymark="0.0.0",
+    take="walk",
+    method="map",
+    library=None,
+    frames=120,
+    frame_start=1,
+    fps=30.0,
+    keyframes=(1, 60, 120),
+    matched=(),
+    confidence=0.9,
+    weakest=0.8,
+    weak_frames=(87, 31),
+    notes=("the frames are unevenly spaced in time",),
+    files=dict.fromkeys(FILES, ""),
+)
+
+
+def converted(output: Path, name: str, **changed: Any) -> Outcome:
+    """A take that converted, with a record in which fields are changed."""
+    return Outcome(name, output / name, Status.CONVERTED, replace(RECORD, **changed), None, 12.0)
+
+
+def failed(output: Path, name: str, error: str, record: ConversionRecord | None = None) -> Outcome:
+    """A take that failed."""
+    return Outcome(name, output / name, Status.FAILED, record, error, 1.0)
+
+
+def waiting(output: Path, name: str) -> Outcome:
+    """A take whose turn has not come."""
+    return Outcome(name, output / name, Status.WAITING)

@@ -1,0 +1,343 @@
+"""Folders of results through deaths and full disks at every single call of the operating system."""
+
+import json
+import os
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from _faults import GROWING, Killed, disk_full, faulty_calls, killed, tree
+from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
+from keymark.core.files.arrival import free_name
+from keymark.core.files.output_folder import output_folder
+
+SEAL = "seal.json"
+BELONGINGS = (SEAL, "a.bin", "b.bin", "pictures/one.png", "pictures/two.png", "extra/three.png")
+
+
+@pytest.fixture(autouse=True)
+def no_waiting_for_disks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not written outlives these deaths all the same; only power losses would tell."""
+    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+
+
+def write_set(place: Path, text: str, pictures: bool = True) -> None:
+    """A set of files as a conversion makes it: the seal names all others."""
+    names = [
+        "a.bin",
+        "b.bin",
+        *(["pictures/one.png", "pictures/two.png"] if pictures else ["extra/three.png"]),
+    ]
+    for name in names:
+        (place / name).parent.mkdir(exist_ok=True)
+        (place / name).write_text(text, encoding="utf-8")
+    (place / SEAL).write_text(json.dumps({name: text for name in names}), encoding="utf-8")
+
+
+def run(out: Path, text: str, pictures: bool = True) -> None:
+    """One process' work."""
+    with output_folder(out, BELONGINGS, seal=SEAL) as place:
+        write_set(place, text, pictures)
+
+
+def is_whole(out: Path) -> bool:
+    """Whether a reader would take the folder for finished; it must be right to do so."""
+    if not (out / SEAL).exists():
+        return False
+    for name, text in json.loads((out / SEAL).read_text(encoding="utf-8")).items():
+        assert (out / name).read_text(encoding="utf-8") == text, "the seal vouches for what is not there"
+    return True
+
+
+def begin(folder: Path, kind: str) -> Path:
+    """A place for results: new, with an older set of other files, or with files of others alone."""
+    out = folder / "deep" / "out"
+    if kind == "new":
+        return out
+    out.mkdir(parents=True)
+    (out / "mine.txt").write_text("mine", encoding="utf-8")
+    if kind == "older":
+        run(out, "older", pictures=False)
+    return out
+
+
+KINDS = pytest.mark.parametrize("kind", ["new", "others", "older"])
+
+
+def expected(folder: Path, kind: str) -> dict[str, bytes | None]:
+    """What an undisturbed run leaves."""
+    run(begin(folder, kind), "newer")
+    return tree(folder)
+
+
+def calls_of(folder: Path, kind: str) -> int:
+    """How many calls a run takes that nothing disturbs."""
+    out = begin(folder, kind)
+    with faulty_calls() as calls:
+        run(out, "newer")
+    return calls.count
+
+
+@KINDS
+def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_path: Path) -> None:
+    """Wherever a process dies, what a reader finds is whole or not taken for it; the next run mends it."""
+    wanted = expected(tmp_path / "wanted", kind)
+    total = calls_of(tmp_path / "counted", kind)
+    assert total > 25
+    for at in range(1, total + 1):
+        folder = tmp_path / str(at)
+        out = begin(folder, kind)
+        with pytest.raises(Killed), faulty_calls(at):
+            run(out, "newer")
+        is_whole(out)
+        run(out, "newer")
+        assert is_whole(out) and tree(folder) == wanted, f"killed at call {at} of {total}"
+
+
+def test_a_run_that_makes_nothing_ends_what_a_killed_one_began(tmp_path: Path) -> None:
+    """Once a set was complete it arrives, though the next process has nothing to do but to look."""
+    wanted = expected(tmp_path / "wanted", "older")
+    total = calls_of(tmp_path / "counted", "older")
+    older = tree(begin(tmp_path / "older", "older").parent)
+    found = []
+    for at in range(1, total + 1):
+        folder = tmp_path / str(at)
+        out = begin(folder, "older")
+        with pytest.raises(Killed), faulty_calls(at):
+            run(out, "newer")
+        with output_folder(out, BELONGINGS, seal=SEAL):
+            pass
+        assert is_whole(out)
+        found.append(tree(folder) == wanted)
+        assert found[-1] or tree(folder / "deep") == older
+    assert found == sorted(found) and 3 < sum(found) < total  # from the moment on that it was complete
+
+
+def test_the_process_that_mends_may_be_killed_as_well(tmp_path: Path) -> None:
+    """A second death, at any call of the run after the first."""
+    wanted = expected(tmp_path / "wanted", "older")
+    total = calls_of(tmp_path / "counted", "older")
+    for at in range(1, total + 1, 4):
+        for again in range(at % 7 + 1, total, 9):
+            folder = tmp_path / f"{at}-{again}"
+            out = begin(folder, "older")
+            with pytest.raises(Killed), faulty_calls(at):
+                run(out, "newer")
+            with pytest.raises(Killed), faulty_calls(again):
+                run(out, "newer")
+            is_whole(out)
+            run(out, "newer")
+            assert is_whole(out) and tree(folder) == wanted, f"killed at calls {at} and {again}"
+
+
+@KINDS
+@pytest.mark.parametrize("lasting", [False, True])
+def test_a_disk_that_is_full_at_any_call_changes_nothing(kind: str, lasting: bool, tmp_path: Path) -> None:
+    """One sentence, and all is as before; where even moving back needs room, nothing is lost all the same."""
+    wanted = expected(tmp_path / "wanted", kind)
+    out = begin(tmp_path / "counted", kind)
+    with faulty_calls(None, disk_full, names=GROWING) as calls:
+        run(out, "newer")
+    for at in range(1, calls.count + 1):
+        folder = tmp_path / f"{at}"
+        out = begin(folder, kind)
+        before = tree(folder)
+        failed = True
+        with faulty_calls(at, disk_full, lasting, GROWING) as calls:
+            try:
+                run(out, "newer")
+                failed = False
+            except ConversionError as error:
+                assert "No space left" in str(error)
+        if not failed:
+            assert calls.log[at - 1] == "mkdir" and tree(folder) == wanted  # of a folder that was there
+            continue
+        hidden = [name for name in tree(folder) if ".keymark-" in name]
+        assert tree(folder) == before or (lasting and hidden and not (out / SEAL).exists())
+        run(out, "newer")
+        assert tree(folder) == wanted
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, SystemExit])
+def test_a_run_interrupted_at_any_call_changes_nothing(tmp_path: Path, error: type[BaseException]) -> None:
+    """Ctrl-C comes at any moment, also just after a file has been moved."""
+    out = begin(tmp_path / "counted", "older")
+    with faulty_calls(None, disk_full) as calls:
+        run(out, "newer")
+    for at in range(1, calls.count + 1):
+        folder = tmp_path / str(at)
+        out = begin(folder, "older")
+        before = tree(folder)
+        interrupted = False
+        with faulty_calls(at, lambda _name: error(), lasting=False):
+            try:
+                run(out, "newer")
+            except error:
+                interrupted = True
+        assert interrupted
+        is_whole(out)
+        run(out, "older", pictures=False)
+        assert tree(folder) == before
+
+
+def test_what_others_have_changed_is_kept_beside(tmp_path: Path) -> None:
+    """Under the name it is given, also through deaths at any call."""
+
+    def again(out: Path) -> None:
+        aside: dict[str, str] = {}
+        with output_folder(out, BELONGINGS, SEAL, aside) as place:
+            write_set(place, "newer")
+            if (out / "a.bin").read_text(encoding="utf-8") == "worked on":
+                aside["a.bin"] = "a (changed).bin"
+
+    out = begin(tmp_path / "wanted", "older")
+    (out / "a.bin").write_text("worked on", encoding="utf-8")
+    with faulty_calls() as calls:
+        again(out)
+    wanted = tree(tmp_path / "wanted")
+    assert wanted["deep/out/a (changed).bin"] == b"worked on" and wanted["deep/out/a.bin"] == b"newer"
+    for at in range(1, calls.count + 1):
+        folder = tmp_path / str(at)
+        out = begin(folder, "older")
+        (out / "a.bin").write_text("worked on", encoding="utf-8")
+        with pytest.raises(Killed), faulty_calls(at):
+            again(out)
+        again(out)
+        assert tree(folder) == wanted
+
+
+def test_a_second_file_kept_beside_gets_a_name_of_its_own(tmp_path: Path) -> None:
+    """Nothing kept is replaced."""
+    for name in ("motion.blend", "motion (changed).blend"):
+        (tmp_path / name).touch()
+    assert free_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
+
+
+def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:
+    """A second thread, or process, is told so; afterwards the way is free, and no lock is left."""
+    out = tmp_path / "out"
+    said: list[KeymarkError] = []
+
+    def second() -> None:
+        try:
+            run(out, "second")
+        except KeymarkError as error:
+            said.append(error)
+
+    with output_folder(out) as place:
+        thread = threading.Thread(target=second)
+        thread.start()
+        thread.join()
+        write_set(place, "first")
+    assert len(said) == 1 and isinstance(said[0], BusyError) and str(out) in str(said[0])
+    second()
+    assert (out / "a.bin").read_text() == "second" and os.listdir(tmp_path) == ["out"]
+
+
+def test_threads_that_race_for_a_folder_leave_one_whole_set(tmp_path: Path) -> None:
+    """Whoever comes in, the set is of one of them; the folder above comes and goes meanwhile."""
+    out = tmp_path / "above" / "out"
+    ended: list[str] = []
+
+    def work(text: str) -> None:
+        for _ in range(20):
+            try:
+                run(out, text, pictures=text == "one")
+                ended.append(text)
+            except BusyError:
+                pass
+            with pytest.raises((ZeroDivisionError, BusyError)), output_folder(tmp_path / "above" / text):
+                raise ZeroDivisionError
+
+    threads = [threading.Thread(target=work, args=[text]) for text in ("one", "two", "three")]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert ended and is_whole(out)
+    assert not [name for name in tree(tmp_path) if ".keymark-" in name]
+
+
+def test_a_paper_that_is_not_to_be_trusted_is_cleared_away(tmp_path: Path) -> None:
+    """One that names files elsewhere, or of which files are missing, moves nothing."""
+    out = begin(tmp_path, "older")
+    with faulty_calls() as calls:
+        run(out, "newer")
+    last = len(calls.log) - calls.log[::-1].index("replace")
+    for change in (
+        {"made": ["../../elsewhere"]},
+        {"gone": ["/etc/passwd"]},
+        {"aside": {"a.bin": "../a.bin"}},
+        {"made": "seal.json"},
+        {"target": "another"},
+        {"seal": 5},
+        {"made": ["a.bin", "lost.bin"]},
+    ):
+        with pytest.raises(Killed), faulty_calls(last):
+            run(out, "newer")
+        (paper,) = out.parent.glob(".keymark-*.json")
+        said = json.loads(paper.read_text(encoding="utf-8"))
+        paper.write_text(json.dumps({**said, **change}), encoding="utf-8")
+        before = {name: text for name, text in tree(out).items()}
+        with output_folder(out, BELONGINGS, seal=SEAL):
+            pass
+        assert tree(out) == before and os.listdir(out.parent) == ["out"]
+        run(out, "newer")
+
+
+def names(folder: Path) -> dict[str, Path]:
+    """Places that are hard on programs."""
+    return {
+        "as long as a name may be": folder / ("n" * 255),
+        "in other letters": folder / "Tänzerin 舞者" / "отснято 🎬",
+        "like options and patterns": folder / "-o %d #### {x}" / "*?[a].",
+        "with a line end": folder / "two\nlines",
+        "no text": folder / os.fsdecode(b"odd-\xff"),
+    }
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows forbids such names")
+@pytest.mark.parametrize("what", sorted(names(Path())))
+def test_odd_names_work(what: str, tmp_path: Path) -> None:
+    """What is hidden has short names of its own."""
+    out = names(tmp_path)[what]
+    for text in ("older", "newer"):
+        run(out, text)
+        assert is_whole(out) and os.listdir(out.parent) == [out.name]
+
+
+def endless(folder: Path) -> Path:
+    """A link that leads to itself."""
+    (folder / "endless").symlink_to(folder / "endless")
+    return folder / "endless" / "out"
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        lambda folder: folder / ("n" * 256),
+        lambda folder: folder.joinpath(*["n" * 200] * 30),
+        lambda folder: folder / "with\0zero",
+        endless,
+    ],
+)
+def test_places_that_cannot_be_are_one_sentence(place: Callable[[Path], Path], tmp_path: Path) -> None:
+    """And nothing of the way there is left."""
+    out = place(tmp_path)
+    before = os.listdir(tmp_path)
+    with pytest.raises(InputError, match="cannot be written"), output_folder(out):
+        pass
+    assert os.listdir(tmp_path) == before
+
+
+def test_a_link_to_nowhere_leads_there(tmp_path: Path) -> None:
+    """The folder is made where the link says."""
+    (tmp_path / "out").symlink_to(tmp_path / "disk" / "results")
+    run(tmp_path / "out", "newer")
+    assert is_whole(tmp_path / "disk" / "results") and (tmp_path / "out").is_symlink()
+
+
+def test_the_fault_is_the_one_asked_for() -> None:
+    """The stand-ins themselves: a death is nothing that is caught by accident."""
+    assert not isinstance(killed("open"), Exception) and isinstance(disk_full("open"), OSError)

@@ -1,0 +1,258 @@
+"""The page of a batch: nothing in it but what the template has, whatever takes are called and say."""
+
+import base64
+import hashlib
+import re
+from itertools import product
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+from _outcomes import RECORD, converted, failed, waiting
+from _page import Page
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from keymark.core.conversion_record import ConversionRecord
+from keymark.core.report.summary_page import summary_page
+from keymark.core.report.summary_style import DARK, LIGHT
+from keymark.core.report.summary_text import LONGEST, duration, percent, visible
+from keymark.core.report.summary_verdict import Verdict, sections, verdict
+from keymark.core.shoot.outcome import Outcome, Status
+
+OUTPUT = Path("results").absolute()
+LETTERS = st.characters(exclude_categories=(), exclude_characters="/")
+TEXTS = st.one_of(
+    st.text(LETTERS, min_size=1, max_size=30),
+    st.sampled_from(
+        ["</script><script>alert(1)</script>", "\u202egpj.exe", "\" onerror='x'", "<!--", "]]>", "&lt;"]
+    ),
+)
+NAMES = TEXTS.filter(lambda text: text not in (".", "..") and "\0" not in text)
+
+
+def page(*outcomes: Outcome) -> Page:
+    """The page of a shoot."""
+    return Page(summary_page("shoot", outcomes, OUTPUT))
+
+
+def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
+    """A converted and a failed take that say a text wherever they can."""
+    files = {f"{name}.json": "", f"report/{name}.png": "", "report/strip.jpg": "", "report/overlay.png": ""}
+    record = ConversionRecord(
+        **{**vars(RECORD), "take": text, "library": text, "method": text, "notes": (text,), "files": files}
+    )
+    return (
+        Outcome(f"a/{name}", OUTPUT / "a" / name, Status.CONVERTED, record),
+        Outcome(f"b/{name}", OUTPUT / "b" / name, Status.FAILED, None, text),
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(NAMES, TEXTS, TEXTS)
+def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str, title: str) -> None:
+    """The very strings are found again as text; elements and attributes are those of a harmless shoot."""
+    found = Page(summary_page(title, hostile(name, text), OUTPUT))
+    assert found.shape() == page(*hostile("x", "y")).shape()
+    assert found.all("h1")[0].text == visible(title)
+    names = [element.text for element in found.all("th") if element.attributes.get("scope") == "row"]
+    assert [said.removesuffix("failed").removesuffix("converted") for said in names] == [
+        f"b/{visible(name)}",
+        f"a/{visible(name)}",
+    ]
+    errors = [element.text for element in found.all("p") if element.attributes.get("class") == "error"]
+    assert errors == [visible(text)]
+    assert visible(text) in [element.text for element in found.all("li")]
+    texts = [element.text for element in found.all("bdi")]
+    assert texts.count(visible(text)) >= 3 and visible(f"{name}.json") in texts
+    for element in found.elements:
+        for link in (element.attributes.get("href"), element.attributes.get("src")):
+            assert link is None or re.fullmatch(r"#[a-z0-9-]+|[A-Za-z0-9_.~%/-]+", link), link
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("walk über 動作 حركة", "walk über 動作 حركة"),
+        ("gpj\u202eexe", "gpj\\u202eexe"),
+        ("two\nlines\x1b[2J", "two\\u000alines\\u001b[2J"),
+        ("no\udcffletter", "no\\udcffletter"),
+        ("x" * 2 * LONGEST, "x" * LONGEST + " ..."),
+    ],
+)
+def test_what_cannot_be_seen_is_spelt_out(text: str, shown: str) -> None:
+    """Letters of every writing stay; control characters, turning marks and broken letters become visible."""
+    assert visible(text) == shown and shown.encode("utf-8")
+
+
+def test_links_lead_to_the_files(tmp_path: Path) -> None:
+    """Names that mean something in an address still lead to their files."""
+    name = "day 1/50% #2?x=1&y;\"'\\ ż:\u202e"
+    folder = tmp_path / name
+    for file in RECORD.files:
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        (folder / file).touch()
+    outcome = Outcome(name, folder, Status.CONVERTED, RECORD)
+    found = Page(summary_page("shoot", [outcome], tmp_path))
+    links = [a.attributes["href"] for a in found.all("a")] + [i.attributes["src"] for i in found.all("img")]
+    files = {tmp_path / unquote(link) for link in links if not link.startswith("#")}
+    assert {folder, *(folder / file for file in RECORD.files)} == files
+    assert all(file.exists() for file in files)
+    anchors = {element.attributes["id"] for element in found.elements if "id" in element.attributes}
+    assert {link[1:] for link in links if link.startswith("#")} <= anchors
+
+
+def test_the_page_allows_its_own_style_and_script_and_nothing_else() -> None:
+    """The policy has the digests of what stands in the page; nothing comes from elsewhere or runs inline."""
+    found = page(converted(OUTPUT, "walk"))
+    policy = found.all("meta")[1].attributes["content"]
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules["default-src"] == rules["base-uri"] == rules["form-action"] == "'none'"
+    for name, tag in (("style-src", "style"), ("script-src", "script")):
+        (element,) = found.all(tag)
+        digest = base64.b64encode(hashlib.sha256(element.text.encode()).digest()).decode()
+        assert rules[name] == f"'sha256-{digest}'"
+    attributes = {name for element in found.elements for name in element.attributes}
+    assert "style" not in attributes and not any(name.startswith("on") for name in attributes)
+    assert "//" not in re.sub(r"sha256-\S+", "", found.markup)
+
+
+def test_everyone_can_read_the_page() -> None:
+    """Headers say what they are of, pictures what they show, and the page its language."""
+    found = page(converted(OUTPUT, "walk"), failed(OUTPUT, "fall", "no clip"), waiting(OUTPUT, "jump"))
+    assert found.all("html")[0].attributes["lang"] == "en"
+    assert {th.attributes["scope"] for th in found.all("th")} == {"col", "row", "rowgroup"}
+    (image,) = found.all("img")
+    assert image.attributes["alt"] and image.attributes["loading"] == "lazy"
+    inputs = [*found.all("input"), *found.all("select")]
+    assert len(inputs) == 2 and all(element.path[-1] == "label" for element in inputs)
+    assert "hidden" in found.all("form")[0].attributes
+    roles = {"table": "table", "tr": "row", "td": "cell", "tbody": "rowgroup", "thead": "rowgroup"}
+    for element in found.elements:  # a narrow window shows them as blocks, which would take their meaning
+        assert element.attributes.get("role") == roles.get(element.tag) or element.tag not in roles
+
+
+@pytest.mark.parametrize("colors", [LIGHT, DARK], ids=["light", "dark"])
+def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None:
+    """Every colour of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
+
+    def luminance(color: str) -> float:
+        shares = [int(color[place : place + 2], 16) / 255 for place in (1, 3, 5)]
+        linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    def contrast(one: str, other: str) -> float:
+        low, high = sorted((luminance(colors[one]), luminance(colors[other])))
+        return (high + 0.05) / (low + 0.05)
+
+    words = ("ink", "soft", "link", "failed", "poor", "fair", "good")
+    for word, ground in product(words, ("paper", "card")):
+        assert contrast(word, ground) >= 4.5, (word, ground)
+    assert contrast("ink", "wash") >= 4.5
+    assert min(contrast(bar, "track") for bar in ("poor", "fair", "good")) >= 3.0
+
+
+@pytest.mark.parametrize(
+    ("confidence", "weakest", "expected"),
+    [
+        (0.75, 0.5, Verdict.GOOD),
+        (0.95, 0.49, Verdict.FAIR),
+        (0.7499, 0.7, Verdict.FAIR),
+        (0.5, 0.1, Verdict.FAIR),
+        (0.4999, 0.4, Verdict.POOR),
+        (None, None, Verdict.UNJUDGED),
+    ],
+)
+def test_confidence_in_a_word(confidence: float | None, weakest: float | None, expected: Verdict) -> None:
+    """The thresholds are those that the page explains; what falls short does not seem to reach them."""
+    outcome = converted(OUTPUT, "walk", confidence=confidence, weakest=weakest)
+    assert verdict(outcome) is expected
+    (row,) = page(outcome).rows()
+    assert expected.value in row.text
+    if confidence is not None:
+        assert percent(confidence) in row.text and (percent(confidence) == "75\u00a0%") == (
+            confidence == 0.75
+        )
+
+
+def test_takes_that_need_a_person_come_first() -> None:
+    """Failures, then the least certain; within a word too; those that wait for their turn come last."""
+    outcomes = [
+        converted(OUTPUT, "a good"),
+        waiting(OUTPUT, "a waits"),
+        converted(OUTPUT, "b fair", confidence=0.7),
+        converted(OUTPUT, "a fair", confidence=0.6),
+        converted(OUTPUT, "c poor", confidence=0.2),
+        failed(OUTPUT, "z failed", "no clip"),
+        converted(OUTPUT, "m unjudged", confidence=None, weakest=None, method="interpolation"),
+    ]
+    order = [outcome.take for those in sections(outcomes).values() for outcome in those]
+    assert order == ["z failed", "c poor", "a fair", "b fair", "m unjudged", "a good", "a waits"]
+    found = page(*outcomes)
+    assert [row.text.startswith(name) for row, name in zip(found.rows(), order, strict=True)] == [True] * 7
+    names = [li.text for li in found.all("li") if li.path[-1] == "ol"]
+    assert [name.removesuffix(" failed").removesuffix(" waiting") for name in names] == sorted(order)
+    first = [li.text for li in found.all("li") if li.path[-1] == "ul" and "header" in li.path]
+    assert first[0] == "1 take failed: z failed." and first[1] == (
+        "1 take is poor, in need of keyframes: c poor (20\u00a0%)."
+    )
+
+
+def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What needs a person is shown first; how many are not is said where they would stand."""
+    monkeypatch.setattr("keymark.core.report.summary_page.MOST_ROWS", 3)
+    fair = [converted(OUTPUT, f"fair {number}", confidence=0.6) for number in range(4)]
+    found = page(*fair, failed(OUTPUT, "z", "no clip"), converted(OUTPUT, "good"))
+    assert [row.text[:6].strip() for row in found.rows()] == ["zfaile", "fair 0", "fair 1"]
+    headings = [th.text for th in found.all("th") if th.attributes["scope"] == "rowgroup"]
+    assert "2 of them are in summary.jsonl alone" in headings[1] and "1 of them" in headings[2]
+    assert found.all("dd")[0].text == "6"
+
+
+def test_a_reason_that_failures_share_is_said_once_above() -> None:
+    """One mistake in a shoot fails all its takes; its sentence stands in the head with their number."""
+    same = [failed(OUTPUT, f"take {number}", "shoot.json: no actor") for number in range(5)]
+    head = page(*same, failed(OUTPUT, "other", "no clip")).all("ul")[0].text
+    assert head.startswith(
+        "6 takes failed: other, take 0, take 1 and 3 more. 5 for one reason: shoot.json: no actor."
+    )
+    assert "reason" not in page(same[0], failed(OUTPUT, "other", "no clip")).all("ul")[0].text
+
+
+def test_the_head_counts_what_was_converted_now_or_before() -> None:
+    """Footage of failed takes does not count, even where an earlier result is still there."""
+    found = page(
+        converted(OUTPUT, "a"),
+        Outcome("b", OUTPUT / "b", Status.UNCHANGED, RECORD),
+        failed(OUTPUT, "c", "no clip", RECORD),
+        waiting(OUTPUT, "d"),
+    )
+    figures = dict(zip((dt.text for dt in found.all("dt")), (dd.text for dd in found.all("dd")), strict=True))
+    assert figures == {
+        "takes": "4",
+        "converted": "1",
+        "unchanged": "1",
+        "failed": "1",
+        "waiting": "1",
+        "frames": "240",
+        "footage": "8.0 s",
+    }
+    assert sum("earlier result" in row.text for row in found.rows()) == 1
+    assert len(found.all("img")) == 2
+
+
+def test_what_a_take_was_made_from_is_said() -> None:
+    """Posed and matched keyframes are told apart, and frames to pose come with the best first."""
+    (row,) = page(converted(OUTPUT, "walk", matched=(60,), library="walking")).rows()
+    assert "2 posed and 1 matched keyframes, library walking, method map" in row.text
+    assert "frame 87, then 31" in row.text and "120 frames, 4.0 s at 30 frames a second" in row.text
+    (row,) = page(converted(OUTPUT, "walk", keyframes=(), weak_frames=(), notes=())).rows()
+    assert "no keyframes, method map" in row.text and "Worth" not in row.text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [(0.0, "0.0 s"), (59.94, "59.9 s"), (59.96, "1 min 0 s"), (3599.6, "1 h 0 min"), (7830.0, "2 h 10 min")],
+)
+def test_times_are_said_as_people_do(seconds: float, said: str) -> None:
+    """No unit overflows."""
+    assert duration(seconds) == said
