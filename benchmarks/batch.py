@@ -171,7 +171,9 @@ def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]
         )
     core = sum(parts[column] for column in CORE)
     whole = sum(parts.values())
-    surrounding = ", ".join(f"{title} {parts[title]:.2f}" for title in COLUMNS if title not in (*CORE, "start-up"))
+    surrounding = ", ".join(
+        f"{title} {parts[title]:.2f}" for title in COLUMNS if title not in (*CORE, "start-up")
+    )
     each = (again.processor_s - start.processor_s) / max(again.takes - 1, 1)
     checked = costs[CHECK].processor_s / costs[CHECK].takes
     return "\n".join(

@@ -131,7 +131,10 @@ def test_a_failed_take_stops_the_others_only_if_that_is_wanted(
     chosen = parameters(keymark, shoot, output, 2, FailedTakes="pass")
     done = openjd("run", template, "--step", "Merge", "--run-dependencies", *chosen)
     assert done.returncode != 0 and "day1/take02" in done.stdout
-    with bpy.data.libraries.load(str(output / "asset_library" / "Walk.blend"), assets_only=True) as (found, _):
+    with bpy.data.libraries.load(str(output / "asset_library" / "Walk.blend"), assets_only=True) as (
+        found,
+        _,
+    ):
         assert list(found.actions) == ["day1 take01"]
     chosen = parameters(keymark, shoot, tmp_path / "strict", 2, FailedTakes="fail")
     done = openjd("run", template, "--step", "Convert", "-tp", "Task=2", *chosen)
