@@ -195,8 +195,8 @@ def _turned(take: Take, clip: Clip) -> str:
     if clip.size != take.camera.resolution[::-1]:
         return ""
     return (
-        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and give "
-        "sensor_width_mm and the pose of the camera as it was held"
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
+        "give sensor_width_mm and the pose of the camera as it was held"
     )
 
 
