@@ -1,4 +1,4 @@
-"""What `keymark check` costs a take: clips of many sizes and lengths, beside converting what they are made from.
+"""What `keymark check` costs a take, by size and length of its clip, beside converting a small one.
 
 Usage: check.py [TAKE] with the name or the folder of a take, by default the demonstration's. Its clip is made
 larger and longer with ffmpeg, as encoders do it by default: a picture that stands by itself every 250 frames.
