@@ -101,7 +101,7 @@ def cost(takes: int, *commands: Sequence[str]) -> Cost:
 
 
 def conversion_s(take: Path) -> dict[str, float]:
-    """Processor time of a conversion's parts [s] as a worker does it, on one thread: mean after a first one."""
+    """Processor time of a conversion's parts [s] as workers do it, on one thread: a mean after a first."""
     load_project()
     import cv2
     from keymark.core.shoot.description import chosen_settings, describe
@@ -154,8 +154,8 @@ def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]
     one, again, start = costs[ONE], costs[AGAIN], costs[START]
     lines = [
         f"Take {name}, {one.takes} copies; seconds and processor seconds a take, with starting up, and the "
-        "most memory a process held [MB]. `of one` is the throughput as a share of one job's, by the clock and "
-        "by what the processors did; `others` is how many processors others kept busy meanwhile.",
+        "most memory a process held [MB]. `of one` is the throughput as a share of one job's, by the clock "
+        "and by what the processors did; `others` is how many processors others kept busy meanwhile.",
         "",
         "| way | takes | s a take | processor s | of one | by processor | MB | others |",
         "|---|---:|---:|---:|---:|---:|---:|---:|",
@@ -180,7 +180,7 @@ def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]
         [
             *lines,
             "",
-            f"In a worker that has started, a conversion takes {whole:.2f} s of processor time, {core:.2f} s of "
+            f"In a worker that has started, a take costs {whole:.2f} s of processor time, {core:.2f} s of "
             f"it for reading the footage and estimating; the rest ({surrounding}) is {whole - core:.2f} s. "
             f"Starting a batch and its worker takes {start.processor_s:.2f} s, finding a take converted "
             f"{each:.3f} s, checking one {checked:.2f} s: {each / whole:.1%} and {checked / whole:.0%} of "

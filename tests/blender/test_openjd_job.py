@@ -114,6 +114,7 @@ def test_a_task_converts_its_share_and_nothing_else(
     words = ("--step", "Convert", "-tp", "Task=2")
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=2))
     assert done.returncode == 0, done.stdout + done.stderr
+    assert "openjd_status: 1 of 1 take" in done.stdout and "openjd_progress: 100" in done.stdout
     assert [name for name in NAMES if (output / name).exists()] == ["day1/take02"]
     words = ("--step", "Convert", "-tp", "Task=5")
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=5))
@@ -128,7 +129,7 @@ def test_a_failed_take_stops_the_others_only_if_that_is_wanted(
     shoot = write_shoot(tmp_path / "shoot", 2)
     (shoot / "day1" / "take02.mp4").write_bytes(b"no video")
     output = tmp_path / "out"
-    chosen = parameters(keymark, shoot, output, 2, FailedTakes="pass")
+    chosen = parameters(keymark, shoot, output, 1, FailedTakes="pass")
     done = openjd("run", template, "--step", "Merge", "--run-dependencies", *chosen)
     assert done.returncode != 0 and "day1/take02" in done.stdout
     with bpy.data.libraries.load(str(output / "asset_library" / "Walk.blend"), assets_only=True) as (
