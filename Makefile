@@ -5,7 +5,7 @@
 
 OUTPUT ?= out/demo
 TESTS ?=
-BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing again speed
+BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing again speed batch check
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
@@ -68,6 +68,11 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 test-core: .venv-dev/ready ## run the tests that need no Blender
 	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
 
+# What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.
+.PHONY: test-faults
+test-faults: .venv-test/ready ## kill conversions and batches at random points, and feed them broken files
+	@.venv-test/bin/python -m pytest $(two_at_a_time) -m faults tests/core tests/blender $(TESTS)
+
 # BLENDER=/path/to/blender tests in that one; without it, Debian's newest is fetched into a cache folder.
 .PHONY: test-blender
 test-blender: .venv-test/ready ## run the tests in a real Blender, and install the package there
@@ -103,7 +108,7 @@ package: .venv-test/ready ## build the extension's zips for every platform into 
 	@.venv-test/bin/python tools/build_package.py
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow and speed
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, speed and batches
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean

@@ -15,6 +15,7 @@ from .errors import InputError
 from .files.fields import Fields, listed
 from .files.inherited import Inherited
 from .files.json_file import shown, write_json, write_whole
+from .files.letters import is_hidden
 from .footage.camera import Camera
 from .footage.clips.clip import Clip
 from .footage.marker_style import MarkerStyle
@@ -28,6 +29,9 @@ MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
 LONGEST_FRAMES = 40_000
 """Of one take: twenty minutes, for which an estimate needs about two gigabytes."""
+MOST_MARKERS = 64
+LONGEST_MARKER = 200
+"""Characters of a marker's name."""
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimetres."""
 NOTICEABLE_RATE = 0.02
@@ -350,6 +354,10 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
     markers = fields.child("markers", "an object of markers by name, each with color_srgb")
     if not markers.values:
         raise InputError(f"{markers.where} is empty; at least one marker is needed, better five")
+    if len(markers.values) > MOST_MARKERS:
+        raise InputError(
+            f"{markers.where} has {len(markers.values)} markers; at most {MOST_MARKERS} are read"
+        )
     styles = tuple(_marker(markers, name) for name in markers.values)
     seen: dict[tuple[int, int, int], str] = {}
     for style in styles:
@@ -363,6 +371,11 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
 
 
 def _marker(markers: Fields, name: str) -> MarkerStyle:
+    if not name.strip() or len(name) > LONGEST_MARKER or any(map(is_hidden, name)):
+        raise InputError(
+            f"{markers.where}: a marker is called {shown(name)}; its name must be one line of at most "
+            f"{LONGEST_MARKER} characters that can be seen"
+        )
     marker = markers.child(name, "an object with color_srgb")
     segment = marker.text("segment", "a body segment's name") if marker.has("segment") else name
     if segment not in MARKER_SEGMENTS:

@@ -17,6 +17,8 @@ ROOT = Path(__file__).resolve().parent.parent
 MODULES = {
     "cv2": "opencv-python-headless",
     "hypothesis": "hypothesis",
+    "imageio_ffmpeg": "imageio-ffmpeg",
+    "jsonschema": "jsonschema",
     "pytest": "pytest",
     "scipy": "scipy",
     "threadpoolctl": "threadpoolctl",

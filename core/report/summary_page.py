@@ -6,7 +6,7 @@ without its script, which only searches and sorts.
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..shoot.outcome import Outcome, Status
@@ -17,6 +17,8 @@ from .summary_style import STYLE
 from .summary_text import counted, escaped, isolated, percent
 from .summary_verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
+MOST_ROWS = 5000
+"""A browser takes long to lay out more."""
 HEADINGS = {
     Verdict.FAILED: ("Failed", "The sentence says what would be valid."),
     Verdict.POOR: ("Poor", "Pose the frames that are named and convert again."),
@@ -38,7 +40,10 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
     named = sorted(outcomes, key=lambda outcome: outcome.take)
     number = {outcome.take: place for place, outcome in enumerate(named, 1)}
     found = sections(outcomes)
-    bodies = [_section(verdict, those, output, number) for verdict, those in found.items()]
+    bodies, room = [], MOST_ROWS
+    for verdict, those in found.items():
+        bodies.append(_section(verdict, those[:room], len(those), output, number))
+        room -= min(room, len(those))
     heads = "".join(f'<th role="columnheader" scope="col">{name}</th>' for name in COLUMNS)
     parts = (
         f"<header><h1>{isolated(title)}</h1>",
@@ -51,7 +56,7 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
         *bodies,
         "</table></main>",
         _legend(),
-        _by_name(named, number),
+        _by_name(named[:MOST_ROWS], number),
     )
     return _document(f"{title}: {counted(len(outcomes), 'take')}", "\n".join(parts))
 
@@ -76,13 +81,17 @@ def _source(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _section(verdict: Verdict, outcomes: Sequence[Outcome], output: Path, number: dict[str, int]) -> str:
+def _section(
+    verdict: Verdict, outcomes: Sequence[Outcome], count: int, output: Path, number: Mapping[str, int]
+) -> str:
     word, advice = HEADINGS[verdict]
+    if len(outcomes) < count:
+        advice += f" {count - len(outcomes)} of them are in summary.jsonl alone."
     rows = "\n".join(row(outcome, output, number[outcome.take]) for outcome in outcomes)
     return (
         f'<tbody role="rowgroup" id="{kind(verdict)}"><tr role="row" class="section">'
         f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind(verdict)}">'
-        f'<span aria-hidden="true">{SIGNS[verdict]}</span> {word} <span class="count">{len(outcomes)}</span>'
+        f'<span aria-hidden="true">{SIGNS[verdict]}</span> {word} <span class="count">{count}</span>'
         f"</h2> <small>{advice}</small></th></tr>\n{rows}</tbody>"
     )
 

@@ -53,6 +53,6 @@ SCRIPT = """
   order.addEventListener("change", sort);
   window.addEventListener("hashchange", restore);
   tools.hidden = false;
-  sort();
+  if (find.value || order.value !== "need") sort(); /* kept by the browser on reload */
 })();
 """

@@ -51,13 +51,24 @@ def clear_failure(output: Path, take: str) -> None:
         _file(output, take).unlink(missing_ok=True)
 
 
+def read_failures(output: Path) -> list[Failure]:
+    """The failures of all takes that can be read, in the order of their names."""
+    with suppress(OSError):
+        found = [_read(file) for file in (output / FOLDER).glob("*.json")]
+        return sorted((failure for failure in found if failure is not None), key=lambda one: one.take)
+    return []
+
+
 def read_failure(output: Path, take: str) -> Failure | None:
     """A take's failure; None where it has none, or none that can be read."""
-    path = _file(output, take)
+    found = _read(_file(output, take))
+    return found if found is not None and found.take == take else None
+
+
+def _read(path: Path) -> Failure | None:
     with suppress(InputError):
         fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-        found = Failure(*(fields.text(name, "a text") for name in ("take", "error", "kind")))
-        return found if found.take == take else None
+        return Failure(*(fields.text(name, "a text") for name in ("take", "error", "kind")))
     return None
 
 

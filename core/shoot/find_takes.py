@@ -31,17 +31,22 @@ def find_takes(folder: Path, without: Path | None = None, undescribed: bool = Fa
         undescribed: Whether clips count that no `shoot.json` describes yet.
 
     Raises:
-        InputError: There is no such folder, it cannot be read, it holds no take, or two takes of one name.
+        InputError: There is no such folder, it cannot be read, is itself left out, or holds no take or two
+            of one name.
     """
     if not folder.is_dir():
         raise InputError(
             f"{folder}: no such folder; a shoot is a folder of takes, or a list of them (.jsonl)"
         )
-    search = _Search(folder, None if without is None else os.path.realpath(without))
+    left_out = None if without is None else os.path.realpath(without)
+    if os.path.realpath(folder) == left_out:
+        raise InputError(f"{without}: is the shoot's own folder; name another one, which may lie in it")
+    search = _Search(folder, left_out)
     search.look_through(folder, described=undescribed or bool(shoot_files(folder)))
     if not search.takes:
         raise InputError(
-            f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes"
+            f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes, "
+            "which keymark new writes"
         )
     takes = tuple(sorted(search.takes, key=lambda take: take.name))
     check_names(folder, takes)

@@ -1,5 +1,6 @@
 """A list of takes, JSON Lines: an object a line with `take`, its path, and any field of `take.json`."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,7 @@ def _take(path: Path, where: str, line: str) -> ShootTake:
     way = place.relative_to(path.parent)
     if not way.parts:
         raise InputError(f"{where}: {TAKE} is {shown(values[TAKE])}; it must be {TAKE_VALID}")
-    if place.is_file():
+    if os.path.isfile(place):  # which is false for a name no file can have, too
         way = way.with_name(clip_name(place))
     nearest = {name: value for name, value in values.items() if name != TAKE}
     return ShootTake(name_of_way(way), place, nearest, where)

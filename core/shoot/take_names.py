@@ -57,9 +57,7 @@ def check_output(shoot: Shoot, output: Path) -> None:
     if target.exists() and not target.is_dir():
         raise InputError(f"{output}: is a file; the output must be a folder, new or old")
     if target == Path(os.path.realpath(shoot.folder)):
-        raise InputError(
-            f"{output}: is the shoot's own folder; name another one for the results, which may lie in it"
-        )
+        raise InputError(f"{output}: is the shoot's own folder; name another one, which may lie in it")
     places = [Path(os.path.realpath(take.place)) for take in shoot.takes]
     taken = {folder for place in places for folder in (place, *place.parents)}
     for take in shoot.takes:

@@ -61,13 +61,16 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
 
 def _rate(survey: ClipSurvey) -> dict[str, Any]:
     rates = {fps for fps in survey.rates if fps is not None}
-    images = survey.rates[None]
+    images = [clip.name for clip in survey.clips if clip.fps is None]
     if len(rates) == 1:
         rate = rates.pop()
         return {"fps": int(rate) if rate.is_integer() else rate}
-    if images:
-        return {"//fps": f"frames per second; {_count(images)} are images, which cannot tell", "fps": None}
-    return {"//fps": "left out, for the clips differ: each tells its own"}
+    if not rates:
+        return {"//fps": "frames per second, which images cannot tell", "fps": None}
+    told = "left out, for the clips differ: each tells its own"
+    if not images:
+        return {"//fps": told}
+    return {"//fps": f"{told}, but for images, beside which NAME.take.json must say it: {_named(images)}"}
 
 
 def _camera(survey: ClipSurvey) -> dict[str, Any]:

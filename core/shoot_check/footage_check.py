@@ -6,6 +6,7 @@ from ..footage.clips.clip import Clip
 from ..footage.clips.clip_samples import SAMPLED_FRAMES, ClipSamples
 from ..footage.clips.clip_timing import is_variable_frame_rate
 from ..footage.clips.glance import glance
+from ..footage.clips.image_sequence import ImageSequence
 from ..footage.clips.packets import read_packets
 from ..footage.clips.video_file import VideoFile
 from ..footage.marker_check import MarkerCheck, MarkerReadout, check_markers
@@ -18,7 +19,7 @@ ENOUGH = SAMPLED_FRAMES // 2
 """So many frames without a marker's colour tell that the conversion will not find it either."""
 MOST_EXPECTED = 5000
 """Frames of the longest clip for which it is worked out where keyframes put the markers."""
-ASTRAY = 0.5
+ASTRAY = 0.8
 """Share of a marker's frames, near where keyframes put it, below which something is wrong."""
 BLACK, DARK = 16.0, 40.0
 """Brightest tenth of a picture that is black, or dark, in levels of 255."""
@@ -33,19 +34,21 @@ def count_frames(clip: Clip, said: Findings) -> int:
         clip: The clip.
         said: Takes the sentences on what is odd.
     """
+    if isinstance(clip.source, ImageSequence):
+        said.warn(*clip.source.notes)
     packets = read_packets(clip.path) if isinstance(clip.source, VideoFile) else None
     if packets is None:
         return clip.frame_count
+    held = len(packets.time_s)
+    if packets.complete and held < clip.frame_count:
+        said.warn(
+            f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; it may be "
+            "cut off"
+        )
+        return held
     if is_variable_frame_rate(packets.time_s):
         said.warn("the clip has a variable frame rate: keys will lie at the true times, between whole frames")
-    held = len(packets.time_s)
-    if not packets.complete or held >= clip.frame_count:
-        return clip.frame_count
-    said.warn(
-        f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; it may be cut "
-        "off"
-    )
-    return held
+    return clip.frame_count
 
 
 def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[MarkerReadout, ...]:
@@ -64,7 +67,7 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
         check_size(take, clip)
     with said.noting():
         check_frame_count(take, frames)
-    rate = rate_note(take, clip)
+    rate = rate_note(take, clip) if clip.knows_its_rate else None
     if rate is not None:
         said.warn(rate)
     samples = None
@@ -72,18 +75,23 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
         samples = run(glance(clip))
     if samples is None:
         return ()
-    _check_light(samples, said)
-    check = run(check_markers(samples, take.markers))
+    dark = _check_light(samples, said)
+    check = _seen_markers(take, samples, frames, said)
     refused = _refused(check, samples)
+    if len(refused) == len(take.markers) > 1:
+        said.problem(
+            f"{take.clip}: the colour of no marker is in any of {len(samples.images)} frames looked at; "
+            + ("there is too little light" if dark else "is it a clip of this performer?")
+        )
+        return check.readouts
     said.problem(*(f"{take.clip}: marker {sentence}" for sentence in refused))
-    if not said.problems and len(take.keyframes) > 1 and frames <= MOST_EXPECTED:
-        check = _near_keyframes(take, check, samples, frames, said)
     for readout in check.readouts:
         said.warn(*(warning for warning in readout.warnings if warning not in refused))
     return check.readouts
 
 
-def _check_light(samples: ClipSamples, said: Findings) -> None:
+def _check_light(samples: ClipSamples, said: Findings) -> bool:
+    """Tell whether it is too dark in many frames."""
     bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
     for limit, word in ((BLACK, "black"), (DARK, "dark")):
         count = int(np.count_nonzero(bright < limit))
@@ -92,7 +100,8 @@ def _check_light(samples: ClipSamples, said: Findings) -> None:
                 f"{count} of {len(bright)} frames looked at are {word}; colours are hard to tell there, more "
                 "light is worth most"
             )
-            return
+            return True
+    return False
 
 
 def _refused(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
@@ -101,20 +110,26 @@ def _refused(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
     return tuple(check.missing.values()) if enough else ()
 
 
-def _near_keyframes(
-    take: Take, check: MarkerCheck, samples: ClipSamples, frames: int, said: Findings
-) -> MarkerCheck:
-    """Look for the markers where the keyframes put them, as the conversion will; far from there is wrong."""
-    expected = expected_regions(take, frames)
-    nearby = run(check_markers(samples, take.markers, expected))
-    astray = []
-    for free, near in zip(check.readouts, nearby.readouts, strict=True):
-        if near.found < ASTRAY * free.found:
-            astray.append(f"{near.name} in {near.found} of {free.found} frames that show it")
+def _seen_markers(take: Take, samples: ClipSamples, frames: int, said: Findings) -> MarkerCheck:
+    """Look for the markers, as the conversion will: where the keyframes put them; else anywhere.
+
+    What is found anywhere but not there is told: something is wrong with what is said of the take.
+    """
+    if said.problems or len(take.keyframes) < 2 or frames > MOST_EXPECTED:
+        return run(check_markers(samples, take.markers))
+    nearby = run(check_markers(samples, take.markers, expected_regions(take, frames)))
+    if all(readout.found >= ASTRAY * readout.sampled for readout in nearby.readouts):
+        return nearby
+    anywhere = run(check_markers(samples, take.markers))
+    astray = [
+        f"{near.name} in {free.found - near.found} of {free.found} frames"
+        for free, near in zip(anywhere.readouts, nearby.readouts, strict=True)
+        if near.found < ASTRAY * free.found
+    ]
     if not astray:
         return nearby
     said.warn(
-        f"near where keyframes and camera put it is {', '.join(astray)}; check that the keyframes are this "
-        "clip's, where the camera stands, and which marker is on which side"
+        f"seen far from where keyframes and camera put it: {', '.join(astray)}; check that the keyframes are "
+        "this clip's, where the camera stands, and which marker is on which side"
     )
-    return check
+    return anywhere

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 from typing import Any
 
 from ...core.files.fields import listed
@@ -10,10 +11,14 @@ from ...core.shoot_check.take_check import TakeCheck
 
 READY, LOOK, FAILS = "ready", "look", "fails"
 """It would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before what stops a conversion, and before what is only likely to go wrong."""
 FEWEST_IN_COMMON = 3
 """Takes that must share a sentence for it to be said once."""
 SHARE_IN_COMMON = 0.5
 MOST_NAMED = 3
+NARROWEST = 60
+"""Columns that sentences have at least."""
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
@@ -28,17 +33,29 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
     }
 
 
-def check_text(shoot: Shoot, checks: Sequence[TakeCheck]) -> str:
-    """What was found, for people."""
+def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
+    """What was found, for people.
+
+    Args:
+        shoot: What was looked at.
+        checks: Of every take.
+        columns: Width of the terminal, to which sentences are broken; None where nothing is to be broken.
+    """
     shared = _shared(checks)
-    lines = _table(shoot, checks, shared)
+    lines = _table(shoot, checks, shared, columns)
+    together: dict[tuple[str, ...], list[str]] = {}
     for sentence, takes in shared.items():
-        where = f"{len(takes)} takes ({listed(takes, MOST_NAMED)})"
-        lines += ["", f"In {'all takes' if len(takes) == len(checks) else where}:", f"  {sentence}"]
+        together.setdefault(tuple(takes), []).append(sentence)
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
+        lines += [line for sentence in sentences for line in _broken(sentence, 2, columns)]
     return "\n".join([*lines, "", _last_line(checks)])
 
 
-def _table(shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str]) -> list[str]:
+def _table(
+    shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
+) -> list[str]:
     """A line a take in columns, what is wrong with it alone below."""
     names = [_name(shoot, check) for check in checks]
     markers = _common_markers(checks)
@@ -49,9 +66,17 @@ def _table(shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str]) -> 
     lines = [_aligned(titles, widths)]
     for check, row in zip(checks, rows, strict=True):
         lines.append(_aligned(row, widths))
-        own = [sentence for sentence in (*check.problems, *check.warnings) if sentence not in said_once]
-        lines += [f"{'':{widths[0]}}  {sentence}" for sentence in own]
+        own = [sentence for sentence in _marked(check) if sentence not in said_once]
+        lines += [line for sentence in own for line in _broken(sentence, widths[0] + 2, columns)]
     return lines
+
+
+def _marked(check: TakeCheck) -> tuple[str, ...]:
+    """All sentences on a take, those marked that stop its conversion."""
+    return (
+        *(f"{STOPS} {sentence}" for sentence in check.problems),
+        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
+    )
 
 
 def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
@@ -70,6 +95,21 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> str:
     return "  ".join([*words, *numbers]).rstrip()
 
 
+def _broken(sentence: str, indent: int, columns: int | None) -> list[str]:
+    """A sentence as lines that begin below its first word."""
+    if columns is None:
+        return [" " * indent + sentence]
+    begin = " " * indent
+    return wrap(
+        sentence,
+        max(columns, NARROWEST),
+        initial_indent=begin,
+        subsequent_indent=f"{begin}  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
 def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
     """The markers of all takes, each name once, in the order they are met."""
     return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
@@ -79,7 +119,7 @@ def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
     """Sentences that many takes share, with these: a mistake in a shoot's description is one mistake."""
     found: dict[str, list[str]] = {}
     for check in checks:
-        for sentence in (*check.problems, *check.warnings):
+        for sentence in _marked(check):
             found.setdefault(sentence, []).append(check.name)
     fewest = max(FEWEST_IN_COMMON, SHARE_IN_COMMON * len(checks))
     return {sentence: takes for sentence, takes in found.items() if len(takes) >= fewest}
@@ -90,7 +130,7 @@ def _last_line(checks: Sequence[TakeCheck]) -> str:
     said = [
         f"{counts[READY]} ready",
         f"{counts[LOOK]} to look at",
-        f"{counts[FAILS]} that would not convert",
+        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
     efforts = [check.effort for check in checks if check.effort is not None]
     line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(said)}."

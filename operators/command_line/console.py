@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any
 
 from ...core.progress import Progress
+from .farm_progress import FarmProgress, is_wanted
 from .line_parser import complain
 
 JOB_SHARE = 0.9
@@ -20,7 +21,8 @@ class Console:
     """Progress, text and results of one command, as its options ask for; also its stopwatch.
 
     On a terminal progress is a bar on standard error, where tqdm is at hand; else a line of text for each
-    stage. With `--json` standard output gets one object and nothing else, with `--quiet` nothing at all.
+    stage, or the lines that a render farm asks for. With `--json` standard output gets one object and nothing
+    else, with `--quiet` nothing at all.
     """
 
     def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
@@ -30,6 +32,8 @@ class Console:
         self._stage = "Starting"
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
+        if is_wanted() and not quiet and not as_json:
+            self._bar = FarmProgress(self._write)
 
     def __enter__(self) -> "Console":
         """Start the command."""

@@ -2,7 +2,7 @@
 
 import argparse
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from ...core.files.digest import content_digest
 from ...core.motion import Motion
 from ...core.motion_file import read_motion
 from ...core.progress import Progress
+from ...core.shoot.failures import Failure, read_failures
 from ...core.shoot.results import Result, Results, find_results
 from .blender_silence import blender_silence
 from .console import Console, arguments_console
@@ -24,6 +25,8 @@ LONGEST_NAME = 63
 """Bytes of a data-block's name in Blender 4.5; later ones hold more."""
 LONGEST_TAG = 63
 LONGEST_DESCRIPTION = 1000
+NAMED = 5
+"""So many takes are named in the last line."""
 STAGE = "Gathering the motions"
 
 
@@ -32,7 +35,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
     Raises:
         InputError: There are no results, or the .blend cannot lie where it is asked for.
-        ConversionError: Some results are damaged; the others have been gathered.
+        ConversionError: Some results are damaged, or takes have failed; all others have been gathered.
     """
     require_blender("an asset library needs")
     with arguments_console(arguments) as console:
@@ -40,7 +43,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
         found = find_results(arguments.results)
         _check_place(arguments.output, found)
         name = arguments.name or arguments.results.absolute().name
-        gathering = Gathering(found, name, console)
+        gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):
             from ..bridge.asset_catalogs import NAME
@@ -48,20 +51,22 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
-        missing = dict(sorted(gathering.damaged.items()))
-        count = len(found.sound) + len(found.damaged) - len(missing)
-        result = {"motions": count, "damaged": missing, "files": files}
-        console.finish(result, "\n".join([f"{count} motions:", *(f"  {file}" for file in files)]))
-    if missing:
-        raise ConversionError(f"{arguments.output} lacks {_listed(missing)}; convert these takes again")
+        wrong = gathering.wrong
+        result = {"motions": gathering.count, "wrong": wrong, "files": files}
+        console.finish(result, "\n".join([f"{gathering.count} motions:", *(f"  {file}" for file in files)]))
+    if wrong:
+        raise ConversionError(f"{arguments.output} lacks takes or holds earlier results: {_listed(wrong)}")
 
 
 class Gathering:
     """Results on their way into a library; those that turn out to be damaged are remembered."""
 
-    def __init__(self, found: Results, shoot: str, console: Console) -> None:
-        self.damaged = dict(found.damaged)
-        """For each by its name, why, in a sentence."""
+    def __init__(self, found: Results, failures: Sequence[Failure], shoot: str, console: Console) -> None:
+        self.wrong = dict(found.damaged)
+        """Of each take that the library lacks, or has of an earlier input, why, in a sentence."""
+        self.wrong |= {failure.take: f"the take {failure.take}: {failure.error}" for failure in failures}
+        self.count = 0
+        """How many are in the library."""
         self._found, self._shoot, self._console = found, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset]":
@@ -78,14 +83,15 @@ class Gathering:
             try:
                 motion = _motion(result)
             except InputError as error:
-                self.damaged[result.name] = str(error)
+                self.wrong[result.name] = str(error)
                 continue
             name = asset_name(result.name, names)
             names.add(name)
+            self.count += 1
             catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
             yield MotionAsset(name, catalog, description(result), tags(result), motion)
         if not names:
-            raise ConversionError(f"none of the results can be used: {_listed(self.damaged)}")
+            raise ConversionError(f"none of the results can be used: {_listed(self.wrong)}")
 
 
 def asset_name(take: str, taken: Collection[str]) -> str:
@@ -158,5 +164,8 @@ def _check_place(output: Path, found: Results) -> None:
             )
 
 
-def _listed(damaged: dict[str, str]) -> str:
-    return f"{len(damaged)} of the results: " + "; ".join(damaged.values())
+def _listed(wrong: dict[str, str]) -> str:
+    """The reasons, the first few of many."""
+    reasons = [wrong[name] for name in sorted(wrong)]
+    more = [f"{len(reasons) - NAMED} more"] if len(reasons) > NAMED else []
+    return "; ".join([*reasons[:NAMED], *more])

@@ -14,6 +14,7 @@ from keymark.core.conversion_record import ConversionRecord, write_record
 from keymark.core.files.digest import content_digest
 from keymark.core.motion import Motion
 from keymark.core.motion_file import write_motion
+from keymark.core.shoot.failures import Failure, write_failure
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME as CATALOGS
@@ -29,6 +30,7 @@ RECORD = ConversionRecord(
     frame_start=1,
     fps=25.0,
     keyframes=(1, 7, 13),
+    matched=(),
     confidence=0.834,
     weakest=0.5,
     weak_frames=(),
@@ -229,9 +231,22 @@ def test_damaged_results_are_named_and_the_others_merged(
     assert main(words) == 1
     said = capsys.readouterr()
     assert json.loads(said.out)["motions"] == 1
-    assert sorted(json.loads(said.out)["damaged"]) == ["changed", "cut", "without"]
-    assert said.err.count("\n") == 1 and "3 of the results" in said.err
+    assert sorted(json.loads(said.out)["wrong"]) == ["changed", "cut", "without"]
+    assert said.err.count("\n") == 1 and "lacks takes" in said.err
     assert all(str(folder) in said.err for folder in (changed, cut, without))
+    assert [action.name for action in loaded(tmp_path / "library.blend")] == ["a"]
+
+
+def test_takes_that_have_failed_are_named(
+    add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As a batch has kept them, so that nobody takes the library for complete."""
+    add_result("a")
+    for number in range(7):
+        write_failure(results, Failure(f"bad{number}", f"clip {number} is cut off", "input"))
+    assert merge(results, tmp_path / "library.blend") == 1
+    said = capsys.readouterr().err
+    assert "bad0: clip 0 is cut off" in said and "bad4" in said and "bad5" not in said and "2 more" in said
     assert [action.name for action in loaded(tmp_path / "library.blend")] == ["a"]
 
 

@@ -21,7 +21,7 @@ from .memory import machine_bytes, processors
 from .protocol import Job
 from .supervisor import Supervisor
 from .tally import Tally
-from .worker_process import WorkerProcess, worker_words
+from .worker_process import LONGEST_SILENCE_S, WorkerProcess, worker_words
 
 WORKER_BYTES = 1.5 * 2**30
 """What a worker may need; the default number of jobs leaves each so much."""
@@ -53,7 +53,7 @@ def batch_command(arguments: argparse.Namespace) -> None:
 
 def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, console: Console) -> None:
     tally = Tally(shoot, arguments.output, jobs, console)
-    start = partial(WorkerProcess.started, worker_words(), arguments.debug)
+    start = partial(WorkerProcess.started, worker_words(), arguments.debug, LONGEST_SILENCE_S)
     try:
         Supervisor(jobs, start, tally).run(min(_workers(arguments.jobs), max(len(jobs), 1)))
     except KeyboardInterrupt:
@@ -69,7 +69,7 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
     tally.finish()
     console.finish(tally.to_dict(), tally.text())
     failed = [outcome.take for outcome in tally.outcomes if outcome.error is not None]
-    if failed:
+    if failed and arguments.failed_takes == "fail":
         where = f"; {tally.files[-1]} says why" if tally.files else ""
         raise ConversionError(f"{len(failed)} of {len(jobs)} takes failed: {listed(failed, NAMED)}{where}")
     if tally.wrong:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ....core.conversion_record import ConversionRecord, read_record
 from ....core.errors import InputError, KeymarkError
-from ....core.shoot.failures import CONVERSION, Failure, clear_failure, write_failure
+from ....core.shoot.failures import CONVERSION, Failure, clear_failure, read_failures, write_failure
 from ....core.shoot.gathered import gather_outcomes, gathered
 from ....core.shoot.outcome import Outcome, Status
 from ....core.shoot.shoot import Shoot
@@ -47,6 +47,9 @@ class Tally:
         """Of the summary."""
         self.wrong: list[str] = []
         """What of it all could not be written, in sentences."""
+        for failure in read_failures(output):
+            if failure.take not in self._outcomes:  # no longer of the shoot; nothing else would forget it
+                clear_failure(output, failure.take)
         for name in self._names:
             self._outcomes[name] = replace(self._outcomes[name], status=Status.WAITING, error=None)
         self._show()
@@ -85,11 +88,20 @@ class Tally:
 
     def finish(self) -> None:
         """Write the summary for good, with what other machines have done meanwhile."""
+        while True:
+            others = self._others()
+            self._outcomes |= others
+            self.summarize()
+            # Another machine may have come to its end while this summary was written, and have written its
+            # own before: without a second look the summary that stays would lack its last take.
+            after = self._others()
+            if all(_known(after[name]) == _known(others[name]) for name in others):
+                return
+
+    def _others(self) -> dict[str, Outcome]:
+        """What has become of the takes that are not converted here."""
         here = set(self._names)
-        for take in self.shoot.takes:
-            if take.name not in here:
-                self._outcomes[take.name] = gathered(take, self.output)
-        self.summarize()
+        return {take.name: gathered(take, self.output) for take in self.shoot.takes if take.name not in here}
 
     def summarize(self) -> None:
         """Write the summary as far as it goes."""
@@ -167,6 +179,10 @@ class Tally:
     def _note(self, sentence: str) -> None:
         if sentence not in self.wrong:
             self.wrong.append(sentence)
+
+
+def _known(outcome: Outcome) -> tuple[Status, str | None, ConversionRecord | None]:
+    return outcome.status, outcome.error, outcome.record
 
 
 def _record(folder: Path) -> ConversionRecord | None:

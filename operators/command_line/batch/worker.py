@@ -58,6 +58,9 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
         result, error, kind = FAILED, str(wrong), INPUT
     except KeymarkError as failed:
         result, error, kind = FAILED, str(failed), CONVERSION
+    except OSError as wrong:
+        reason = wrong.strerror or wrong
+        result, error, kind = FAILED, f"{job.take.place}: cannot be converted ({reason})", CONVERSION
     except Exception as unexpected:
         what = f"{type(unexpected).__name__}: {unexpected}" if str(unexpected) else type(unexpected).__name__
         result, error, kind = FAILED, f"failed unexpectedly ({what}); convert --debug shows where", CRASH

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ..line_parser import program_name
 from .protocol import LONGEST_BYTES, Answer, Done, Job, Ready, Step, read_answer
 
 START = Path(__file__).with_name("start_worker.py")
@@ -44,9 +45,7 @@ class WorkerProcess:
         self._listening = None if process.stderr is None else asyncio.create_task(self._listen())
 
     @classmethod
-    async def started(
-        cls, words: Sequence[str], debug: bool, silence_s: float = LONGEST_SILENCE_S
-    ) -> "WorkerProcess":
+    async def started(cls, words: Sequence[str], debug: bool, silence_s: float) -> "WorkerProcess":
         """Start a worker and wait until it is ready.
 
         Args:
@@ -69,8 +68,7 @@ class WorkerProcess:
                 pass
         except WorkerLostError as lost:
             await worker.end()
-            words_left = worker._last_words.decode("utf-8", "replace").strip().splitlines()
-            raise WorkerLostError(words_left[-1] if words_left else str(lost)) from lost
+            raise WorkerLostError(worker._last_line or str(lost)) from lost
         except asyncio.CancelledError:
             await worker.end()
             raise
@@ -124,7 +122,8 @@ class WorkerProcess:
     async def _answer(self, longest_s: float) -> Answer | None:
         assert self._process.stdout is not None
         try:
-            line = await asyncio.wait_for(self._process.stdout.readline(), longest_s)
+            async with asyncio.timeout(longest_s):  # wait_for of Python 3.11 may swallow a cancellation
+                line = await self._process.stdout.readline()
         except TimeoutError as error:
             raise WorkerLostError(f"told of no progress for {longest_s / 60.0:.3g} minutes") from error
         except ValueError as error:  # no end of a line within the limit
@@ -137,16 +136,26 @@ class WorkerProcess:
         """How it ended."""
         if not await self._gone(GRACE_S):
             return "fell silent"
+        if self._listening is not None:
+            await asyncio.wait([self._listening], timeout=GRACE_S)
         status = self._process.returncode or 0
         if status >= 0:
-            return f"ended with exit status {status}"
+            said = f" ({self._last_line})" if self._last_line else ""
+            return f"ended with exit status {status}{said}"
         with suppress(ValueError):
             return f"was killed by {signal.Signals(-status).name}"
         return f"was killed by signal {-status}"
 
+    @property
+    def _last_line(self) -> str:
+        """The last it said on standard error."""
+        lines = self._last_words.decode("utf-8", "replace").strip().splitlines()
+        return lines[-1].removeprefix(f"{program_name()}: ") if lines else ""
+
     async def _gone(self, within_s: float) -> bool:
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._process.wait(), within_s)
+            async with asyncio.timeout(within_s):
+                await self._process.wait()
         return self._process.returncode is not None
 
     async def _listen(self) -> None:

@@ -197,6 +197,17 @@ def test_takes_that_need_a_person_come_first() -> None:
     )
 
 
+def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What needs a person is shown first; how many are not is said where they would stand."""
+    monkeypatch.setattr("keymark.core.report.summary_page.MOST_ROWS", 3)
+    fair = [converted(OUTPUT, f"fair {number}", confidence=0.6) for number in range(4)]
+    found = page(*fair, failed(OUTPUT, "z", "no clip"), converted(OUTPUT, "good"))
+    assert [row.text[:6].strip() for row in found.rows()] == ["zfaile", "fair 0", "fair 1"]
+    headings = [th.text for th in found.all("th") if th.attributes["scope"] == "rowgroup"]
+    assert "2 of them are in summary.jsonl alone" in headings[1] and "1 of them" in headings[2]
+    assert found.all("dd")[0].text == "6"
+
+
 def test_a_reason_that_failures_share_is_said_once_above() -> None:
     """One mistake in a shoot fails all its takes; its sentence stands in the head with their number."""
     same = [failed(OUTPUT, f"take {number}", "shoot.json: no actor") for number in range(5)]

@@ -1,0 +1,226 @@
+"""Finding the takes of a shoot: folders, bare clips, lists; what is no take, and names that clash."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.shoot import find_takes as finding
+from keymark.core.shoot import take_list
+from keymark.core.shoot.find_takes import find_takes
+from keymark.core.shoot.open_shoot import open_shoot
+from keymark.core.shoot.take_names import check_output
+
+
+def make(folder: Path, *ways: str) -> Path:
+    """Make files, empty but for JSON; a way that ends with a slash is a folder."""
+    for way in ways:
+        path = folder / way
+        if way.endswith("/"):
+            path.mkdir(parents=True)
+            continue
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("{}" if path.suffix == ".json" else "", encoding="utf-8")
+    return folder
+
+
+def names(folder: Path, without: Path | None = None) -> list[str]:
+    """The names of the takes found."""
+    return [take.name for take in find_takes(folder, without).takes]
+
+
+@pytest.mark.parametrize(
+    ("ways", "found"),
+    [
+        (["b/take.json", "b/deeper/take.json", "a/take.json"], ["a", "b"]),
+        (["take.json", "clip.mp4"], ["."]),
+        (["shoot.json", "x.mp4", "day/y.MOV", "day/._y.mov", ".trash/z.mp4", "notes.txt"], ["day/y", "x"]),
+        (["x.mp4", "day/shoot.json", "day/y.mp4"], ["day/y"]),
+        (["shoot.json", "x/1.png", "x/2.png", "y/one.jpg"], ["x", "y"]),
+        (["shoot.json", "x/1.png", "x/2.png", "x/masks/1.png"], ["x"]),
+        (["shoot.json", "poster.jpg", "day/x.mp4", "day/still.jpg"], ["day/x"]),
+        (["shoot.json", "x.mp4", "old/x/conversion.json", "old/x/report/1.png", "old/x/report/2.png"], ["x"]),
+        (["shoot.json", "1.png", "2.png"], ["."]),
+    ],
+    ids=[
+        "folders",
+        "itself",
+        "clips",
+        "described below",
+        "images",
+        "masks",
+        "stills",
+        "results",
+        "images itself",
+    ],
+)
+def test_takes_are_found(ways: list[str], found: list[str], tmp_path: Path) -> None:
+    """By way from the folder, in order, without a clip's ending."""
+    assert names(make(tmp_path / "shoot", *ways)) == found
+
+
+def test_the_results_are_left_out(tmp_path: Path) -> None:
+    """Whatever lies in the folder for them, however it is named."""
+    shoot = make(tmp_path / "shoot", "shoot.json", "x.mp4", "out/y.mp4", "out/z/take.json")
+    assert names(shoot, shoot / "day" / ".." / "out") == ["x"]
+
+
+def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
+    """A circle of links ends."""
+    shoot = make(tmp_path / "shoot", "a/take.json", "b/")
+    (shoot / "b" / "circle").symlink_to(shoot, target_is_directory=True)
+    assert names(shoot) == ["a"]
+
+
+@pytest.mark.parametrize(
+    ("ways", "sentence"),
+    [
+        (["shoot.json", "x.mp4", "x.mov"], "have one name, 'x'"),
+        (["shoot.json", "x.mp4", "x/1.png", "x/2.png"], "have one name, 'x'"),
+        (["shoot.json", "Ärm.mp4", "ärm.mov"], "have one name, 'ärm'"),
+        (["shoot.json", "Cafe\u0301.mp4", "caf\u00e9.mov"], "have one name"),
+        (["shoot.json", "day.mp4", "day/x.mp4"], "would lie among those of"),
+        (["shoot.json", "summary.html.mp4"], "where a batch keeps its own summary.html"),
+        (["x.mp4", "notes.txt"], "holds no take"),
+    ],
+    ids=["endings", "folder", "case", "accents", "below", "summary", "none"],
+)
+def test_takes_that_cannot_be_told_apart_are_refused(ways: list[str], sentence: str, tmp_path: Path) -> None:
+    """On every file system, whether it minds case and accents or not; the sentence names them."""
+    if len({way.casefold() for way in ways}) < len(ways):
+        pytest.skip("this file system cannot hold both")
+    with pytest.raises(InputError, match=sentence):
+        find_takes(make(tmp_path / "shoot", *ways))
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="nothing is closed to root")
+def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -> None:
+    """It may hold takes: it is not passed over."""
+    shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
+    (shoot / "closed").chmod(0)
+    try:
+        assert names(shoot) == ["a", "closed"]
+    finally:
+        (shoot / "closed").chmod(0o700)
+
+
+def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The shoot's own folder must be readable; one below becomes a take, whose failure will be told."""
+    shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
+    listing = Path.iterdir
+
+    def fail(self: Path) -> object:
+        if self.name == closed:
+            raise PermissionError(13, "Permission denied")
+        return listing(self)
+
+    monkeypatch.setattr(Path, "iterdir", fail)
+    closed = "closed"
+    assert names(shoot) == ["a", "closed"]
+    closed = "shoot"
+    with pytest.raises(InputError, match="shoot: cannot be read"):
+        find_takes(shoot)
+
+
+def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sentence, not a long search."""
+    shoot = make(tmp_path / "shoot", "/".join(["d"] * 6) + "/take.json", "a/take.json", "b/take.json")
+    monkeypatch.setattr(finding, "DEEPEST", 4)
+    with pytest.raises(InputError, match="more than 4 folders deep"):
+        find_takes(shoot)
+    monkeypatch.undo()
+    monkeypatch.setattr(finding, "MOST_TAKES", 2)
+    with pytest.raises(InputError, match="more than 2 takes"):
+        find_takes(shoot)
+
+
+def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
+    """Its results have a folder of their own."""
+    shoot = make(tmp_path / "shoot", "shoot.json", "day/x.mp4", "day/y.mp4")
+    (take,) = open_shoot(shoot / "day" / "x.mp4").takes
+    assert (take.name, take.place) == ("x", shoot / "day" / "x.mp4")
+
+
+@pytest.mark.parametrize(
+    ("output", "sentence"),
+    [
+        ("shoot", "is the shoot's own folder"),
+        ("shoot/day/x/..", "would lie in"),
+        (".", None),
+        ("shoot/out", None),
+        ("shoot/day/x/out", None),
+        ("file", "is a file"),
+    ],
+)
+def test_results_may_not_lie_over_takes(output: str, sentence: str | None, tmp_path: Path) -> None:
+    """Beside and below is right; what holds takes is refused."""
+    folder = make(tmp_path / "shoot", "day/x/take.json", "x/take.json")
+    make(tmp_path, "file")
+    shoot = find_takes(folder)
+    if sentence is None:
+        check_output(shoot, tmp_path / output)
+        return
+    with pytest.raises(InputError, match=sentence):
+        check_output(shoot, tmp_path / output)
+
+
+def write_list(path: Path, *lines: object) -> Path:
+    """Write a list, objects as JSON."""
+    text = "\n".join(line if isinstance(line, str) else json.dumps(line) for line in lines)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
+    """In the order of names; each with its fields, and where these stand."""
+    make(tmp_path, "shoot.json", "day/x.mp4", "a/take.json")
+    listed = write_list(
+        tmp_path / "night.jsonl", {"take": "day/x.mp4", "method": "ekf", "//": "\u2028"}, "", {"take": "a"}
+    )
+    shoot = open_shoot(listed)
+    assert [take.name for take in shoot.takes] == ["a", "day/x"] and shoot.folder == tmp_path
+    x = shoot.takes[1]
+    assert (x.place, x.said_in) == (tmp_path / "day" / "x.mp4", f"{listed}, line 1")
+    assert x.describe().settings.method == "ekf"
+
+
+@pytest.mark.parametrize(
+    ("lines", "sentence"),
+    [
+        ([], "lists no take"),
+        (['{"take": "a"'], "line 1.*no valid JSON"),
+        (['{"take": "a"}', "[1]"], "line 2: holds \\[1\\]"),
+        ([{"take": "a"}, {"tak": "b"}], "line 2 has the unknown field 'tak'.*'take'"),
+        ([{"method": "ekf"}], "line 1: take is missing"),
+        ([{"take": "../a"}], r"line 1: take is '\.\./a'"),
+        ([{"take": "/a"}], "line 1: take is '/a'"),
+        ([{"take": 3}], "line 1: take is 3"),
+        ([{"take": "."}], r"line 1: take is '\.'"),
+        ([{"take": "a"}, {"take": "A"}], "have one name"),
+        ([{"take": ".keymark/a"}], ".*where a batch keeps its own .keymark"),
+        (['{"take": "\\udcff"}'], "line 1: take is"),
+    ],
+)
+def test_a_damaged_list_is_one_sentence(lines: list[object], sentence: str, tmp_path: Path) -> None:
+    """It names the list, the line, the field and the value."""
+    with pytest.raises(InputError, match=f"night.jsonl.*{sentence}|^{sentence}"):
+        open_shoot(write_list(tmp_path / "night.jsonl", *lines))
+
+
+def test_a_list_is_bounded_and_must_be_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Too long a list, too long a line, too many takes, no UTF-8, no file."""
+    listed = write_list(tmp_path / "night.jsonl", {"take": "a"}, {"take": "b"})
+    for name, value, sentence in (
+        ("LARGEST_BYTES", 20, "is longer than"),
+        ("LONGEST_LINE_BYTES", 10, "line 1: has 13 characters"),
+        ("MOST_TAKES", 1, "more than 1 takes"),
+    ):
+        with monkeypatch.context() as bounded, pytest.raises(InputError, match=sentence):
+            bounded.setattr(take_list, name, value)
+            open_shoot(listed)
+    listed.write_bytes(b"\xff\xfe{}")
+    with pytest.raises(InputError, match="in UTF-8"):
+        open_shoot(listed)
+    with pytest.raises(InputError, match="nowhere.jsonl: cannot be read"):
+        open_shoot(tmp_path / "nowhere.jsonl")
