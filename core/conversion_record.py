@@ -3,6 +3,8 @@
 It is the last file to arrive and the first to go, so that files without it are never taken for whole.
 """
 
+import os
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -10,12 +12,17 @@ from typing import Any
 
 from .errors import InputError
 from .files.fields import Fields
+from .files.inside import inside_path
 from .files.json_file import read_json, shown, write_json
 
 NAME = "conversion.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**22
 MOST_LISTED = 10**6
+FARTHEST_FRAME = 10**7
+LONGEST_LINE, LONGEST_NOTE = 1000, 10_000
+MOST_NOTES, MOST_FILES = 1000, 100
+_SHA256 = re.compile(r"[0-9a-f]{64}", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -72,20 +79,20 @@ def read_record(folder: Path) -> ConversionRecord:
     if version > SCHEMA_VERSION:
         raise InputError(f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}")
     return ConversionRecord(
-        digest=fields.text("digest", "a digest"),
-        keymark=fields.text("keymark", "a version"),
-        take=fields.text("take", "a name"),
-        method=fields.text("method", "a method"),
-        library=fields.text("library", "an identifier") if fields.has("library") else None,
+        digest=_line(fields, "digest"),
+        keymark=_line(fields, "keymark"),
+        take=_line(fields, "take"),
+        method=_line(fields, "method"),
+        library=_line(fields, "library") if fields.has("library") else None,
         frames=fields.whole("frames", 1, MOST_LISTED),
-        frame_start=fields.whole("frame_start", -(10**7), 10**7),
+        frame_start=fields.whole("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
         fps=fields.number("fps", 1e-3, 1e4),
-        keyframes=tuple(_list(fields, "keyframes", int, "a list of frames")),
-        matched=tuple(_list(fields, "matched", int, "a list of frames")),
+        keyframes=_frames(fields, "keyframes"),
+        matched=_frames(fields, "matched"),
         confidence=_share(fields, "confidence"),
         weakest=_share(fields, "weakest"),
-        weak_frames=tuple(_list(fields, "weak_frames", int, "a list of frames")),
-        notes=tuple(_list(fields, "notes", str, "a list of sentences")),
+        weak_frames=_frames(fields, "weak_frames"),
+        notes=_notes(fields),
         files=_files(fields),
     )
 
@@ -96,24 +103,52 @@ def is_finished(folder: Path, digest: str) -> bool:
         record = read_record(folder)
     except InputError:
         return False
-    return record.digest == digest and all((folder / name).is_file() for name in record.files)
+    return record.digest == digest and all(os.path.isfile(folder / name) for name in record.files)
 
 
 def _share(fields: Fields, name: str) -> float | None:
     return fields.number(name, 0.0, 1.0) if fields.has(name) else None
 
 
-def _list(fields: Fields, name: str, kind: type, valid: str) -> list[Any]:
+def _line(fields: Fields, name: str) -> str:
+    valid = f"a text of at most {LONGEST_LINE} characters"
+    text = fields.text(name, valid)
+    if len(text) > LONGEST_LINE:
+        raise InputError(f"{fields.at(name)}: {name} is {shown(text)}; it must be {valid}")
+    return text
+
+
+def _list(fields: Fields, name: str, kind: type, most: int, valid: str) -> list[Any]:
     value = fields.required(name, valid)
-    if not isinstance(value, list) or not all(type(item) is kind for item in value):
+    if not isinstance(value, list) or len(value) > most or not all(type(item) is kind for item in value):
         raise InputError(f"{fields.at(name)}: {name} is {shown(value)}; it must be {valid}")
     return value
 
 
+def _frames(fields: Fields, name: str) -> tuple[int, ...]:
+    valid = f"a list of at most {MOST_LISTED} frames"
+    frames = _list(fields, name, int, MOST_LISTED, valid)
+    if any(abs(frame) > FARTHEST_FRAME + MOST_LISTED for frame in frames):
+        raise InputError(f"{fields.at(name)}: {name} is {shown(frames)}; it must be {valid}")
+    return tuple(frames)
+
+
+def _notes(fields: Fields) -> tuple[str, ...]:
+    valid = f"a list of at most {MOST_NOTES} sentences of {LONGEST_NOTE} characters"
+    notes = _list(fields, "notes", str, MOST_NOTES, valid)
+    if any(len(note) > LONGEST_NOTE for note in notes):
+        raise InputError(f"{fields.at('notes')}: notes is {shown(notes)}; it must be {valid}")
+    return tuple(notes)
+
+
 def _files(fields: Fields) -> Mapping[str, str]:
-    files = fields.child("files", "an object of digests by file").values
-    for name, digest in files.items():
-        parts = Path(name).parts
-        if Path(name).is_absolute() or ".." in parts or not isinstance(digest, str):
-            raise InputError(f"{fields.where}: files names {shown(name)}; it must be a file of this folder")
-    return dict(files)
+    files = fields.child("files", f"an object of at most {MOST_FILES} digests by file")
+    if len(files.values) > MOST_FILES:
+        raise InputError(f"{files.where} names {len(files.values)} files; at most {MOST_FILES} are read")
+    for name, digest in files.values.items():
+        inside_path(Fields({"name": name}, files.where), "name", Path(), "a file of this folder")
+        if not isinstance(digest, str) or _SHA256.fullmatch(digest) is None:
+            raise InputError(
+                f"{files.where}: {shown(name)} is {shown(digest)}; it must be a SHA-256 of 64 digits"
+            )
+    return dict(files.values)

@@ -11,6 +11,7 @@ from .body.kinematics import Body
 from .body.posture import Posture
 from .body.posture_fields import FARTHEST_M, posture_to_json, read_posture, rounded
 from .body.posture_fit import fit_posture
+from .chunks import chunks
 from .errors import InputError
 from .files.fields import Fields, listed
 from .files.json_file import read_json, shown, write_json
@@ -21,6 +22,10 @@ Array = NDArray[np.float64]
 NAMES_LONGEST = 200
 FEWEST_KEYFRAMES = 2
 """Between which there is something to interpolate."""
+MOST_KEYFRAMES = 20_000
+"""Ten a hundred frames in two hours of film."""
+FITTED_TOGETHER = 500
+"""Keyframes whose points are fitted at once, so that many take no more memory than some."""
 
 
 def read_keyframes(
@@ -41,7 +46,7 @@ def read_keyframes(
 
     Raises:
         InputError: The file or a field is unusable, a frame is outside the clip or given twice, or there
-            are too few keyframes.
+            are too few keyframes, or too many.
     """
     fields = Fields(read_json(path), str(path))
     rows = fields.required("keyframes", "a list of keyframes")
@@ -52,6 +57,8 @@ def read_keyframes(
             f"{path}: keyframes has {len(rows)} of them; at least {fewest} are needed, "
             "better 10 per 100 frames"
         )
+    if len(rows) > MOST_KEYFRAMES:
+        raise InputError(f"{path}: keyframes has {len(rows)} of them; at most {MOST_KEYFRAMES} are read")
     posed = [Fields.of(row, f"{path}: keyframes[{place}]") for place, row in enumerate(rows)]
     indices = [_index(row, frame_start, frame_count) for row in posed]
     _refuse_twice(path, indices, frame_start)
@@ -115,10 +122,10 @@ def _keyframes(posed: Sequence[Fields], indices: Sequence[int], body: Body) -> l
             points[place] = _points(
                 row.child("points", "an object with 13 points"), body.skeleton.point_names
             )
-    unposed = [place for place in range(len(posed)) if place not in postures]
-    if unposed:
-        fitted = fit_posture(body, points[unposed]).posture
-        postures.update({place: fitted[row] for row, place in enumerate(unposed)})
+    unposed = np.array([place for place in range(len(posed)) if place not in postures], dtype=np.intp)
+    for together in chunks(unposed, FITTED_TOGETHER) if len(unposed) else []:
+        fitted = fit_posture(body, points[together]).posture
+        postures.update({int(place): fitted[row] for row, place in enumerate(together)})
     keyframes = []
     for place, index in enumerate(indices):
         error = np.linalg.norm(body.points(body.pose(postures[place])) - points[place], axis=-1)

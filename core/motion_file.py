@@ -15,11 +15,17 @@ from .body.posture_fields import posture_to_json, rounded
 from .errors import ConversionError, InputError
 from .files.fields import Fields
 from .files.json_file import read_json, shown, write_json
+from .files.number_lists import number_array
 from .motion import Motion
 
 Array = NDArray[np.float64]
 
 SCHEMA_VERSION = 1
+LARGEST_BYTES = 2**29
+"""Two hours of motion: about 2 kB a frame."""
+LARGEST_NUMBER = 1e15
+"""Of places, angles, times and covariances, in the file's units."""
+MOST_DIAGNOSTICS = 100
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of xx, xy, xz, yy, yz, zz: all that a covariance of three coordinates has."""
@@ -63,7 +69,7 @@ def read_motion(path: Path) -> Motion:
     Raises:
         InputError: The file or a field is unusable; the sentence names it.
     """
-    fields = Fields(read_json(path), str(path))
+    fields = Fields(read_json(path, LARGEST_BYTES), str(path))
     version = fields.whole("schema_version", 1, 10**6)
     if version > SCHEMA_VERSION:
         raise InputError(f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}")
@@ -140,12 +146,12 @@ def _rows(fields: Fields, name: str, keys: tuple[str, ...], shape: tuple[int, ..
 
 
 def _array(value: Any, shape: tuple[int, ...], where: str) -> Array:
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    if array.shape != shape or not np.isfinite(array).all():
-        raise InputError(f"{where} is {shown(value)}; it must be a list of finite numbers of shape {shape}")
+    array = number_array(value)
+    if array is None or array.shape != shape or not np.all(np.abs(array) <= LARGEST_NUMBER):
+        raise InputError(
+            f"{where} is {shown(value)}; it must be a list of numbers of shape {shape}, each within "
+            f"{LARGEST_NUMBER:g}"
+        )
     return array
 
 
@@ -160,12 +166,18 @@ def _keyframe_indices(fields: Fields, frame_start: int, count: int) -> tuple[int
 
 
 def _diagnostics(fields: Fields) -> Mapping[str, Array]:
+    given = fields.child("diagnostics", "an object of lists by name").values
+    if len(given) > MOST_DIAGNOSTICS:
+        raise InputError(
+            f"{fields.where}: diagnostics has {len(given)} lists; at most {MOST_DIAGNOSTICS} are read"
+        )
     rows: dict[str, Array] = {}
-    for name, value in fields.child("diagnostics", "an object of lists by name").values.items():
-        try:
-            rows[name] = np.asarray(value, dtype=np.float64)  # null becomes NaN
-        except (TypeError, ValueError) as error:
+    for name, value in given.items():
+        array = number_array(value, nulls=True)
+        if array is None:
             raise InputError(
-                f"{fields.where}: diagnostics.{name} is {shown(value)}; it must be numbers, or lists of them"
-            ) from error
+                f"{fields.where}: diagnostics: {shown(name)} is {shown(value)}; it must be numbers or "
+                "null, or lists of them"
+            )
+        rows[name] = array
     return MappingProxyType(rows)

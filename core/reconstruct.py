@@ -15,6 +15,7 @@ from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
 from .estimate.match_error import undecided_covariance
 from .estimate.match_worth import worthwhile
+from .estimate.unseen import unseen_covariance
 from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
@@ -35,6 +36,8 @@ Array = NDArray[np.float64]
 FOLLOWING = "Following the markers"
 EXPECTED_RADIUS_M = 0.45
 """How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
+STRAYED_M_PER_S = 3.0
+"""How much farther, before the first keyframe and after the last, where the posture is only held."""
 CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6
 """Share of the work that reading the footage usually is."""
@@ -194,7 +197,10 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
         centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
-    radius = EXPECTED_RADIUS_M * take.camera.focal_px / np.maximum(depth, 0.1)
+    posed = take.keyframe_indices
+    beyond = np.maximum(np.arange(frame_count) - max(posed), min(posed) - np.arange(frame_count)).clip(0)
+    reach = EXPECTED_RADIUS_M + STRAYED_M_PER_S * beyond / take.fps
+    radius = reach * take.camera.focal_px / np.maximum(depth, 0.1)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
     centre, radius = np.round(64.0 * centre) / 64.0, np.round(64.0 * radius) / 64.0
     return ExpectedRegions(centre, np.repeat(radius[:, None], len(take.markers), axis=1))
@@ -237,10 +243,11 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Ar
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
     }
-    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics)
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    unseen = unseen_covariance(take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s)
+    motion = _motion(take, tracks, result.posture, result.covariance + unseen, "map", diagnostics)
     if not doubt.any():
         return motion
-    index = np.array(take.keyframe_indices, dtype=np.intp)
     undecided = undecided_covariance(motion.points, take.camera, index, doubt)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 

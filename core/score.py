@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body.human import HUMAN
+from .body.posture_fields import FARTHEST_M
 from .errors import InputError
 from .files.fields import Fields
 from .files.json_file import read_json, shown
+from .files.number_lists import number_array
 from .footage.camera import Camera
 
 Array = NDArray[np.float64]
@@ -125,12 +127,12 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
         )
     points = fields.child("points", "an object of 13 points")
     places = [points.required(name, "a list of [x, y, z]") for name in HUMAN.point_names]
-    try:
-        truth = np.asarray(places, dtype=np.float64)
-    except (TypeError, ValueError):
-        truth = np.empty(0)
-    if truth.shape != (len(places), frame_count, 3) or not np.isfinite(truth).all():
-        raise InputError(f"{points.where}: each point needs {frame_count} [x, y, z] in m")
+    truth = number_array(places)
+    usable = truth is not None and truth.shape == (len(places), frame_count, 3)
+    if truth is None or not usable or np.abs(truth).max(initial=0.0) > FARTHEST_M:
+        raise InputError(
+            f"{points.where}: each point needs {frame_count} [x, y, z] in m, within {FARTHEST_M:g} m"
+        )
     return np.swapaxes(truth, 0, 1)
 
 

@@ -14,6 +14,7 @@ from .errors import InputError
 from .files.fields import Fields, listed
 from .files.inherited import Inherited
 from .files.json_file import shown, write_json, write_whole
+from .files.letters import is_hidden
 from .footage.camera import Camera
 from .footage.clips.clip import Clip
 from .footage.marker_style import MarkerStyle
@@ -25,6 +26,9 @@ TRUNK = "trunk"
 """Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
+MOST_MARKERS = 64
+LONGEST_MARKER = 200
+"""Characters of a marker's name."""
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimetres."""
 NOTICEABLE_RATE = 0.02
@@ -191,8 +195,8 @@ def _turned(take: Take, clip: Clip) -> str:
     if clip.size != take.camera.resolution[::-1]:
         return ""
     return (
-        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and give "
-        "sensor_width_mm and the pose of the camera as it was held"
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
+        "give sensor_width_mm and the pose of the camera as it was held"
     )
 
 
@@ -340,6 +344,10 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
     markers = fields.child("markers", "an object of markers by name, each with color_srgb")
     if not markers.values:
         raise InputError(f"{markers.where} is empty; at least one marker is needed, better five")
+    if len(markers.values) > MOST_MARKERS:
+        raise InputError(
+            f"{markers.where} has {len(markers.values)} markers; at most {MOST_MARKERS} are read"
+        )
     styles = tuple(_marker(markers, name) for name in markers.values)
     seen: dict[tuple[int, int, int], str] = {}
     for style in styles:
@@ -353,6 +361,11 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
 
 
 def _marker(markers: Fields, name: str) -> MarkerStyle:
+    if not name.strip() or len(name) > LONGEST_MARKER or any(map(is_hidden, name)):
+        raise InputError(
+            f"{markers.where}: a marker is called {shown(name)}; its name must be one line of at most "
+            f"{LONGEST_MARKER} characters that can be seen"
+        )
     marker = markers.child(name, "an object with color_srgb")
     segment = marker.text("segment", "a body segment's name") if marker.has("segment") else name
     if segment not in MARKER_SEGMENTS:

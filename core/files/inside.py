@@ -49,6 +49,4 @@ def check_links(paths: Iterable[Path], folders: Iterable[Path]) -> None:
     for path in paths:
         real = os.path.realpath(path)
         if not any(Path(real).is_relative_to(home) for home in homes):
-            raise InputError(
-                f"{path}: leads by a link to {real}; it must stay inside {homes[0]}, so put the file itself there"
-            )
+            raise InputError(f"{path}: leads by a link to {real}; it must stay inside {homes[0]}")

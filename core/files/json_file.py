@@ -27,6 +27,7 @@ MOST_DIGITS = 15
 """Whole numbers of more digits have no exact float64."""
 
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 _SHORT = Repr()
 """Looks at no more of a value than is shown."""
@@ -78,6 +79,7 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
         ) from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
+    _check_letters(text, value, where)
     if not isinstance(value, dict):
         raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
     return value
@@ -166,6 +168,18 @@ def _check_nesting(text: str, where: str) -> None:
             raise InputError(
                 f"{where}: its lists and objects are nested too deeply; {DEEPEST} levels are read"
             )
+
+
+def _check_letters(text: str, value: Any, where: str) -> None:
+    """Refuse halves of characters, which escapes can write and no file can hold."""
+    if _HALF.search(text) is None:
+        return
+    try:
+        json.dumps(value, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        raise InputError(
+            f"{where}: {shown(error.object[error.start])} is half of a character; texts must be valid Unicode"
+        ) from error
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

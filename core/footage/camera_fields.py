@@ -11,8 +11,16 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import shown
+from ..files.number_lists import number_array
 
 FloatArray = NDArray[np.float64]
+
+LARGEST_SIDE_PX = 2**16
+MOST_DISTORTION = 100.0
+"""Coefficients of lenses are below 1."""
+FARTHEST_M = 1e6
+"""No camera stands further from the origin along an axis, or is scaled more."""
+SMALLEST_SCALE = 1e-4
 
 _ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision carry about 1e-6
 
@@ -21,11 +29,12 @@ def read_resolution(fields: Fields) -> tuple[int, int]:
     """Return the image's width and height in pixels.
 
     Raises:
-        InputError: the field is absent or not two whole numbers above 0.
+        InputError: the field is absent or not two whole numbers from 1 to 65536.
     """
-    valid = "two whole numbers above 0, width and height in pixels"
-    numbers = _array(fields.required("resolution", valid))
-    if numbers is None or numbers.shape != (2,) or np.any(numbers < 1) or np.any(numbers % 1):
+    valid = f"two whole numbers from 1 to {LARGEST_SIDE_PX}, width and height in pixels"
+    numbers = number_array(fields.required("resolution", valid))
+    fits = numbers is not None and numbers.shape == (2,) and not np.any(numbers % 1)
+    if numbers is None or not fits or numbers.min() < 1 or numbers.max() > LARGEST_SIDE_PX:
         shown_value = shown(fields.values["resolution"])
         raise InputError(f"{fields.at('resolution')}: resolution is {shown_value}; it must be {valid}")
     return int(numbers[0]), int(numbers[1])
@@ -35,7 +44,8 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
     """Return k1, k2, k3 of the polynomial distortion; absent means none, missing coefficients are 0.
 
     Raises:
-        InputError: the field is neither a list of at most three numbers nor an object with k1, k2, k3.
+        InputError: the field is neither a list of at most three numbers nor an object with k1, k2, k3, or one
+            is beyond what lenses do.
     """
     value = fields.values.get("distortion")
     if value is None:
@@ -43,11 +53,11 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
     listed: Any = value
     if isinstance(value, Mapping) and set(value) <= {"k1", "k2", "k3"}:
         listed = [value.get(name, 0.0) for name in ("k1", "k2", "k3")]
-    numbers = _array(listed)
-    if numbers is None or numbers.ndim != 1 or numbers.size > 3:
+    numbers = number_array(listed)
+    if numbers is None or numbers.ndim != 1 or numbers.size > 3 or np.any(np.abs(numbers) > MOST_DISTORTION):
         raise InputError(
             f"{fields.at('distortion')}: distortion is {shown(value)}; "
-            "it must be up to three numbers [k1, k2, k3]"
+            f"it must be up to three numbers [k1, k2, k3], each within {MOST_DISTORTION:g}"
         )
     padded = np.zeros(3)
     padded[: numbers.size] = numbers
@@ -67,43 +77,46 @@ def read_poses(fields: Fields) -> FloatArray:
         name, valid, ndim = "matrix_world_frames", "one 4 by 4 matrix a frame", 3
     else:
         name, valid, ndim = "matrix_world", "a 4 by 4 matrix of finite numbers", 2
-    matrices = _array(fields.required(name, valid))
+    matrices = number_array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
         raise InputError(f"{fields.at(name)}: {name} has the wrong form; it must be {valid}")
     stacked = matrices.reshape(-1, 4, 4).copy()
-    for index, matrix in enumerate(stacked):
-        place = f"{fields.at(name)}: {name}" + (f"[{index}]" if ndim == 3 else "")
-        matrix[:3, :3] = _rotation(matrix, place)
+    fault = _first_fault(stacked)
+    if fault is not None:
+        index, what = fault
+        raise InputError(f"{fields.at(name)}: {name}" + (f"[{index}]" if ndim == 3 else "") + f" {what}")
+    left, _, right = np.linalg.svd(_scaled(stacked))
+    stacked[:, :3, :3] = left @ right
     return stacked.reshape(matrices.shape)
 
 
-def _rotation(matrix: FloatArray, place: str) -> FloatArray:
-    if np.abs(matrix[3] - [0.0, 0.0, 0.0, 1.0]).max() > _ROTATION_TOLERANCE:
-        raise InputError(f"{place} has the last row {matrix[3].tolist()}; it must be [0, 0, 0, 1]")
-    linear = matrix[:3, :3]
-    determinant = float(np.linalg.det(linear))
-    if determinant <= 0.0:
-        raise InputError(
-            f"{place} has the determinant {determinant:.3g}; it must turn, not mirror or flatten"
-        )
-    rotation = linear / np.cbrt(determinant)
-    error = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
-    if error > _ROTATION_TOLERANCE:
-        raise InputError(
-            f"{place} is sheared or scaled unevenly (off by {error:.2g}); its axes must be orthogonal "
-            "and equally long"
-        )
-    left, _, right = np.linalg.svd(rotation)
-    return np.asarray(left @ right)
+def _first_fault(matrices: FloatArray) -> tuple[int, str] | None:
+    """Return the index of the first of (F, 4, 4) that is no pose, and what is wrong with it."""
+    last = np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1) > _ROTATION_TOLERANCE
+    far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
+    sound = np.where((last | far)[:, None, None], np.eye(4), matrices)
+    determinants = np.linalg.det(sound[:, :3, :3])
+    flat = determinants < SMALLEST_SCALE**3
+    rotations = _scaled(np.where(flat[:, None, None], np.eye(4), sound))
+    error = np.abs(np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3)).max(axis=(1, 2))
+    faults = last | far | flat | (error > _ROTATION_TOLERANCE)
+    if not faults.any():
+        return None
+    index = int(faults.argmax())
+    if last[index]:
+        return index, f"has the last row {matrices[index, 3].tolist()}; it must be [0, 0, 0, 1]"
+    if far[index]:
+        largest = float(np.abs(matrices[index]).max())
+        return index, f"holds a number of the size {largest:.3g}; each must be within {FARTHEST_M:g}"
+    if flat[index]:
+        return index, f"has the determinant {determinants[index]:.3g}; it must turn, not mirror or flatten"
+    return index, (
+        f"is sheared or scaled unevenly (off by {error[index]:.2g}); its axes must be orthogonal and equally "
+        "long"
+    )
 
 
-def _array(value: Any) -> FloatArray | None:
-    """Return nested lists as an array of finite numbers, or None where they are something else."""
-    try:
-        array = np.asarray(value)
-    except ValueError:  # ragged lists
-        return None
-    if array.dtype.kind not in "iuf":
-        return None
-    array = array.astype(np.float64)
-    return array if np.all(np.isfinite(array)) else None
+def _scaled(matrices: FloatArray) -> FloatArray:
+    """Return the upper left of (F, 4, 4), each with a uniform scale taken out, (F, 3, 3)."""
+    linear = matrices[:, :3, :3]
+    return np.asarray(linear / np.cbrt(np.linalg.det(linear))[:, None, None])

@@ -39,6 +39,9 @@ def conversion_digest(
     said = {name: value for name, value in description.fields.values.items() if name not in SETTINGS}
     images = find_images(description.clip)
     footage = [description.clip] if images is None else images
+    posed = settings.keyframes
+    if posed is None and description.keyframes.exists():
+        posed = description.keyframes
     return digest(
         FORMAT,
         version,
@@ -46,7 +49,7 @@ def conversion_digest(
         description.name,
         _way(description.clip, output),
         tuple((file.name, content_digest(file)) for file in footage),
-        None if settings.keyframes is None else content_digest(settings.keyframes),
+        None if posed is None else content_digest(posed),
         tuple(libraries),
         settings.floor_m,
         settings.method,

@@ -45,8 +45,8 @@ def find_takes(folder: Path, without: Path | None = None, undescribed: bool = Fa
     search.look_through(folder, described=undescribed or bool(shoot_files(folder)))
     if not search.takes:
         raise InputError(
-            f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes, which "
-            "keymark new writes"
+            f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes, "
+            "which keymark new writes"
         )
     takes = tuple(sorted(search.takes, key=lambda take: take.name))
     check_names(folder, takes)

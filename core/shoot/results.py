@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..conversion_record import NAME, ConversionRecord, read_record
 from ..errors import InputError
+from .take_names import name_of_way
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,16 +32,20 @@ def find_results(folder: Path) -> Results:
     """Find every result below a folder; hidden folders and links to folders are passed over.
 
     Raises:
-        InputError: There is no such folder, or it holds no result.
+        InputError: There is no such folder, it cannot be read, or it holds no result.
     """
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; it must be a folder of results, as batch writes it")
     sound: list[Result] = []
     damaged: dict[str, str] = {}
     for place, error in _places(folder):
-        name = place.relative_to(folder).as_posix() if place != folder else place.absolute().name
+        way = place.relative_to(folder) if place != folder else Path(place.absolute().name)
+        name = name_of_way(way)
         if error is not None:
-            damaged[name] = f"{place}: cannot be read ({error.strerror or error})"
+            sentence = f"{place}: cannot be read ({error.strerror or error})"
+            if place == folder:
+                raise InputError(sentence) from error
+            damaged[name] = sentence
             continue
         try:
             sound.append(Result(name, place, read_record(place)))

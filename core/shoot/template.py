@@ -62,6 +62,9 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
 def _rate(survey: ClipSurvey) -> dict[str, Any]:
     rates = {fps for fps in survey.rates if fps is not None}
     images = [clip.name for clip in survey.clips if clip.fps is None]
+    if len(rates) == 1:
+        rate = rates.pop()
+        return {"fps": int(rate) if rate.is_integer() else rate}
     if not rates:
         return {"//fps": "frames per second, which images cannot tell", "fps": None}
     told = "left out, for the clips differ: each tells its own"

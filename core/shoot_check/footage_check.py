@@ -39,16 +39,16 @@ def count_frames(clip: Clip, said: Findings) -> int:
     packets = read_packets(clip.path) if isinstance(clip.source, VideoFile) else None
     if packets is None:
         return clip.frame_count
+    held = len(packets.time_s)
+    if packets.complete and held < clip.frame_count:
+        said.warn(
+            f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; it may be "
+            "cut off"
+        )
+        return held
     if is_variable_frame_rate(packets.time_s):
         said.warn("the clip has a variable frame rate: keys will lie at the true times, between whole frames")
-    held = len(packets.time_s)
-    if not packets.complete or held >= clip.frame_count:
-        return clip.frame_count
-    said.warn(
-        f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; it may be cut "
-        "off"
-    )
-    return held
+    return clip.frame_count
 
 
 def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[MarkerReadout, ...]:
@@ -76,7 +76,7 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
     if samples is None:
         return ()
     dark = _check_light(samples, said)
-    check = run(check_markers(samples, take.markers))
+    check = _seen_markers(take, samples, frames, said)
     refused = _refused(check, samples)
     if len(refused) == len(take.markers) > 1:
         said.problem(
@@ -85,8 +85,6 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
         )
         return check.readouts
     said.problem(*(f"{take.clip}: marker {sentence}" for sentence in refused))
-    if not said.problems and len(take.keyframes) > 1 and frames <= MOST_EXPECTED:
-        check = _near_keyframes(take, check, samples, frames, said)
     for readout in check.readouts:
         said.warn(*(warning for warning in readout.warnings if warning not in refused))
     return check.readouts
@@ -112,15 +110,20 @@ def _refused(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
     return tuple(check.missing.values()) if enough else ()
 
 
-def _near_keyframes(
-    take: Take, check: MarkerCheck, samples: ClipSamples, frames: int, said: Findings
-) -> MarkerCheck:
-    """Look for the markers where the keyframes put them, as the conversion will; far from there is wrong."""
-    expected = expected_regions(take, frames)
-    nearby = run(check_markers(samples, take.markers, expected))
+def _seen_markers(take: Take, samples: ClipSamples, frames: int, said: Findings) -> MarkerCheck:
+    """Look for the markers, as the conversion will: where the keyframes put them; else anywhere.
+
+    What is found anywhere but not there is told: something is wrong with what is said of the take.
+    """
+    if said.problems or len(take.keyframes) < 2 or frames > MOST_EXPECTED:
+        return run(check_markers(samples, take.markers))
+    nearby = run(check_markers(samples, take.markers, expected_regions(take, frames)))
+    if all(readout.found >= ASTRAY * readout.sampled for readout in nearby.readouts):
+        return nearby
+    anywhere = run(check_markers(samples, take.markers))
     astray = [
         f"{near.name} in {free.found - near.found} of {free.found} frames"
-        for free, near in zip(check.readouts, nearby.readouts, strict=True)
+        for free, near in zip(anywhere.readouts, nearby.readouts, strict=True)
         if near.found < ASTRAY * free.found
     ]
     if not astray:
@@ -129,4 +132,4 @@ def _near_keyframes(
         f"seen far from where keyframes and camera put it: {', '.join(astray)}; check that the keyframes are "
         "this clip's, where the camera stands, and which marker is on which side"
     )
-    return check
+    return anywhere

@@ -39,14 +39,14 @@ def _check_fit(take: Take, said: Findings) -> None:
         return
     residual = [keyframe.residual_m for keyframe in take.keyframes]
     said.warn(
-        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to {100 * max(residual):.0f} "
-        "cm on average from any posture of this actor; check the actor's lengths, and whether these are the "
-        "performer's own keyframes"
+        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
+        f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's lengths, "
+        "and whether these are the performer's own keyframes"
     )
 
 
 def _check_gaps(take: Take, frames: int, said: Findings) -> None:
-    ends = [0, *take.keyframe_indices, frames - 1]
+    ends = [0, *(index for index in take.keyframe_indices if index < frames), frames - 1]
     gaps = np.diff(ends)
     longest = int(np.argmax(gaps))
     seconds = gaps[longest] / take.fps

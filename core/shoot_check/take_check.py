@@ -75,8 +75,8 @@ def check_take(
     take = None if missing or clip is None else _read(description, settings, said)
     markers: tuple[MarkerReadout, ...] = ()
     if take is not None and clip is not None and frames is not None:
-        markers = check_footage(take, clip, frames, said)
         check_keyframes(take, frames, settings.library is not None, said)
+        markers = check_footage(take, clip, frames, said)
     return _checked(found.name, said, clip, frames, take, markers, settings)
 
 
@@ -103,12 +103,13 @@ def _checked(
     asked = None
     if clip is not None and frames is not None and not said.problems:
         asked = effort(frames, clip.size, settings.method or METHODS[0], settings.library)
+    fps = None if take is None else take.fps
     return TakeCheck(
         name=name,
         problems=said.problems,
         warnings=said.warnings,
         size=None if clip is None else clip.size,
-        fps=take.fps if take is not None else None if clip is None else clip.fps,
+        fps=clip.fps if clip is not None and clip.knows_its_rate else fps,
         frames=frames,
         markers=markers,
         keyframes=0 if take is None else len(take.keyframes),

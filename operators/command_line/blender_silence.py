@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from typing import Any
 
 
 @contextmanager
@@ -75,8 +76,8 @@ def codec_silence(debug: bool) -> Iterator[None]:
             os.dup2(own.fileno(), 2)
 
 
-def _is_descriptor(stream: object, number: int) -> bool:
+def _is_descriptor(stream: Any, number: int) -> bool:
     try:
-        return stream is not None and stream.fileno() == number
+        return bool(stream.fileno() == number)
     except (AttributeError, OSError, ValueError):  # a stand-in, or closed
         return False

@@ -1,15 +1,17 @@
 """`keymark check`."""
 
 import argparse
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
+from shutil import get_terminal_size
 
 from ...core.errors import ConversionError
 from ...core.progress import Job, Progress, run
 from ...core.shoot.conversion_settings import ConversionSettings
 from ...core.shoot.open_shoot import open_shoot
-from ...core.shoot.shoot import Shoot
+from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.shoot_check.odd_takes import with_odd_ones
 from ...core.shoot_check.take_check import TakeCheck, check_take
 from .check_text import check_summary, check_text
@@ -34,8 +36,9 @@ def check_command(arguments: argparse.Namespace) -> None:
     farther = ConversionSettings(library=arguments.library, method=arguments.method)
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
-        checks = run(_checks(shoot, farther, jobs), console.progress)
-        console.finish(check_summary(checks), check_text(shoot, checks))
+        checks = run(_checks(shoot, farther, jobs, arguments.debug), console.progress)
+        columns = get_terminal_size().columns if sys.stdout.isatty() else None
+        console.finish(check_summary(checks), check_text(shoot, checks, columns))
     failing = sum(not check.converts for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {_takes(len(checks))} would not convert")
@@ -45,16 +48,30 @@ def _takes(count: int) -> str:
     return "1 take" if count == 1 else f"{count} takes"
 
 
-def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int) -> Job[list[TakeCheck]]:
+def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
     """Look at all takes, some at a time; decoders leave the interpreter to others meanwhile."""
     find_libraries = cache(chosen_libraries)
-    looks = [partial(check_take, take, find_libraries, farther) for take in shoot.takes]
+    looks = [partial(_look, take, find_libraries, farther, debug) for take in shoot.takes]
     checks: dict[int, TakeCheck] = {}
     yield Progress(STAGE, 0.0)
     for index, check in _some_at_a_time(looks, jobs):
         checks[index] = check
         yield Progress(STAGE, len(checks) / len(looks))
     return with_odd_ones([checks[index] for index in sorted(checks)])
+
+
+def _look(
+    take: ShootTake, find_libraries: Callable[[str], object], farther: ConversionSettings, debug: bool
+) -> TakeCheck:
+    """Look at a take; what nobody has thought of is said of this one, and stops no look at the others."""
+    try:
+        return check_take(take, find_libraries, farther)
+    except Exception as error:
+        if debug:
+            raise
+        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        return TakeCheck(take.name, (" ".join(said.split()),), ())
 
 
 def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:

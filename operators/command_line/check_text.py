@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 from typing import Any
 
 from ...core.files.fields import listed
@@ -16,6 +17,8 @@ FEWEST_IN_COMMON = 3
 """Takes that must share a sentence for it to be said once."""
 SHARE_IN_COMMON = 0.5
 MOST_NAMED = 3
+NARROWEST = 60
+"""Columns that sentences have at least."""
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
@@ -30,21 +33,29 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
     }
 
 
-def check_text(shoot: Shoot, checks: Sequence[TakeCheck]) -> str:
-    """What was found, for people."""
+def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
+    """What was found, for people.
+
+    Args:
+        shoot: What was looked at.
+        checks: Of every take.
+        columns: Width of the terminal, to which sentences are broken; None where nothing is to be broken.
+    """
     shared = _shared(checks)
-    lines = _table(shoot, checks, shared)
+    lines = _table(shoot, checks, shared, columns)
     together: dict[tuple[str, ...], list[str]] = {}
     for sentence, takes in shared.items():
         together.setdefault(tuple(takes), []).append(sentence)
-    for takes, sentences in together.items():
-        where = f"{len(takes)} takes ({listed(takes, MOST_NAMED)})"
-        lines += ["", f"In {'all takes' if len(takes) == len(checks) else where}:"]
-        lines += [f"  {sentence}" for sentence in sentences]
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
+        lines += [line for sentence in sentences for line in _broken(sentence, 2, columns)]
     return "\n".join([*lines, "", _last_line(checks)])
 
 
-def _table(shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str]) -> list[str]:
+def _table(
+    shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
+) -> list[str]:
     """A line a take in columns, what is wrong with it alone below."""
     names = [_name(shoot, check) for check in checks]
     markers = _common_markers(checks)
@@ -56,7 +67,7 @@ def _table(shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str]) -> 
     for check, row in zip(checks, rows, strict=True):
         lines.append(_aligned(row, widths))
         own = [sentence for sentence in _marked(check) if sentence not in said_once]
-        lines += [f"{'':{widths[0]}}  {sentence}" for sentence in own]
+        lines += [line for sentence in own for line in _broken(sentence, widths[0] + 2, columns)]
     return lines
 
 
@@ -82,6 +93,21 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> str:
     words = [f"{cell:{width}}" for cell, width in zip(cells[:2], widths[:2], strict=True)]
     numbers = [f"{cell:>{width}}" for cell, width in zip(cells[2:], widths[2:], strict=True)]
     return "  ".join([*words, *numbers]).rstrip()
+
+
+def _broken(sentence: str, indent: int, columns: int | None) -> list[str]:
+    """A sentence as lines that begin below its first word."""
+    if columns is None:
+        return [" " * indent + sentence]
+    begin = " " * indent
+    return wrap(
+        sentence,
+        max(columns, NARROWEST),
+        initial_indent=begin,
+        subsequent_indent=f"{begin}  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:

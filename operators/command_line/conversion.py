@@ -154,7 +154,7 @@ def _take(description: Description, settings: ConversionSettings, output: Path) 
 def _left_aside(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
     """A sentence where a take has keyframes that a conversion with a library does not use."""
     own = description.keyframes
-    if settings.library is None or settings.keyframes is not None or not own.exists():
+    if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
     return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
 

@@ -120,8 +120,10 @@ def _add_merge(commands: "Commands[LineParser]") -> None:
         commands,
         "merge",
         "gather the motions of a batch in one asset library",
-        "Gathers the motions found below DIR as Action assets in one .blend, in catalogs by shoot and "
-        "folder.",
+        "Gathers the motions found below DIR in one .blend to add to Blender's asset libraries, with "
+        "catalogs by shoot and folder: each as an Action, which any actor of Keymark's can be given, and as "
+        "an actor to drag into a scene. Exit status: 0 all takes are in it, 1 some have failed or are "
+        "damaged and the others are in it, 2 there are none.",
         _merge,
     )
     merge.add_argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it")

@@ -1,0 +1,48 @@
+"""What folders of results hold, as far as it is the same in every run."""
+
+import json
+from pathlib import Path
+
+import bpy
+from _faults import tree
+from keymark.core.conversion_record import read_record
+from keymark.core.files.digest import content_digest
+from keymark.core.files.output_folder import real_path
+from keymark.operators.bridge.curve_digest import curve_digest
+from keymark.operators.command_line.changed_files import AS_MADE
+
+VARYING = ("motion.blend", AS_MADE)
+"""Blender leaves memory addresses in its files; the record has the digest of their curves."""
+
+
+def same_in_every_run(folder: Path) -> dict[str, bytes | None]:
+    """Everything below a folder but the bytes of .blend files, and what only tells them."""
+    return {name: held for name, held in tree(folder).items() if not name.endswith(VARYING)}
+
+
+def is_whole(folder: Path) -> bool:
+    """Whether a folder counts as finished; then every file must be there, and be the one of its record."""
+    if not (folder / "conversion.json").exists():
+        return False
+    record = read_record(folder)
+    for name, digest in record.files.items():
+        if name not in VARYING:
+            assert content_digest(folder / name) == digest, f"{name} is not the one of its record"
+    as_made = json.loads((folder / AS_MADE).read_text(encoding="utf-8"))
+    assert as_made["motion.blend"] == content_digest(folder / "motion.blend")
+    return True
+
+
+def blend_is_of(folder: Path) -> bool:
+    """Whether the curves in motion.blend are those of the record."""
+    before = set(bpy.data.user_map())
+    with bpy.data.libraries.load(str(real_path(folder / "motion.blend"))) as (found, wanted):
+        wanted.objects = found.objects
+    digests = {curve_digest(thing) for thing in wanted.objects if thing.type == "ARMATURE"}
+    bpy.data.batch_remove(set(bpy.data.user_map()) - before)
+    return digests == {read_record(folder).files["motion.blend"]}
+
+
+def hidden(folder: Path) -> list[str]:
+    """What killed processes have left."""
+    return [name for name in tree(folder) if Path(name).name.startswith(".keymark-")]

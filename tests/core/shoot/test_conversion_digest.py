@@ -1,0 +1,92 @@
+"""The digest by which a take is known as converted: it minds everything that counts, and nothing else."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _shoot import write_shoot
+from keymark.core.shoot.conversion_digest import conversion_digest
+from keymark.core.shoot.conversion_settings import ConversionSettings
+from keymark.core.shoot.description import chosen_settings, describe
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shoot of one clip that tests must not change."""
+    return write_shoot(tmp_path_factory.mktemp("digests") / "shoot", takes=1, frames=3)
+
+
+@pytest.fixture
+def shoot(pristine: Path, tmp_path: Path) -> Path:
+    """A shoot of the test's own."""
+    return Path(shutil.copytree(pristine, tmp_path / "shoot"))
+
+
+def digest(shoot: Path, libraries: tuple[str, ...] = (), version: str = "1", **chosen: Any) -> str:
+    """Of the shoot's clip."""
+    description = describe(shoot / "day1" / "take01.mp4")
+    settings = chosen_settings(description, ConversionSettings(**chosen))
+    return conversion_digest(description, settings, libraries, shoot.parent / "out", version)
+
+
+def edit(name: str, **fields: Any) -> Callable[[Path], None]:
+    """A change of fields of one of the shoot's files, which may be new."""
+
+    def change(shoot: Path) -> None:
+        file = shoot / name
+        value = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        file.write_text(json.dumps({**value, **fields}), encoding="utf-8")
+
+    return change
+
+
+def lengthen(shoot: Path) -> None:
+    """One more byte of footage."""
+    with (shoot / "day1" / "take01.mp4").open("ab") as clip:
+        clip.write(b"\0")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        edit("day1/take01.keyframes.json", more=1),
+        lambda shoot: (shoot / "day1" / "take01.keyframes.json").unlink(),
+        edit("shoot.json", actor={"height_m": 1.6}),
+        edit("shoot.json", method="ekf"),
+        edit("shoot.json", pictures=True),
+        edit("day1/shoot.json", fps=25),
+        edit("day1/take01.take.json", frame_start=7),
+        lengthen,
+    ],
+)
+def test_a_changed_input_gives_another(change: Callable[[Path], Any], shoot: Path) -> None:
+    """Each file that says anything of the take counts."""
+    before = digest(shoot)
+    change(shoot)
+    assert digest(shoot) != before
+
+
+def test_settings_libraries_and_version_count(shoot: Path) -> None:
+    """Each makes a digest of its own."""
+    digests = [
+        digest(shoot),
+        digest(shoot, version="2"),
+        digest(shoot, libraries=("a",)),
+        digest(shoot, libraries=("a", "b")),
+        digest(shoot, floor_m=0.1),
+    ]
+    assert len(set(digests)) == len(digests)
+
+
+def test_times_comments_and_other_files_do_not(shoot: Path) -> None:
+    """A copy with other times is the same take."""
+    before = digest(shoot)
+    for file in shoot.rglob("*.*"):
+        os.utime(file, (1e9, 1e9))
+    edit("shoot.json", **{"// why": "a comment"})(shoot)
+    (shoot / "day1" / "take02.mp4").touch()
+    assert digest(shoot) == before

@@ -1,0 +1,135 @@
+"""`keymark new`: what clips tell is filled in, what a person must say is left open, nothing is replaced."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _shoot import shoot_fields, write_frames, write_shoot
+from _synthetic_take import drawn_frames, true_postures
+from keymark.core.motion_file import read_motion
+from keymark.operators.cli import main
+
+FRAMES = 8
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shoot that nobody has described but for one take; tests must not change it."""
+    folder = write_shoot(tmp_path_factory.mktemp("new") / "shoot", 3, FRAMES)
+    (folder / "shoot.json").unlink()
+    return folder
+
+
+@pytest.fixture
+def folder(pristine: Path, tmp_path: Path) -> Path:
+    """One of the test's own."""
+    return Path(shutil.copytree(pristine, tmp_path / "shoot"))
+
+
+def new(*words: object) -> int:
+    """Run `keymark new`."""
+    return main(["new", *map(str, words)])
+
+
+def written(folder: Path) -> dict[str, Any]:
+    """The description, as any reader of JSON has it."""
+    value: dict[str, Any] = json.loads((folder / "shoot.json").read_text(encoding="utf-8"))
+    return value
+
+
+def fill_in(folder: Path) -> None:
+    """Say what only a person knows."""
+    fields, known = written(folder), shoot_fields()
+    fields["camera"] |= {"matrix_world": known["camera"]["matrix_world"], "lens_mm": 40.0}
+    for name, marker in fields["markers"].items():
+        if marker == {"color_srgb": None}:
+            marker |= known["markers"][name]
+    fields["actor"] |= known["actor"]
+    fields |= {"method": "interpolation", "pictures": False}
+    (folder / "shoot.json").write_text(json.dumps(fields), encoding="utf-8")
+
+
+@pytest.mark.usefixtures("no_blender")
+def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What is open is said by `new` and by `check`, each field once; filled in, all of it converts."""
+    assert new(folder) == 0
+    said = capsys.readouterr().out
+    open_fields = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
+    assert len(open_fields) == 7 and open_fields[0] == "camera.matrix_world"
+    assert main(["check", str(folder)]) == 1
+    said = capsys.readouterr().out
+    assert said.count("still to be filled in") == 7 and said.count("\nfails") == 3
+    for field in open_fields:
+        assert said.count(f"{field.rpartition('.')[2]} is still to be filled in") >= 1
+    fill_in(folder)
+    assert main(["check", str(folder)]) == 0
+    assert capsys.readouterr().out.count("\nready") == 3
+    clip = folder / "day1" / "take01.mp4"
+    assert main(["convert", str(clip), "--output", str(tmp_path / "out"), "--quiet"]) == 0
+    assert len(read_motion(tmp_path / "out" / "motion.json").points) == FRAMES
+
+
+def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rate and size; a take's own description is left alone and named; all posed, no library is asked for."""
+    own = (folder / "day1" / "take03" / "take.json").read_bytes()
+    assert new(folder, "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["clips"] == 2 and said["described"] == ["day1/take03"] and said["unreadable"] == []
+    assert said["file"] == str(folder / "shoot.json") and len(said["fill_in"]) == 7
+    fields = written(folder)
+    assert fields["fps"] == 30 and fields["camera"]["resolution"] == [160, 120] and fields["root"] is True
+    assert "library" not in fields and any("day1/take03" in line for line in fields["//clips"])
+    assert (folder / "day1" / "take03" / "take.json").read_bytes() == own
+    assert any(line.startswith("red [2") for line in fields["markers"]["//seen"])
+    layout = (folder / "shoot.json").read_text(encoding="utf-8").splitlines()
+    assert max(map(len, layout)) <= 120 and len(layout) > 30
+
+
+def test_where_clips_differ_they_tell_themselves(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """The odd one is named, and so is what cannot be read; without keyframes a library is to be chosen."""
+    larger = [image.repeat(2, axis=0).repeat(2, axis=1) for image in drawn_frames(true_postures(3))]
+    write_frames(folder / "larger.mp4", larger)
+    (folder / "text.mp4").write_text("no video", encoding="utf-8")
+    assert new(folder, "--output", tmp_path / "other" / "mine.json") == 0
+    assert "text.mp4" in capsys.readouterr().out and not (folder / "shoot.json").exists()
+    (tmp_path / "other" / "mine.json").rename(folder / "shoot.json")
+    fields = written(folder)
+    assert "resolution" not in fields["camera"] and fields["fps"] == 30
+    lines = fields["//clips"]
+    assert any("320 x 240 pixels: larger" in line for line in lines)
+    assert any("text.mp4" in line and line.startswith("cannot be read") for line in lines)
+    assert fields["library"] == "auto" and fields["floor_m"] == 0.0
+
+
+def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:
+    """It is to be filled in then; above another shoot's folder nothing is cut off."""
+    below = folder / "day1" / "take03"
+    (below / "take.json").unlink()
+    (folder / "shoot.json").write_text("{}", encoding="utf-8")
+    assert new(below) == 0
+    fields = written(below)
+    assert fields["fps"] is None and "//fps" in fields and "root" not in fields
+
+
+def test_nothing_is_replaced_and_what_is_no_shoot_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """One sentence and status 2."""
+    (folder / "shoot.json").write_text("mine", encoding="utf-8")
+    empty, taken = tmp_path / "empty", folder / "day1" / "take03"
+    empty.mkdir()
+    for place, sentence in (
+        (folder, "never replaced"),
+        (taken, "take.json of its own"),
+        (empty, "holds no take"),
+        (tmp_path / "none", "no such folder"),
+    ):
+        assert new(place) == 2
+        error = capsys.readouterr().err
+        assert sentence in error and str(place) in error and len(error.splitlines()) == 1
+    assert (folder / "shoot.json").read_text(encoding="utf-8") == "mine" and list(empty.iterdir()) == []
