@@ -4,6 +4,7 @@ import os
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ TRUNK = "trunk"
 """Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
+LONGEST_FRAMES = 40_000
+"""Of one take: twenty minutes, for which an estimate needs about two gigabytes."""
 MOST_MARKERS = 64
 LONGEST_MARKER = 200
 """Characters of a marker's name."""
@@ -160,8 +163,9 @@ def open_clip(take: Take) -> Clip:
     clip = opened(take.clip, take.fps)
     check_size(take, clip)
     count = clip.frame_count
-    if take.frame_count not in (None, count):
-        count = len(clip.time_stamps())  # containers may claim a wrong number; decoding tells
+    if count > LONGEST_FRAMES or take.frame_count not in (None, count):
+        # Containers may claim a wrong number; decoding tells.
+        count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
     check_frame_count(take, count)
     return clip
 
@@ -211,9 +215,15 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
         claimed: Those that the clip's file says there are.
 
     Raises:
-        InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
+        InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
+            the clip.
     """
     path = take.file
+    if count > LONGEST_FRAMES:
+        raise InputError(
+            f"{take.clip}: has more than {LONGEST_FRAMES} frames, {LONGEST_FRAMES / take.fps / 60.0:.0f} "
+            "minutes; a take must be shorter: cut it, as with ffmpeg -ss 0 -t 600 -i CLIP part1.mp4"
+        )
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
