@@ -8,6 +8,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .body.actor import Actor
 from .body.human import HUMAN
 from .body.kinematics import Body
@@ -253,8 +255,10 @@ def check_in_front(take: Take) -> None:
     """Hold the keyframes against the camera: what lies behind it can leave nothing in its picture.
 
     Raises:
-        InputError: A point of a keyframe lies behind the camera.
+        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
     """
+    size = np.asarray(take.camera.resolution, dtype=np.float64)
+    in_picture = not take.keyframes
     for keyframe in take.keyframes:
         points = take.body.points(take.body.pose(keyframe.posture))
         depth = take.camera.depth(points, keyframe.index)
@@ -265,6 +269,13 @@ def check_in_front(take: Take) -> None:
                 f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
                 "(along its local -Z) at the performer"
             )
+        pixels, _ = take.camera.project(points, keyframe.index)
+        in_picture = in_picture or bool(((pixels >= 0.0) & (pixels <= size)).all(axis=-1).any())
+    if not in_picture:
+        raise InputError(
+            f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
+            "its lens and the keyframes, all in metres in one world, must fit each other"
+        )
 
 
 def rate_note(take: Take, clip: Clip) -> str | None:
@@ -341,8 +352,9 @@ def _camera(fields: Fields, frame_count: int | None) -> Camera:
 
 def _body(fields: Fields) -> Body:
     actor = fields.child("actor", "an object with segments_m, or with height_m alone")
-    if not actor.has("segments_m") and actor.has("height_m"):
-        return Body(Actor.from_stature(actor.number("height_m", 0.5, 3.0, "m")))
+    height_m = actor.number("height_m", 0.5, 3.0, "m") if actor.has("height_m") else None
+    if height_m is not None and not actor.has("segments_m"):
+        return Body(Actor.from_stature(height_m))
     lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in metres").values
     try:
         return Body(Actor(lengths))
