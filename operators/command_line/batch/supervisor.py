@@ -27,8 +27,11 @@ class Watcher(Protocol):
     def step(self, job: Job, step: Step) -> None:
         """A worker has come so far with a job."""
 
+    def put_off(self, job: Job, reason: str) -> None:
+        """A job comes last, to be tried once more."""
+
     def done(self, job: Job, done: Done) -> None:
-        """A job has come to its end; it is no longer in anybody's hands."""
+        """A job has come to its end."""
 
 
 @dataclass(eq=False)
@@ -126,11 +129,16 @@ class Supervisor:
             turn.losses += 1
             if turn.losses < TRIES:
                 self._turns.append(turn)
+                self._watcher.put_off(
+                    turn.job, f"the process that converted it {lost}; it is tried once more"
+                )
             else:
                 error = f"the process that converted it {lost}, and so did the one that tried again"
                 self._watcher.done(turn.job, Done(FAILED, error=error, kind=CRASH))
             return False
         if done.result == BUSY:
+            if not turn.busy:
+                self._watcher.put_off(turn.job, f"{done.error}; it is waited for")
             turn.busy += 1
             turn.job = replace(turn.job, again=False)  # what the other leaves is new enough
             self._turns.append(turn)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from statistics import fmean
 from typing import Any
 
 from ....core.conversion_record import ConversionRecord, read_record
@@ -17,6 +16,7 @@ from ....core.shoot.outcome import Outcome, Status
 from ....core.shoot.shoot import Shoot
 from ..console import Console
 from .protocol import FAILED, Done, Job, Step
+from .share import Share
 from .summary import write_summary
 
 BETWEEN_SUMMARIES_S = 5.0
@@ -40,7 +40,11 @@ class Tally:
         self.shoot, self.output, self.console = shoot, output, console
         self._names = [job.take.name for job in jobs]
         self._outcomes = {outcome.take: outcome for outcome in gather_outcomes(shoot, output)}
-        self._done: dict[str, float] = dict.fromkeys(self._names, 0.0)
+        for name in self._names:
+            self._outcomes[name] = replace(self._outcomes[name], status=Status.WAITING, error=None)
+        self._counts = Counter({Status.WAITING: len(jobs)})
+        self._share = Share([_frames(self._outcomes[name].record) for name in self._names])
+        self._places = {name: place for place, name in enumerate(self._names)}
         self._width = min(max(map(len, self._names), default=0), WIDEST_NAME)
         self._next_summary = time.monotonic()
         self.files: tuple[Path, ...] = ()
@@ -50,8 +54,6 @@ class Tally:
         for failure in read_failures(output):
             if failure.take not in self._outcomes:  # no longer of the shoot; nothing else would forget it
                 clear_failure(output, failure.take)
-        for name in self._names:
-            self._outcomes[name] = replace(self._outcomes[name], status=Status.WAITING, error=None)
         self._show()
 
     @property
@@ -62,25 +64,29 @@ class Tally:
     @property
     def counts(self) -> dict[str, int]:
         """How many of the takes that are converted here have come how far."""
-        counted = Counter(outcome.status for outcome in self.outcomes)
-        return {status.value: counted[status] for status in Status}
+        return {status.value: self._counts[status] for status in Status}
 
     def step(self, job: Job, step: Step) -> None:
         """A worker has come so far with a take."""
-        self._done[job.take.name] = step.fraction
+        self._share.come(self._places[job.take.name], step.fraction)
         self._show()
+
+    def put_off(self, job: Job, reason: str) -> None:
+        """A take comes last, to be tried once more."""
+        self._share.come(self._places[job.take.name], 0.0)
+        self.console.take(f"{job.take.name}: {reason}", None)
 
     def done(self, job: Job, done: Done) -> None:
         """A take has come to its end."""
-        name = job.take.name
-        self._done[name] = 1.0
-        record = _record(job.folder)
+        name, record = job.take.name, _record(job.folder)
+        self._share.come(self._places[name], 1.0, _frames(record))
         if done.result == FAILED:
             self._keep(Failure(name, done.error or "failed", done.kind or CONVERSION))
         else:
             clear_failure(self.output, name)
         outcome = Outcome(name, job.folder, Status(done.result), record, done.error, done.seconds)
         self._outcomes[name] = outcome
+        self._counts.update({outcome.status: 1, Status.WAITING: -1})
         self.console.take(self._line(outcome), outcome.error and f"{name}: {outcome.error}")
         self._show()
         if time.monotonic() >= self._next_summary:
@@ -143,7 +149,7 @@ class Tally:
         return "\n".join([*lines, *(f"  {file}" for file in self.files)])
 
     def _line(self, outcome: Outcome) -> str:
-        count = sum(done is not Status.WAITING for done in (outcome.status for outcome in self.outcomes))
+        count = len(self._names) - self._counts[Status.WAITING]
         line = f"[{count}/{len(self._names)}] {outcome.take:{self._width}}  {outcome.status.value}"
         if outcome.status is Status.FAILED:
             return f"{line}: {outcome.error}"
@@ -154,21 +160,9 @@ class Tally:
         return line
 
     def _show(self) -> None:
-        """Show how far all takes are together; long ones count for more, as far as their length is known."""
-        frames = {name: self._frames(name) for name in self._names}
-        known = [count for count in frames.values() if count is not None]
-        usual = fmean(known) if known else 1.0
-        weights = {name: usual if count is None else count for name, count in frames.items()}
-        whole = sum(weights.values())
-        share = sum(weights[name] * self._done[name] for name in self._names) / whole if whole else 1.0
-        counts = self.counts
-        ready = sum(counts.values()) - counts[Status.WAITING.value]
-        failed = f", {counts[Status.FAILED.value]} failed" if counts[Status.FAILED.value] else ""
-        self.console.overall(share, f"{ready} of {_takes(len(self._names))}{failed}")
-
-    def _frames(self, name: str) -> float | None:
-        record = self._outcomes[name].record
-        return None if record is None else float(record.frames)
+        count, failed = len(self._names), self._counts[Status.FAILED]
+        words = f"{count - self._counts[Status.WAITING]} of {_takes(count)}"
+        self.console.overall(self._share.value, f"{words}, {failed} failed" if failed else words)
 
     def _keep(self, failure: Failure) -> None:
         try:
@@ -189,6 +183,10 @@ def _record(folder: Path) -> ConversionRecord | None:
     with suppress(InputError):
         return read_record(folder)
     return None
+
+
+def _frames(record: ConversionRecord | None) -> int | None:
+    return None if record is None else record.frames
 
 
 def _takes(count: int) -> str:

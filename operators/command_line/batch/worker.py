@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from types import FrameType
 from typing import BinaryIO
 
 import cv2
@@ -26,10 +27,10 @@ BETWEEN_STEPS_S = 0.5
 
 def worker_command() -> None:
     """Convert the takes told on standard input, a job a line, and answer on standard output."""
-    signal.signal(
-        signal.SIGINT, signal.SIG_IGN
-    )  # Ctrl-C in a terminal is for the batch, which ends its workers
-    say = _speaker(_own_output())
+    ending = _Ending()
+    signal.signal(signal.SIGTERM, ending.asked)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the batch, which ends its workers
+    say = _speaker(_own_output(), ending)
     cv2.setNumThreads(1)  # the processors are shared by workers; one each does the most
     with blender_silence(debug=False):
         from ...bridge import scene_file  # noqa: F401  Blender starts now, not in the first take's time
@@ -99,11 +100,26 @@ def _own_output() -> BinaryIO:
     return own
 
 
-def _speaker(output: BinaryIO) -> Callable[[Answer], None]:
+def _speaker(output: BinaryIO, ending: "_Ending") -> Callable[[Answer], None]:
     def say(answer: Answer) -> None:
+        if ending.due:
+            raise KeyboardInterrupt
         try:
             output.write(answer_line(answer))
         except OSError:  # the batch is gone: nobody waits for this take
             raise KeyboardInterrupt from None
 
     return say
+
+
+class _Ending:
+    """Whether the process has been asked to end: what it is in the middle of may swallow the interruption.
+
+    Blender makes an error of its own of one that arrives while it runs an exporter.
+    """
+
+    due = False
+
+    def asked(self, _signal: int, _frame: FrameType | None) -> None:
+        self.due = True
+        raise KeyboardInterrupt

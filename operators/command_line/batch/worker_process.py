@@ -106,6 +106,8 @@ class WorkerProcess:
 
     async def end(self) -> None:
         """End it, whatever it is doing: it is asked first, so that it can clean up."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
         with suppress(ProcessLookupError):
             self._process.terminate()
         if not await self._gone(GRACE_S):

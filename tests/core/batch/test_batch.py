@@ -11,6 +11,7 @@ import pytest
 from keymark.core.shoot.failures import read_failure
 from keymark.operators.cli import main
 from keymark.operators.command_line.batch import command, supervisor
+from keymark.operators.command_line.batch.share import Share
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 
@@ -238,3 +239,17 @@ def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.Capture
     assert main(["batch", str(studio.shoot), "--output", str(studio.shoot)]) == 2
     assert "is the shoot's own folder" in capsys.readouterr().err
     assert not studio.out.exists() and studio.told == []
+
+
+def test_the_share_of_all_work_counts_frames_where_they_are_known() -> None:
+    """A take of unknown length counts as the usual one; what is learned of it counts from then on."""
+    share = Share([300, None, 100])
+    assert share.value == 0.0
+    share.come(0, 1.0)
+    assert share.value == pytest.approx(300 / 600)
+    share.come(1, 0.5)
+    assert share.value == pytest.approx((300 + 100) / 600)
+    share.come(1, 1.0, 50)
+    assert share.value == pytest.approx(350 / 450)
+    share.come(2, 1.0, 100)
+    assert share.value == pytest.approx(1.0) and Share([]).value == 1.0
