@@ -30,7 +30,7 @@ TRUNK = "trunk"
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
 LONGEST_FRAMES = 40_000
-"""Of one take: twenty minutes, for which an estimate needs about two gigabytes."""
+"""Of one take: twenty minutes at 30 a second, for which an estimate needs about two and a half gigabytes."""
 MOST_MARKERS = 64
 LONGEST_MARKER = 200
 """Characters of a marker's name."""
