@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from _formats import Format, formats
-from _fuzz import changed
+from _fuzz import FUZZ, changed
 from _synthetic_take import SIZE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -118,7 +118,8 @@ def as_read(value: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=25, suppress_health_check=list(HealthCheck))
+@pytest.mark.fuzz
+@settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_what_a_schema_refuses_the_reader_refuses(
     known: dict[str, Format], name: str, data: st.DataObject

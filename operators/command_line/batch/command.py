@@ -1,6 +1,8 @@
 """`keymark batch`."""
 
 import argparse
+import errno
+import os
 import re
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -44,6 +46,8 @@ def batch_command(arguments: argparse.Namespace) -> None:
     output: Path = arguments.output
     try:
         output.mkdir(parents=True, exist_ok=True)
+        if not os.access(output, os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, "no permission")
     except OSError as error:
         raise InputError(f"{output}: cannot be written ({error.strerror}); name a folder that can") from error
     jobs = [Job(take, output / take.name, farther, arguments.again, arguments.debug) for take in takes]
