@@ -4,8 +4,8 @@ import os
 import sys
 from pathlib import Path
 
-from ...core.library.shelf import SHIPPED
-from .line_parser import UsageError
+from ....core.library.shelf import SHIPPED
+from ..line_parser import UsageError
 
 VARIABLE = "KEYMARK_LIBRARIES"
 """Environment variable of further folders of libraries, apart as in PATH."""
@@ -16,7 +16,7 @@ def library_folders() -> list[Path]:
     named = [Path(place) for place in os.environ.get(VARIABLE, "").split(os.pathsep) if place]
     blender = sys.modules.get("bpy")
     if blender is not None and blender.app.binary_path:  # a user's, who may have some of their own
-        from ..scene.shelf import own_folder
+        from ...scene.shelf import own_folder
 
         named.append(own_folder())
     return [*named, SHIPPED]

@@ -2,20 +2,20 @@
 
 import argparse
 
-from ...core.errors import InputError
-from ...core.files.fields import listed
-from ...core.library.learning import About, learn_library
-from ...core.library.library import Library
-from ...core.library.library_file import write_library
-from ...core.library.merging import Choice, compare, joined, merged
-from ...core.library.mirroring import mirrored_library, with_mirrored
-from ...core.library.shelf import find_library
-from ...core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
-from ...core.motion_file import read_motion
-from .console import Console, arguments_console
-from .libraries import library_folders, refuse_existing
-from .library import described, library_summary
-from .line_parser import UsageError
+from ....core.errors import InputError
+from ....core.files.fields import listed
+from ....core.library.learning import About, learn_library
+from ....core.library.library import Library
+from ....core.library.library_file import write_library
+from ....core.library.merging import Choice, compare, joined, merged
+from ....core.library.mirroring import mirrored_library, with_mirrored
+from ....core.library.shelf import find_library
+from ....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
+from ....core.motion_file import read_motion
+from ..console import Console, arguments_console
+from ..line_parser import UsageError
+from .folders import library_folders, refuse_existing
+from .looking import described, library_summary
 
 
 def learn_command(arguments: argparse.Namespace) -> None:

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from .line_parser import Commands, LineParser, UsageError, add_command, program_name
+from ..line_parser import Commands, LineParser, UsageError, add_command, program_name
 
 DESCRIPTION = "Lists, looks at, checks, joins and makes keyframe libraries."
 EPILOG = """\
@@ -150,48 +150,48 @@ def _no_command(_arguments: argparse.Namespace) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> None:
-    from .library import list_command
+    from .looking import list_command
 
     list_command(arguments)
 
 
 def _show(arguments: argparse.Namespace) -> None:
-    from .library import show_command
+    from .looking import show_command
 
     show_command(arguments)
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from .library import check_command
+    from .looking import check_command
 
     check_command(arguments)
 
 
 def _merge(arguments: argparse.Namespace) -> None:
-    from .library_making import merge_command
+    from .making import merge_command
 
     merge_command(arguments)
 
 
 def _mirror(arguments: argparse.Namespace) -> None:
-    from .library_making import mirror_command
+    from .making import mirror_command
 
     mirror_command(arguments)
 
 
 def _learn(arguments: argparse.Namespace) -> None:
-    from .library_making import learn_command
+    from .making import learn_command
 
     learn_command(arguments)
 
 
 def _blend(arguments: argparse.Namespace) -> None:
-    from .library_assets import blend_command
+    from .exchanging import blend_command
 
     blend_command(arguments)
 
 
 def _read(arguments: argparse.Namespace) -> None:
-    from .library_assets import read_command
+    from .exchanging import read_command
 
     read_command(arguments)

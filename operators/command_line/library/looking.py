@@ -4,15 +4,15 @@ import argparse
 from collections import Counter
 from typing import Any
 
-from ...core.errors import InputError
-from ...core.files.json_file import write_whole
-from ...core.library.library import Library, LibraryMotion
-from ...core.library.library_file import read_library
-from ...core.library.shelf import find_library, shelved
-from ...core.report.canvas import write_png
-from .console import arguments_console
-from .libraries import library_folders
-from .line_parser import UsageError
+from ....core.errors import InputError
+from ....core.files.json_file import write_whole
+from ....core.library.library import Library, LibraryMotion
+from ....core.library.library_file import read_library
+from ....core.library.shelf import find_library, shelved
+from ....core.report.canvas import write_png
+from ..console import arguments_console
+from ..line_parser import UsageError
+from .folders import library_folders
 
 
 def list_command(arguments: argparse.Namespace) -> None:
@@ -53,7 +53,7 @@ def show_command(arguments: argparse.Namespace) -> None:
         lines = described(library)
         result = library_summary(library)
         if arguments.sheet is not None:
-            from ...core.report.library_sheet import library_sheet
+            from ....core.report.library_sheet import library_sheet
 
             console.stage("Drawing the postures")
             picture = library_sheet(library)

@@ -2,15 +2,15 @@
 
 import argparse
 
-from ...core.errors import InputError
-from ...core.library.library_file import write_library
-from ...core.library.shelf import find_library
-from ...core.library.texts import checked_identifier
-from .blender_silence import blender_silence
-from .console import arguments_console
-from .conversion import require_blender
-from .libraries import library_folders, refuse_existing
-from .library import described, library_summary
+from ....core.errors import InputError
+from ....core.library.library_file import write_library
+from ....core.library.shelf import find_library
+from ....core.library.texts import checked_identifier
+from ..blender_silence import blender_silence
+from ..console import arguments_console
+from ..conversion import require_blender
+from .folders import library_folders, refuse_existing
+from .looking import described, library_summary
 
 
 def blend_command(arguments: argparse.Namespace) -> None:
@@ -22,8 +22,8 @@ def blend_command(arguments: argparse.Namespace) -> None:
         refuse_existing(file, arguments.replace)
         console.stage("Writing Blender's files")
         with blender_silence(arguments.debug):
-            from ..bridge.assets.catalogs import NAME
-            from ..bridge.library.blend import write_library_blend
+            from ...bridge.assets.catalogs import NAME
+            from ...bridge.library.blend import write_library_blend
 
             write_library_blend(file, library)
         files = [str(file), str(arguments.output / NAME)]
@@ -42,7 +42,7 @@ def read_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Reading the pose assets")
         with blender_silence(arguments.debug):
-            from ..bridge.library.blend import read_library_blend
+            from ...bridge.library.blend import read_library_blend
 
             found = read_library_blend(arguments.file)
         chosen = [one for one in found if arguments.identifier in (None, one.identifier)]
