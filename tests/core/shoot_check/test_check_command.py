@@ -237,6 +237,25 @@ def test_sentences_are_broken_to_the_terminal() -> None:
     assert broken[2].startswith("       ! a word") and broken[3].startswith("         word")
 
 
+def test_the_table_fits_the_terminal() -> None:
+    """A long name stands above its figures, which stay in their columns; elsewhere all is one line."""
+    shoot = Shoot(Path("shoot"), ())
+    checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", "a/name that is much too long for this")]
+    lines = check_text(shoot, checks, 60).splitlines()
+    assert max(map(len, lines)) <= 60
+    assert lines[2] == "ready  a/name that is much too long for this" and lines[3].strip().startswith("77")
+    assert lines[1].index("77") == lines[3].index("77")
+    assert len(check_text(shoot, checks).splitlines()) == 5
+
+
+def test_what_three_takes_share_is_said_once() -> None:
+    """However many others there are."""
+    shoot = Shoot(Path("shoot"), ())
+    checks = [TakeCheck(f"take{number}", ("no camera",) if number < 3 else (), ()) for number in range(9)]
+    said = check_text(shoot, checks)
+    assert said.count("! no camera") == 1 and "In 3 takes (take0, take1, take2):" in said
+
+
 def test_an_unusable_shoot_is_one_line_and_status_two(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
