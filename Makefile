@@ -72,6 +72,7 @@ test-core: .venv-dev/ready ## run the tests that need no Blender
 .PHONY: test-faults
 test-faults: .venv-test/ready ## kill conversions and batches at random points, and feed them broken files
 	@.venv-test/bin/python -m pytest $(two_at_a_time) -m faults tests/core tests/blender $(TESTS)
+	@KEYMARK_FUZZ=$${KEYMARK_FUZZ:-20} .venv-test/bin/python -m pytest $(two_at_a_time) -m fuzz tests/core
 
 # BLENDER=/path/to/blender tests in that one; without it, Debian's newest is fetched into a cache folder.
 .PHONY: test-blender

@@ -81,6 +81,8 @@ def read_motion(path: Path) -> Motion:
         raise InputError(f"{path}: {error}") from error
     skeleton = body.skeleton
     frame_start = fields.whole("frame_start", -(10**7), 10**7)
+    if fields.has("sigma_m"):
+        _rows(fields, "sigma_m", skeleton.point_names, (count,))  # the covariance says it too
     return Motion(
         body=body,
         fps=fields.number("fps", 1e-3, 1e4, "frames per second"),

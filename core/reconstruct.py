@@ -15,7 +15,7 @@ from .estimate.fuzzy import Memberships, keyframe_distance
 from .estimate.kalman import filter_clip
 from .estimate.match_error import undecided_covariance
 from .estimate.match_worth import worthwhile
-from .estimate.unseen import unseen_covariance
+from .estimate.unseen import unseen_variance
 from .estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from .footage.read_clip import read_clip
 from .footage.reading import Reading
@@ -244,8 +244,8 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Ar
         "distrust": result.evidence.distrust,
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
-    unseen = unseen_covariance(take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s)
-    motion = _motion(take, tracks, result.posture, result.covariance + unseen, "map", diagnostics)
+    unseen = unseen_variance(take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s)
+    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not doubt.any():
         return motion
     undecided = undecided_covariance(motion.points, take.camera, index, doubt)
@@ -271,6 +271,7 @@ def _motion(
     covariance: Array | None,
     method: str,
     diagnostics: dict[str, Array] | None = None,
+    unseen: Array | None = None,
 ) -> Motion:
     pose = take.body.pose(posture)
     points = take.body.points(pose)
@@ -279,7 +280,7 @@ def _motion(
     if covariance is None:
         spread = np.full((*points.shape, 3), np.nan)
     else:
-        spread = point_covariance(take.body, posture, covariance)
+        spread = point_covariance(take.body, posture, covariance, unseen)
     return Motion(
         take.body,
         take.fps,
@@ -294,11 +295,21 @@ def _motion(
     )
 
 
-def point_covariance(body: Body, posture: Posture, covariance: Array) -> Array:
-    """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D)."""
+def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
+    """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
+
+    Args:
+        body: The actor's body.
+        posture: F postures.
+        covariance: Theirs.
+        more: (F, D) variances beside it.
+    """
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))
     for frame in chunks(np.arange(len(covariance)), CHUNK_FRAMES):
         jacobian = body.points_jacobian(body.pose(posture[frame]))  # (F, P, 3, D)
-        spread[frame] = jacobian @ covariance[frame, None] @ np.swapaxes(jacobian, -1, -2)
+        across = np.swapaxes(jacobian, -1, -2)
+        spread[frame] = jacobian @ covariance[frame, None] @ across
+        if more is not None:
+            spread[frame] += (jacobian * more[frame, None, None]) @ across
     return spread

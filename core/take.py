@@ -4,8 +4,11 @@ import os
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from .body.actor import Actor
 from .body.human import HUMAN
@@ -26,6 +29,8 @@ TRUNK = "trunk"
 """Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
+LONGEST_FRAMES = 40_000
+"""Of one take: twenty minutes at 30 a second, for which an estimate needs about two and a half gigabytes."""
 MOST_MARKERS = 64
 LONGEST_MARKER = 200
 """Characters of a marker's name."""
@@ -158,8 +163,9 @@ def open_clip(take: Take) -> Clip:
     clip = opened(take.clip, take.fps)
     check_size(take, clip)
     count = clip.frame_count
-    if take.frame_count not in (None, count):
-        count = len(clip.time_stamps())  # containers may claim a wrong number; decoding tells
+    if count > LONGEST_FRAMES or take.frame_count not in (None, count):
+        # Containers may claim a wrong number; decoding tells.
+        count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
     check_frame_count(take, count)
     return clip
 
@@ -209,9 +215,15 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
         claimed: Those that the clip's file says there are.
 
     Raises:
-        InputError: `frame_count` differs, or a keyframe or the camera's poses lie outside the clip.
+        InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
+            the clip.
     """
     path = take.file
+    if count > LONGEST_FRAMES:
+        raise InputError(
+            f"{take.clip}: has more than {LONGEST_FRAMES} frames, {LONGEST_FRAMES / take.fps / 60.0:.0f} "
+            "minutes; a take must be shorter: cut it, as with ffmpeg -ss 0 -t 600 -i CLIP part1.mp4"
+        )
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
@@ -243,8 +255,10 @@ def check_in_front(take: Take) -> None:
     """Hold the keyframes against the camera: what lies behind it can leave nothing in its picture.
 
     Raises:
-        InputError: A point of a keyframe lies behind the camera.
+        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
     """
+    size = np.asarray(take.camera.resolution, dtype=np.float64)
+    in_picture = not take.keyframes
     for keyframe in take.keyframes:
         points = take.body.points(take.body.pose(keyframe.posture))
         depth = take.camera.depth(points, keyframe.index)
@@ -255,6 +269,13 @@ def check_in_front(take: Take) -> None:
                 f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
                 "(along its local -Z) at the performer"
             )
+        pixels, _ = take.camera.project(points, keyframe.index)
+        in_picture = in_picture or bool(((pixels >= 0.0) & (pixels <= size)).all(axis=-1).any())
+    if not in_picture:
+        raise InputError(
+            f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
+            "its lens and the keyframes, all in metres in one world, must fit each other"
+        )
 
 
 def rate_note(take: Take, clip: Clip) -> str | None:
@@ -331,8 +352,9 @@ def _camera(fields: Fields, frame_count: int | None) -> Camera:
 
 def _body(fields: Fields) -> Body:
     actor = fields.child("actor", "an object with segments_m, or with height_m alone")
-    if not actor.has("segments_m") and actor.has("height_m"):
-        return Body(Actor.from_stature(actor.number("height_m", 0.5, 3.0, "m")))
+    height_m = actor.number("height_m", 0.5, 3.0, "m") if actor.has("height_m") else None
+    if height_m is not None and not actor.has("segments_m"):
+        return Body(Actor.from_stature(height_m))
     lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in metres").values
     try:
         return Body(Actor(lengths))

@@ -2,6 +2,7 @@
 
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import cv2
@@ -60,9 +61,7 @@ def draw(
     shapes: list[Ellipse], rng: np.random.Generator, noise: float = 2.0, light: float = 1.0
 ) -> np.ndarray:
     """Ellipses (colour, centre, half axes, degrees) with soft edges on a warm wall over a brown floor."""
-    fine = np.zeros((SIZE[1] * FINE, SIZE[0] * FINE, 3), dtype=np.uint8)
-    fine[:] = (176, 190, 200)
-    fine[170 * FINE :] = (92, 112, 130)
+    fine = _empty().copy()
     for colour, (x, y), (a, b), angle in shapes:
         # OpenCV draws about the centres of pixels, with four bits of fraction.
         centre = (round((x * FINE - 0.5) * 16), round((y * FINE - 0.5) * 16))
@@ -70,6 +69,15 @@ def draw(
         cv2.ellipse(fine, centre, axes, angle, 0, 360, colour[::-1], -1, shift=4)
     image = cv2.resize(fine, SIZE, interpolation=cv2.INTER_AREA).astype(np.float64)
     return np.clip(image * light + rng.normal(0, noise, image.shape), 0, 255).astype(np.uint8)
+
+
+@cache
+def _empty() -> np.ndarray:
+    """The scene without anything in it; filling it anew for each frame would be most of drawing it."""
+    fine = np.zeros((SIZE[1] * FINE, SIZE[0] * FINE, 3), dtype=np.uint8)
+    fine[:] = (176, 190, 200)
+    fine[170 * FINE :] = (92, 112, 130)
+    return fine
 
 
 def clip_of(images: list[np.ndarray]) -> Clip:

@@ -1,11 +1,15 @@
 """From valid files outwards: JSON values and bytes, changed as mistakes, accidents and malice change them."""
 
 import json
+import os
 from collections.abc import Iterator
 from copy import deepcopy
 from typing import Any
 
 from hypothesis import strategies as st
+
+FUZZ = int(os.environ.get("KEYMARK_FUZZ", "1"))
+"""How many times the usual number of examples is tried: `KEYMARK_FUZZ=100 make test-faults` for a night."""
 
 Way = tuple[Any, ...]
 

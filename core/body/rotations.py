@@ -52,13 +52,10 @@ def cross(a: Array, b: Array) -> Array:
 def cross_matrix(vector: Array) -> Array:
     """The matrix [v]x with [v]x w = v × w, for (..., 3) vectors, as (..., 3, 3)."""
     v = np.asarray(vector, dtype=np.float64)
-    zero = np.zeros_like(v[..., 0])
-    rows = [
-        np.stack([zero, -v[..., 2], v[..., 1]], axis=-1),
-        np.stack([v[..., 2], zero, -v[..., 0]], axis=-1),
-        np.stack([-v[..., 1], v[..., 0], zero], axis=-1),
-    ]
-    return np.stack(rows, axis=-2)
+    matrix = np.zeros((*v.shape, 3))
+    matrix[..., 2, 1], matrix[..., 0, 2], matrix[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    matrix[..., 1, 2], matrix[..., 2, 0], matrix[..., 0, 1] = -v[..., 0], -v[..., 1], -v[..., 2]
+    return matrix
 
 
 def _tangent(rotation_vector: Array) -> tuple[Array, Array, NDArray[np.bool_], Array]:

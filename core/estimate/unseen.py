@@ -21,14 +21,14 @@ STRAY = {"location": 0.12, "trunk": 0.15, "limb": 0.5}
 trunk to 0.3 m, of elbows to 0.5, wrists to 0.7, knees to 0.3 and ankles to 0.35 (medians over the takes)."""
 
 
-def unseen_covariance(
+def unseen_variance(
     skeleton: Skeleton,
     segments: tuple[str, ...],
     visible: NDArray[np.bool_],
     keyframes: NDArray[np.intp],
     time_s: Array,
 ) -> Array:
-    """What is open of postures (F, D, D), beyond their covariance, where nothing tells of them [m², rad²].
+    """What is open of postures (F, D), beyond their covariance, where nothing tells of them [m², rad²].
 
     Args:
         skeleton: The body's.
@@ -51,10 +51,7 @@ def unseen_covariance(
         if part is trunk:
             stray[: len(skeleton.joints[0].components) - 3] = STRAY["location"]
         std[:, part] = _open(told, time_s)[:, None] * stray
-    covariance = np.zeros((len(time_s), skeleton.dof_count, skeleton.dof_count))
-    diagonal = np.arange(skeleton.dof_count)
-    covariance[:, diagonal, diagonal] = std**2
-    return covariance
+    return std**2
 
 
 def _open(told: NDArray[np.bool_], time_s: Array) -> Array:

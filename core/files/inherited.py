@@ -4,10 +4,12 @@ Merging is that of JSON Merge Patch (RFC 7396): objects are merged field by fiel
 replaced, and null takes an inherited field away. Fields whose names begin with `//` are comments.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
 COMMENT = "//"
+_FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)
 ALTERNATIVES = (("segments_m", "height_m"), ("matrix_world", "matrix_world_frames"))
 """Of each pair one says what the other would: the nearer one counts, whichever it is."""
 
@@ -55,4 +57,4 @@ class Inherited(dict[str, Any]):
 
 def child_place(where: str, name: str) -> str:
     """The place of an object in a field of another: `take.json: camera`, then `take.json: camera.lens`."""
-    return f"{where}: {name}" if where.endswith((".json", ".jsonl")) else f"{where}.{name}"
+    return f"{where}: {name}" if _FILE.search(where) else f"{where}.{name}"

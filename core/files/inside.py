@@ -28,7 +28,9 @@ def inside_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
     text = fields.text(name, valid)
     outside = PurePosixPath(text).is_absolute() or PureWindowsPath(text).anchor
     climbs = ".." in PureWindowsPath(text).parts  # it reads both kinds of slash
-    named = all(len(os.fsencode(part)) <= LONGEST_PART for part in PureWindowsPath(text).parts)
+    named = all(
+        len(part.encode("utf-8", "surrogatepass")) <= LONGEST_PART for part in PureWindowsPath(text).parts
+    )
     odd = len(text) > LONGEST or any(map(is_hidden, text)) or PureWindowsPath(text).name == "" or not named
     if outside or climbs or odd:
         raise InputError(f"{fields.at(name)}: {name} is {shown(text)}; it must be {valid}")

@@ -73,10 +73,15 @@ def read_poses(fields: Fields) -> FloatArray:
     Raises:
         InputError: a matrix is absent, of the wrong shape, or not a rotation with a translation.
     """
-    if fields.has("matrix_world_frames"):
-        name, valid, ndim = "matrix_world_frames", "one 4 by 4 matrix a frame", 3
-    else:
-        name, valid, ndim = "matrix_world", "a 4 by 4 matrix of finite numbers", 2
+    moving = fields.has("matrix_world_frames")
+    poses = _read_poses(fields, "matrix_world_frames", "one 4 by 4 matrix a frame", 3) if moving else None
+    if poses is not None and not fields.has("matrix_world"):
+        return poses
+    fixed = _read_poses(fields, "matrix_world", "a 4 by 4 matrix of finite numbers", 2)
+    return fixed if poses is None else poses
+
+
+def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> FloatArray:
     matrices = number_array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
         raise InputError(f"{fields.at(name)}: {name} has the wrong form; it must be {valid}")

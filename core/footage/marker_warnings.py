@@ -7,6 +7,8 @@ from typing import Final, NamedTuple
 
 _FEW: Final = 0.6
 """Share of the frames looked at below which a marker is seldom found."""
+_ENOUGH: Final = 6
+"""Frames that must be looked at to tell a marker that is seldom found from one that was hidden just then."""
 _MUCH: Final = 0.2
 """Share of its colour that others may have before it is worth a word."""
 _SMALL_PX: Final = 40.0
@@ -58,7 +60,7 @@ def marker_warnings(
         sentences.append(
             f"{_percent(likeness.clutter)} of what has the colour of {name} is something else in the picture"
         )
-    if found < _FEW * sampled:
+    if sampled >= _ENOUGH and found < _FEW * sampled:
         sentences.append(
             f"{name} is found in only {found} of {sampled} frames; where it is not hidden, pick its "
             "colour in one that misses it"

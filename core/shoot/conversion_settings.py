@@ -7,9 +7,11 @@ from ..errors import InputError
 from ..files.fields import Fields, listed
 from ..files.inside import inside_path
 from ..files.json_file import shown
+from ..files.letters import is_hidden
 
 METHODS = ("map", "ekf", "interpolation")
 HIGHEST_FLOOR_M = 1000.0
+LONGEST_NAME = 200
 KEYFRAMES_VALID = "a path inside the take's folder, as in keyframes.json"
 LIBRARY_VALID = "a library's name, auto, or the path of a library file inside the folder, as in walking.json"
 
@@ -76,6 +78,10 @@ def _library(description: Fields, folders: dict[str, Path]) -> str | None:
     if not description.has("library"):
         return None
     name = description.text("library", LIBRARY_VALID)
-    if not name.endswith(".json"):
+    if not name.lower().endswith(".json"):  # a name; whatever holds a slash would be taken for a file
+        if len(name) > LONGEST_NAME or any(letter in "/\\" or is_hidden(letter) for letter in name):
+            raise InputError(
+                f"{description.at('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
+            )
         return name
     return str(inside_path(description, "library", folders[description.at("library")], LIBRARY_VALID))

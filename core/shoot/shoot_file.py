@@ -15,7 +15,9 @@ SHARED = ("fps", "frame_start", "camera", "markers", "actor")
 """Fields of `take.json` that takes may inherit."""
 SETTINGS = ("library", "floor_m", "method", "pictures")
 """Fields that say how takes are converted."""
-KNOWN = ("schema_version", "root", *SHARED, *SETTINGS)
+OWN = ("$schema", "schema_version", "root")
+"""Fields that say something of the file itself; an editor looks for the first."""
+KNOWN = (*OWN, *SHARED, *SETTINGS)
 
 
 def read_shoot_file(path: Path) -> dict[str, Any]:
@@ -35,7 +37,7 @@ def read_shoot_file(path: Path) -> dict[str, Any]:
             )
     if not isinstance(values.get("root", False), bool):
         raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
-    return {name: value for name, value in values.items() if name not in ("schema_version", "root")}
+    return {name: value for name, value in values.items() if name not in OWN}
 
 
 def shoot_files(folder: Path) -> list[Path]:

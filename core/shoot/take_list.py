@@ -7,8 +7,9 @@ from typing import Any
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.inherited import COMMENT
-from ..files.inside import inside_path
+from ..files.inside import check_links, inside_path
 from ..files.json_file import parse_json, shown
+from ..files.ordinary import ordinary_size
 from .description import clip_name
 from .find_takes import MOST_TAKES
 from .shoot import Shoot, ShootTake
@@ -48,6 +49,7 @@ def read_take_list(path: Path) -> Shoot:
 
 def _lines(path: Path) -> list[str]:
     valid = "it must be a list of takes in UTF-8, one JSON object a line"
+    ordinary_size(path, "a list of takes in UTF-8, one JSON object a line")
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_BYTES + 1)
@@ -68,6 +70,7 @@ def _take(path: Path, where: str, line: str) -> ShootTake:
     fields = Fields(values, where)
     fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
     place = inside_path(fields, TAKE, path.parent, TAKE_VALID)
+    check_links([place], [path.parent])
     way = place.relative_to(path.parent)
     if not way.parts:
         raise InputError(f"{where}: {TAKE} is {shown(values[TAKE])}; it must be {TAKE_VALID}")

@@ -1,4 +1,4 @@
-"""Batches that are killed, or lose a worker, or have company; run again they leave what one undisturbed leaves."""
+"""Batches that are killed, or lose a worker, or have company; a later run makes good for it."""
 
 import json
 import os
@@ -51,7 +51,9 @@ def batch(shoot: Path, out: Path, *words: str) -> "Iterator[subprocess.Popen[str
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
+        process.wait()
+        assert process.stdout is not None
+        process.stdout.close()
 
 
 def to_the_end(shoot: Path, out: Path, *words: str) -> dict[str, bytes | None]:
@@ -99,7 +101,8 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
                 process.communicate(timeout=chance.uniform(0.2, 0.9) * lasts_s)
             found = workers(process)
             if victim == "all":
-                os.killpg(process.pid, signal.SIGKILL)
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
             elif victim == "batch" or not found:
                 process.kill()
             else:
@@ -110,7 +113,7 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
             victims.append(victim)
             if (
                 victim == "batch" and chance.random() < 0.5
-            ):  # its workers are on their own: the next meets them
+            ):  # its workers live on a little
                 assert to_the_end(shoot, out, "--jobs", "2") == undisturbed
         for record in out.rglob("conversion.json"):
             is_whole(record.parent)

@@ -84,7 +84,7 @@ def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undisturbed], seed: int) -> None:
-    """At random moments and at random files; what is there is whole or not taken for it, and the end is right.
+    """At random moments and random files; what is there is whole or not taken for it, the end is right.
 
     Two kinds of run follow each other in one folder, so that the results of one are replaced by the other's.
     """

@@ -1,6 +1,5 @@
 """Takes: read, checked field by field, opened, and written."""
 
-import copy
 import json
 import shutil
 from collections.abc import Callable
@@ -11,8 +10,6 @@ import cv2
 import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, named, true_postures, write_json, write_synthetic_take
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.take import check_frame_count, open_clip, rate_note, read_take, write_take
 
@@ -311,75 +308,3 @@ def test_the_shared_takes_are_read(take_folder: Callable[[str], Path]) -> None:
         take = read_take(take_folder(name), take_folder(name) / "keyframes_noisy.json")
         assert open_clip(take).frame_count == take.frame_count
         assert take.notes == ()
-
-
-ODD = st.one_of(
-    st.none(),
-    st.booleans(),
-    st.integers(-(10**20), 10**20),
-    st.floats(allow_nan=False),
-    st.text(max_size=8),
-    st.lists(st.integers(-5, 5), max_size=4),
-    st.dictionaries(st.text(max_size=4), st.integers(), max_size=2),
-)
-
-
-def paths(value: Any, here: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """The ways to every value inside a nested one."""
-    found = [here] if here else []
-    if isinstance(value, dict):
-        for key in value:
-            found += paths(value[key], (*here, key))
-    elif isinstance(value, list):
-        for index in range(min(len(value), 3)):
-            found += paths(value[index], (*here, index))
-    return found
-
-
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(data=st.data())
-@pytest.mark.parametrize("name", ["take.json", "keyframes.json"])
-def test_whatever_stands_in_a_field_the_take_is_read_or_refused(
-    pristine: Path, tmp_path: Path, name: str, data: st.DataObject
-) -> None:
-    """From a valid file outward: values replaced or removed at random give a take or one sentence."""
-    value = copy.deepcopy(json.loads((pristine / name).read_text(encoding="utf-8")))
-    for _ in range(data.draw(st.integers(1, 2))):
-        *way, last = data.draw(st.sampled_from(paths(value)))
-        inside = value
-        for step in way:
-            inside = inside[step]
-        if data.draw(st.booleans()):
-            inside[last] = data.draw(ODD)
-        else:
-            del inside[last]
-        if not value:
-            break
-    for file in ("take.json", "keyframes.json"):
-        shutil.copyfile(pristine / file, tmp_path / file)
-    write_json(tmp_path / name, value)
-    try:
-        take = read_take(tmp_path)
-    except InputError as error:
-        assert name in str(error) and "\n" not in str(error)
-    else:
-        assert len(take.keyframes) >= 2
-        assert all(np.isfinite(keyframe.posture.to_vector()).all() for keyframe in take.keyframes)
-
-
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(cut=st.integers(0, 2000), flip=st.integers(0, 2000), byte=st.integers(0, 255))
-def test_a_file_with_damaged_bytes_is_read_or_refused(
-    pristine: Path, tmp_path: Path, cut: int, flip: int, byte: int
-) -> None:
-    """Bytes cut off or overwritten anywhere give a take or one sentence."""
-    content = bytearray((pristine / "take.json").read_bytes())
-    content[flip % len(content)] = byte
-    shutil.copyfile(pristine / "keyframes.json", tmp_path / "keyframes.json")
-    (tmp_path / "take.json").write_bytes(
-        content[: len(content) - cut % len(content)] if cut > 1000 else content
-    )
-    try:
-        assert read_take(tmp_path).fps > 0.0
-    except InputError as error:
-        assert "\n" not in str(error)

@@ -1,4 +1,4 @@
-"""The demonstration's motion as it was when last looked at; `python tests/golden/demo_points.py` writes it anew.
+"""The demonstration's motion as last looked at; `python tests/golden/demo_points.py` writes it anew.
 
 To be done after a change that is meant to move it, and said so in the message of that change.
 """

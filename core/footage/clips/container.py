@@ -17,7 +17,10 @@ from ...files.ordinary import ordinary_size
 _LOOKED_AT: Final = 4096
 _VALID: Final = "a video that OpenCV can read"
 
-_BOXES: Final = (b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot", b"styp", b"uuid", b"moof")
+_BOXES: Final = (
+    *(b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot"),
+    *(b"styp", b"uuid", b"moof", b"udta", b"prfl", b"PICT", b"junk"),
+)
 """MP4 and QuickTime: the name of the first box follows its size."""
 _BEGINNINGS: Final = (
     b"\x1a\x45\xdf\xa3",  # Matroska, WebM

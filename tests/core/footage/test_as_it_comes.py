@@ -1,6 +1,7 @@
 """Footage as people send it: every frame in its place, and a sentence on what is wrong."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -16,13 +17,18 @@ from _footage import (
     images_of,
     number_of,
     overwritten,
+    take_with,
     write_numbered_take,
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from keymark.core import take
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.frame_watch import FrameWatch
+from keymark.core.progress import run
+from keymark.core.reconstruct import read_footage
+from keymark.core.take import open_clip, read_take
 
 LOST = 0
 """What is read from a black frame."""
@@ -242,6 +248,28 @@ def test_why_nothing_can_be_found_is_known(picture: np.ndarray, why: str) -> Non
     for index in range(3):
         watch.add(index, picture)
     assert why in (watch.nothing_seen() or "")
+
+
+def test_a_clip_of_hours_is_refused_before_it_is_read(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By what it claims, made sure of by counting no further than needed."""
+    described = read_take(drawn)
+    whole = replace(described, frame_count=None)
+    monkeypatch.setattr(take, "LONGEST_FRAMES", FRAMES)
+    assert open_clip(whole).frame_count == FRAMES
+    monkeypatch.setattr(take, "LONGEST_FRAMES", FRAMES - 1)
+    with pytest.raises(InputError, match=rf"more than {FRAMES - 1} frames.*ffmpeg"):
+        open_clip(whole)
+
+
+def test_a_turned_clip_and_one_cut_off_say_what_to_do(video: Callable[..., Path], drawn: Path) -> None:
+    """Sides swapped against the camera's, and keyframes beyond what can be decoded."""
+    turned = video("turned.mp4", "-vf", "transpose=1", *H264)
+    with pytest.raises(InputError, match=r"120, 160.*swap"):
+        open_clip(read_take(take_with(turned, drawn)))
+    turned.unlink()
+    short = cut_off(video("short.mp4", *SHORT_GROUPS), 0.6)
+    with pytest.raises(InputError, match=rf"keyframe \d+ lies outside.*claims {FRAMES}"):
+        run(read_footage(read_take(take_with(short, drawn))))
 
 
 def write_images(folder: Path, names: list[str]) -> Path:

@@ -1,0 +1,180 @@
+"""Every file format that is read: a valid value, its reader as the commands use it, and its schema."""
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from _libraries import small_library
+from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
+from keymark.core.body.posture_fields import posture_to_json
+from keymark.core.conversion_record import read_record
+from keymark.core.keyframe_file import read_keyframes
+from keymark.core.library.library_file import library_to_json, read_library
+from keymark.core.motion import Motion
+from keymark.core.motion_file import read_motion, write_motion
+from keymark.core.score import read_truth
+from keymark.core.shoot.take_list import read_take_list
+from keymark.core.take import check_in_front, read_described, read_take
+
+FRAMES = 8
+SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format."""
+
+    name: str
+    """Of its schema, too."""
+    valid: dict[str, Any]
+    """With every field that may be there."""
+    read: Callable[[bytes], object]
+    """Read a file of these bytes; the objects around it are valid."""
+    whole: bool = False
+    """Whether the schema's part `complete` is meant: nothing is inherited."""
+
+
+def formats(folder: Path) -> dict[str, Format]:
+    """All formats, by name; what is around the files lies in a folder of their own."""
+    take = write_synthetic_take(folder / "take", FRAMES, 4)
+    said = _said(take)
+    all_formats = [
+        Format("take", said, _take(take), whole=True),
+        Format("keyframes", _keyframes(take), _keyframe_file(folder)),
+        Format("shoot", _shoot(said), _in_shoot(folder, take)),
+        Format("takes", _line(said), _listed(folder, take)),
+        Format("library", library_to_json(small_library()), _plain(folder, "library.json", read_library)),
+        Format("motion", _motion(folder), _plain(folder, "motion.json", read_motion)),
+        Format(
+            "conversion", _record(), _plain(folder, "conversion.json", lambda path: read_record(path.parent))
+        ),
+        Format(
+            "truth",
+            _read(take / "truth.json"),
+            _plain(folder, "truth.json", lambda p: read_truth(p, 1, FRAMES)),
+        ),
+    ]
+    return {one.name: one for one in all_formats}
+
+
+def _read(path: Path) -> dict[str, Any]:
+    value: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return value
+
+
+def _said(take: Path) -> dict[str, Any]:
+    said = _read(take / "take.json")
+    said["camera"] |= {"distortion": [0.01, 0.0, 0.0], "shift_x": 0.01, "//": "a comment"}
+    said["markers"]["sleeve"] = {"segment": "head", "color_srgb": [1, 2, 3]}
+    said["actor"]["height_m"] = 1.75
+    said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
+    return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
+
+
+def _keyframes(take: Path) -> dict[str, Any]:
+    value = _read(take / "keyframes.json")
+    posture = {name: numbers[4] for name, numbers in posture_to_json(true_postures(FRAMES)).items()}
+    matched = {"library": "walking", "posture": "Left foot lands", "mirrored": False, "confidence": 0.5}
+    value["keyframes"][1] = {"frame": 5, "posture": posture, "matched": matched}
+    return value
+
+
+def _shoot(said: dict[str, Any]) -> dict[str, Any]:
+    settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    shared = {name: said[name] for name in SHARED}
+    return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
+
+
+def _line(said: dict[str, Any]) -> dict[str, Any]:
+    return {"take": "listed"} | {name: value for name, value in said.items() if name != "note"}
+
+
+def _truth(path: Path) -> object:
+    return read_truth(path, 1, FRAMES)
+
+
+def _recorded(path: Path) -> object:
+    return read_record(path.parent)
+
+
+def _motion(folder: Path) -> dict[str, Any]:
+    posture = true_postures(FRAMES)
+    motion = Motion(
+        body=BODY,
+        fps=30.0,
+        frame_start=1,
+        time_s=np.arange(FRAMES) / 30.0,
+        posture=posture,
+        points=BODY.points(BODY.pose(posture)),
+        point_covariance=np.broadcast_to(1e-4 * np.eye(3), (FRAMES, 13, 3, 3)),
+        keyframe_indices=(0, 4, 7),
+        method="map",
+        diagnostics={"cost": np.arange(8.0), "quality": np.full((FRAMES, 5), np.nan)},
+    )
+    write_motion(motion, folder / "valid_motion.json")
+    return _read(folder / "valid_motion.json")
+
+
+def _record() -> dict[str, Any]:
+    value = {"schema_version": 1, "digest": "ab" * 16, "keymark": "1.0.0", "take": "walk", "method": "map"}
+    value |= {
+        "library": None,
+        "frames": 8,
+        "frame_start": 1,
+        "fps": 30.0,
+        "keyframes": [1, 5],
+        "matched": [5],
+    }
+    value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
+    return value | {"files": {"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32}}
+
+
+def _plain(folder: Path, name: str, read: Callable[[Path], object]) -> Callable[[bytes], object]:
+    def from_bytes(data: bytes) -> object:
+        (folder / name).write_bytes(data)
+        return read(folder / name)
+
+    return from_bytes
+
+
+def _take(take: Path) -> Callable[[bytes], object]:
+    def from_bytes(data: bytes) -> object:
+        (take / "take.json").write_bytes(data)
+        found = read_take(take)
+        check_in_front(found)
+        return found
+
+    return from_bytes
+
+
+def _keyframe_file(folder: Path) -> Callable[[bytes], object]:
+    return _plain(folder, "keyframes.json", lambda path: read_keyframes(path, BODY, 1, None))
+
+
+def _in_shoot(folder: Path, take: Path) -> Callable[[bytes], object]:
+    below = folder / "shoot" / "day" / "take"
+    shutil.copytree(take, below)
+    write_json(below / "take.json", {"clip": "frames", "frame_count": FRAMES})
+
+    def from_bytes(data: bytes) -> object:
+        (folder / "shoot" / "shoot.json").write_bytes(data)
+        return read_take(below)
+
+    return from_bytes
+
+
+def _listed(folder: Path, take: Path) -> Callable[[bytes], object]:
+    shutil.copytree(take, folder / "list" / "listed")
+    write_json(folder / "list" / "listed" / "take.json", {})
+    path = folder / "list" / "takes.jsonl"
+
+    def from_bytes(data: bytes) -> object:
+        path.write_bytes(data)
+        (found,) = read_take_list(path).takes
+        return read_described(found.describe())
+
+    return from_bytes

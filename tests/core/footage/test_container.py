@@ -1,0 +1,122 @@
+"""What is given to a video decoder: footage, and nothing that leads on to other files or the network."""
+
+import os
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from keymark.core import MOST_PIXELS
+from keymark.core.errors import InputError
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips.container import check_container, check_pixels
+
+SIZE = (64, 48)
+
+
+def write_video(path: Path, code: str = "mp4v") -> Path:
+    """A short video."""
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), 25.0, SIZE)
+    for level in range(6):
+        video.write(np.full((SIZE[1], SIZE[0], 3), 40 * level, dtype=np.uint8))
+    video.release()
+    return path
+
+
+@pytest.fixture(scope="module")
+def outside(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Somebody else's video."""
+    return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", "MJPG")
+
+
+def playlists(target: Path) -> dict[str, str]:
+    """Texts that lead a decoder to a file."""
+    hls = f"#EXTM3U\n#EXT-X-TARGETDURATION:9\n#EXTINF:1.0,\n{target}\n#EXT-X-ENDLIST\n"
+    return {
+        "HLS": hls,
+        "HLS by address": hls.replace(str(target), f"file://{target}"),
+        "HLS from the network": hls.replace(str(target), "http://127.0.0.1:9/x.ts"),
+        "list to be joined": "ffconcat version 1.0\nfile inside.avi\n",
+        "list with a path": f"ffconcat version 1.0\nfile '{target}'\n",
+        "session": "v=0\no=- 0 0 IN IP4 127.0.0.1\ns=x\nc=IN IP4 127.0.0.1\nt=0 0\nm=video 5004 RTP/AVP 96\n",
+        "DASH": f'<?xml version="1.0"?><MPD profiles="x"><BaseURL>{target}</BaseURL></MPD>',
+        "Windows": f'<asx version="3.0"><entry><ref href="{target}"/></entry></asx>',
+        "redirection": f"RTSPtext\nrtsp://127.0.0.1:9/{target.name}",
+    }
+
+
+@pytest.mark.parametrize("ending", ["mp4", "avi", "mkv", "m3u8", "ffconcat", "sdp", "mov"])
+@pytest.mark.parametrize("kind", sorted(playlists(Path("x"))))
+def test_a_playlist_is_no_clip_whatever_it_is_called(
+    kind: str, ending: str, outside: Path, tmp_path: Path
+) -> None:
+    """The decoder would follow it by its content."""
+    (tmp_path / "inside.avi").symlink_to(outside)
+    clip = tmp_path / f"clip.{ending}"
+    clip.write_text(playlists(outside)[kind], encoding="utf-8")
+    with pytest.raises(InputError, match="holds text and must be a video.*no playlist"):
+        Clip.open(clip)
+
+
+def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> None:
+    """Else all this would guard against nothing."""
+    (tmp_path / "inside.avi").symlink_to(outside)
+    clip = tmp_path / "clip.mp4"
+    clip.write_text(playlists(outside)["list to be joined"], encoding="utf-8")
+    assert cv2.VideoCapture(str(clip), cv2.CAP_FFMPEG).isOpened()
+
+
+@pytest.mark.parametrize(
+    "name", ["a:b.avi", "file:clip.avi", "concat:x.avi", "http:clip.avi", "clip %03d.avi"]
+)
+def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A relative name that begins like an address is still a file's."""
+    if os.name == "nt" and ":" in name:
+        pytest.skip("no file is called so here")
+    write_video(tmp_path / "plain.avi", "MJPG").rename(tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    assert Clip.open(name).size == SIZE
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
+)
+def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
+    """What OpenCV itself writes."""
+    check_container(write_video(tmp_path / name, code))
+
+
+@pytest.mark.parametrize(
+    "beginning",
+    [
+        b"G" + bytes(187) + b"G" + bytes(187),
+        bytes(4) + b"G" + bytes(191) + b"G" + bytes(191),
+        b"\x00\x00\x01\xba",
+        b"\x00\x00\x00\x01\x67",
+        b"\x06\x0e\x2b\x34\x02\x05\x01\x01\x0d\x01\x02",
+        b"RIFF\x00\x00\x00\x00AVI LIST",
+        b"\x00\x00\x00\x08wide\x00\x00",
+        b"YUV4MPEG2 W64",
+    ],
+)
+def test_containers_that_opencv_cannot_write_are_known(beginning: bytes, tmp_path: Path) -> None:
+    """Transport and program streams, MXF and their like."""
+    (tmp_path / "clip").write_bytes(beginning)
+    check_container(tmp_path / "clip")
+
+
+@pytest.mark.parametrize(
+    "content", [b"RIFF\x00\x00\x00\x00WAVEfmt ", b"PK\x03\x04zip", b"\x7fELF", bytes(400), b"GG"]
+)
+def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
+    """Sound, archives, programs, nothing at all."""
+    (tmp_path / "clip.mp4").write_bytes(content)
+    with pytest.raises(InputError, match=r"clip\.mp4: cannot be decoded; it holds"):
+        Clip.open(tmp_path / "clip.mp4")
+
+
+def test_pictures_have_a_largest_size(tmp_path: Path) -> None:
+    """8K is read, a claim of gigabytes is not."""
+    check_pixels(tmp_path, 7680, 4320)
+    with pytest.raises(InputError, match=f"at most {MOST_PIXELS} pixels"):
+        check_pixels(tmp_path, 20000, 20000)

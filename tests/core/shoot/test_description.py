@@ -1,0 +1,210 @@
+"""What is said of a take: by its own file, by the shoots above, and by a list."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _shoot import write_shoot
+from _synthetic_take import write_json
+from keymark.core.errors import InputError
+from keymark.core.shoot.conversion_settings import ConversionSettings
+from keymark.core.shoot.description import Description, chosen_settings, describe
+from keymark.core.shoot.shoot_file import read_shoot_file
+from keymark.core.take import read_take
+
+FRAMES = 5
+
+
+@pytest.fixture
+def shoot(tmp_path: Path) -> Path:
+    """A folder above everything that the test makes."""
+    write_json(tmp_path / "shoot.json", {"root": True})
+    return tmp_path
+
+
+def take_in(folder: Path, **fields: Any) -> Path:
+    """A take's folder that says so much."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(folder / "take.json", fields)
+    return folder
+
+
+def settings_of(place: Path, **nearest: Any) -> ConversionSettings:
+    """The choices that count for a take."""
+    return describe(place, nearest, "list.jsonl, line 1").settings
+
+
+def test_the_nearest_file_counts(shoot: Path) -> None:
+    """Shoot, shoot below it, take, list."""
+    write_json(
+        shoot / "shoot.json", {"root": True, "method": "map", "floor_m": 1.0, "pictures": True, "fps": 24}
+    )
+    take = take_in(shoot / "day" / "take")
+    assert settings_of(take).method == "map" and settings_of(take).pictures is True
+    write_json(shoot / "day" / "shoot.json", {"method": "ekf", "pictures": False})
+    assert settings_of(take).method == "ekf" and settings_of(take).pictures is False
+    take_in(take, method="interpolation")
+    assert settings_of(take).method == "interpolation" and settings_of(take).floor_m == 1.0
+    assert settings_of(take, method="map").method == "map"
+    assert describe(take).fields.at("fps") == str(shoot / "shoot.json")
+    assert describe(take).files == (shoot / "shoot.json", shoot / "day" / "shoot.json", take / "take.json")
+
+
+def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
+    """Nor from folders beside."""
+    write_json(shoot / "shoot.json", {"root": True, "fps": 24, "method": "ekf"})
+    (shoot / "day").mkdir()
+    write_json(shoot / "day" / "shoot.json", {"root": True})
+    take = take_in(shoot / "day" / "take")
+    assert settings_of(take).method is None and not describe(take).fields.has("fps")
+
+
+def test_what_a_person_says_on_the_command_line_comes_last_in_a_batch(shoot: Path) -> None:
+    """It counts where nothing nearer says anything."""
+    take = take_in(shoot / "take", method="ekf")
+    chosen = chosen_settings(describe(take), ConversionSettings(method="map", floor_m=0.5))
+    assert chosen == ConversionSettings(method="ekf", floor_m=0.5)
+
+
+def test_a_library_is_used_beside_keyframes_that_are_there(shoot: Path) -> None:
+    """And alone where there are none."""
+    take = take_in(shoot / "take", library="walking")
+    assert chosen_settings(describe(take)).keyframes is None
+    write_json(take / "keyframes.json", {"keyframes": []})
+    assert chosen_settings(describe(take)).keyframes == take / "keyframes.json"
+
+
+def test_paths_are_relative_to_the_file_that_says_them(shoot: Path) -> None:
+    """A library of the shoot lies in the shoot's folder, a take's in its own, a list's in the take's."""
+    write_json(shoot / "shoot.json", {"root": True, "library": "ours.json"})
+    take = take_in(shoot / "take")
+    assert settings_of(take).library == str(shoot / "ours.json")
+    assert settings_of(take, library="own.JSON").library == str(take / "own.JSON")
+    assert settings_of(take, library="walking").library == "walking"
+    assert settings_of(take, keyframes="posed/a.json").keyframes == take / "posed" / "a.json"
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"library": "../ours.json"}, "library is '../ours.json'; it must be"),
+        ({"library": "/etc/passwd"}, "library is '/etc/passwd'; it must be"),
+        ({"library": "..\\x"}, "library is"),
+        ({"library": "a/b"}, "library is 'a/b'"),
+        ({"library": "x" * 300}, "library is 'xxx"),
+        ({"library": 7}, "library is 7"),
+        ({"keyframes": "../keyframes.json"}, "keyframes is '../keyframes.json'"),
+        ({"clip": "../clip.mp4"}, "clip is '../clip.mp4'"),
+        ({"method": "magic"}, "method is 'magic'; it must be one of map, ekf, interpolation"),
+        ({"pictures": 1}, "pictures is 1; it must be true or false"),
+        ({"floor_m": 1e9}, "floor_m is 1000000000.0; it must be a number from -1000 to 1000 m"),
+    ],
+)
+def test_a_wrong_choice_is_named_with_its_file(fields: dict[str, Any], said: str, shoot: Path) -> None:
+    """Before anything is opened."""
+    take = take_in(shoot / "take", **fields)
+    with pytest.raises(InputError, match=said) as caught:
+        describe(take)
+    assert str(caught.value).startswith(str(take / "take.json"))
+    with pytest.raises(InputError, match=r"^list\.jsonl, line 1: "):
+        describe(take_in(shoot / "other"), fields, "list.jsonl, line 1")
+
+
+def test_null_gives_a_choice_back(shoot: Path) -> None:
+    """A take of a shoot with a library may do without."""
+    write_json(shoot / "shoot.json", {"root": True, "library": "walking", "method": "ekf"})
+    assert settings_of(take_in(shoot / "take", library=None)) == ConversionSettings(method="ekf")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ({"root": 1}, "root is 1; it must be true or false"),
+        ({"schema_version": 2}, "schema_version is 2; this Keymark reads up to 1"),
+        ({"schema_version": 0}, "schema_version is 0"),
+        ({"actr": {}}, "unknown field 'actr' \\(is 'actor' meant\\?\\)"),
+        ({"clip": "a.mp4"}, "unknown field 'clip'"),
+    ],
+)
+def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, tmp_path: Path) -> None:
+    """What it means would be lost."""
+    write_json(tmp_path / "shoot.json", content)
+    with pytest.raises(InputError, match=said) as caught:
+        read_shoot_file(tmp_path / "shoot.json")
+    assert str(caught.value).startswith(str(tmp_path / "shoot.json"))
+
+
+def test_what_a_shoot_file_says_of_itself_is_no_field_of_a_take(tmp_path: Path) -> None:
+    """Version, root, and where an editor finds the schema."""
+    said = {"$schema": "shoot.schema.json", "schema_version": 1, "root": True, "fps": 24}
+    write_json(tmp_path / "shoot.json", said)
+    assert read_shoot_file(tmp_path / "shoot.json") == {"fps": 24}
+
+
+def described(folder: Path, name: str) -> Description:
+    """A take of a small shoot."""
+    return describe(folder / "day1" / name)
+
+
+def test_a_mere_clip_is_described_by_its_shoot_and_by_files_beside_it(tmp_path: Path) -> None:
+    """The clip tells rate and size; `NAME.take.json` says more, and its `clip` means nothing."""
+    folder = write_shoot(tmp_path / "shoot", 1, FRAMES)
+    beside = folder / "day1" / "take01.take.json"
+    write_json(beside, {"actor": {"height_m": 1.6}, "clip": "other.mp4"})
+    found = described(folder, "take01.mp4")
+    assert (found.name, found.file, found.inherits) == ("take01", beside, True)
+    assert found.clip == folder / "day1" / "take01.mp4"
+    assert found.keyframes == folder / "day1" / "take01.keyframes.json"
+    take = read_take(found.place)
+    assert take.fps == pytest.approx(30.0) and take.frame_start == 1
+    assert take.body.actor.stature_m == pytest.approx(1.6)
+
+
+def test_a_clip_that_nothing_describes_is_refused(tmp_path: Path) -> None:
+    """With the files that could."""
+    write_json(tmp_path / "shoot.json", {"root": True})
+    (tmp_path / "clip.mp4").touch()
+    (tmp_path / "shoot.json").unlink()
+    if any((folder / "shoot.json").exists() for folder in tmp_path.parents):
+        pytest.skip("a shoot lies above the folder for tests")
+    with pytest.raises(
+        InputError, match=r"nothing describes this clip; clip\.take\.json beside it, or shoot\.json"
+    ):
+        describe(tmp_path / "clip.mp4")
+
+
+@pytest.mark.parametrize("place", ["none", "none/deeper", "x" * 300, "a\0b"])
+def test_a_place_that_cannot_be_is_refused(place: str, shoot: Path) -> None:
+    """In one sentence, however odd its name."""
+    with pytest.raises(InputError, match=r"a take is a folder that holds take\.json"):
+        describe(shoot / place)
+
+
+def test_links_may_lead_anywhere_in_the_shoot_but_not_out_of_it(tmp_path: Path) -> None:
+    """Clip, keyframes, library, the description itself, and images."""
+    folder = tmp_path / "shoot"
+    folder.mkdir()
+    write_json(folder / "shoot.json", {"root": True, "library": "ours.json"})
+    take = take_in(folder / "take")
+    (folder / "footage.mp4").touch()
+    (tmp_path / "private").write_text(json.dumps({}), encoding="utf-8")
+    try:
+        (take / "clip.mp4").symlink_to(folder / "footage.mp4")
+    except OSError:
+        pytest.skip("no links here")
+    assert describe(take).clip == take / "clip.mp4"
+    for path in (take / "clip.mp4", take / "keyframes.json", folder / "ours.json", take / "take.json"):
+        before = path.read_bytes() if path.exists() and not path.is_symlink() else None
+        path.unlink(missing_ok=True)
+        path.symlink_to(tmp_path / "private")
+        with pytest.raises(InputError, match=f"^{path}: leads by a link to .*private"):
+            describe(take)
+        path.unlink()
+        if before is not None:
+            path.write_bytes(before)
+    (take / "frames").mkdir()
+    (take / "frames" / "1.png").symlink_to(tmp_path / "private")
+    take_in(take, clip="frames")
+    with pytest.raises(InputError, match=r"1\.png: leads by a link"):
+        describe(take)
