@@ -18,6 +18,7 @@ from keymark.operators.command_line.check_text import check_text
 
 FRAMES = 10
 TAKE = "day1/take01"
+LONG = "a/name that is much too long for the table"
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +150,7 @@ def few(shoot: Path) -> None:
 
 def elsewhere(shoot: Path) -> None:
     """A camera that was moved to the side."""
-    said_of_take(camera={"matrix_world": [[1, 0, 0, 3.0], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
+    said_of_take(camera={"matrix_world": [[1, 0, 0, 2.2], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
         shoot
     )
 
@@ -240,10 +241,10 @@ def test_sentences_are_broken_to_the_terminal() -> None:
 def test_the_table_fits_the_terminal() -> None:
     """A long name stands above its figures, which stay in their columns; elsewhere all is one line."""
     shoot = Shoot(Path("shoot"), ())
-    checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", "a/name that is much too long for this")]
+    checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", LONG)]
     lines = check_text(shoot, checks, 60).splitlines()
     assert max(map(len, lines)) <= 60
-    assert lines[2] == "ready  a/name that is much too long for this" and lines[3].strip().startswith("77")
+    assert lines[2] == f"ready  {LONG}" and lines[3].strip().startswith("77")
     assert lines[1].index("77") == lines[3].index("77")
     assert len(check_text(shoot, checks).splitlines()) == 5
 
