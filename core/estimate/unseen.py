@@ -3,6 +3,10 @@
 Between keyframes and markers that are seen, the estimate's own covariance holds: what happens there is short.
 Where a performer is out of the picture, or pictures are black, it would go on as if people moved little from
 what was last known; they do not, and within half a second may be anywhere in their reach.
+
+With these values, chosen by hand on six takes whose second half was made black, 87 to 100 % of the errors in
+seven others lie within 1.96 standard deviations (10 to 68 % without). Those who walk off are farther away
+still: 47 to 68 % in three of the six.
 """
 
 import numpy as np
@@ -15,10 +19,12 @@ Array = NDArray[np.float64]
 GRACE_S = 0.25
 """Time for which the estimate's own covariance holds."""
 REACHED_S = 0.35
-"""Time in which two thirds of the way to anywhere are gone."""
-STRAY = {"location": 0.12, "trunk": 0.15, "limb": 0.5}
-"""Standard deviation of anywhere [m, rad]. In fourteen takes, a place in the world a second ago tells of the
-trunk to 0.3 m, of elbows to 0.5, wrists to 0.7, knees to 0.3 and ankles to 0.35 (medians over the takes)."""
+"""Time in which two thirds of the way to anywhere in reach are gone."""
+TURNED, BENT = 0.15, 0.5
+"""Standard deviation of the trunk's joints and of the limbs' anywhere in reach [rad]."""
+WALKED_M_PER_S = 0.5
+"""Of the place in the world, along each axis: nobody knows whether the performer stands or walks."""
+FARTHEST_M = 2.0
 
 
 def unseen_variance(
@@ -47,21 +53,21 @@ def unseen_variance(
         own = [i for i, name in enumerate(segments) if first.get(name, int(trunk[0])) in part]
         # Where any marker is seen, the trunk it hangs on is not far.
         told = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
-        stray = np.full(len(part), STRAY["trunk" if part is trunk else "limb"])
+        unknown = _since(told, time_s)
+        std[:, part] = (-np.expm1(-unknown / REACHED_S) * (TURNED if part is trunk else BENT))[:, None]
         if part is trunk:
-            stray[: len(skeleton.joints[0].components) - 3] = STRAY["location"]
-        std[:, part] = _open(told, time_s)[:, None] * stray
+            std[:, :3] = np.minimum(WALKED_M_PER_S * unknown, FARTHEST_M)[:, None]
     return std**2
 
 
-def _open(told: NDArray[np.bool_], time_s: Array) -> Array:
-    """(F,) how much is open, 0 where something tells of it, 1 long before or after."""
+def _since(told: NDArray[np.bool_], time_s: Array) -> Array:
+    """(F,) time from the nearest frame of which something tells, beyond the grace [s]."""
     if not told.any():
-        return np.ones(len(time_s))
+        return np.full(len(time_s), FARTHEST_M / WALKED_M_PER_S)
     known = time_s[told]
     after = np.searchsorted(known, time_s)
     gap = np.minimum(
         np.abs(time_s - known[np.minimum(after, len(known) - 1)]),
         np.abs(time_s - known[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(-np.expm1(-np.maximum(gap - GRACE_S, 0.0) / REACHED_S))
+    return np.asarray(np.maximum(gap - GRACE_S, 0.0))

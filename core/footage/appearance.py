@@ -30,7 +30,7 @@ _CELLS: Final = _LEVELS**3
 _CELL_VOLUME: Final = (256 / _LEVELS) ** 3
 _UNSEEN: Final = 0.02
 """Share of any surface's colours that a few frames do not show."""
-_BLUR: Final = gaussian_filter1d(np.eye(_LEVELS, dtype=np.float32), 1.0, axis=0, truncate=3.0)
+_BLUR: Final = gaussian_filter1d(np.eye(_LEVELS), 1.0, axis=0, truncate=3.0)
 """Takes a histogram's levels along an axis to smoothed ones."""
 _STRANGE: Final = float(np.log(_UNSEEN / (_CELLS * _CELL_VOLUME)))
 """Log density of a colour that was never seen on any surface."""
@@ -75,12 +75,16 @@ class Appearance:
         return np.asarray(self.parts[index, _cells(pixels)])
 
     def background(self, row: IntArray, column: IntArray, pixels: Image) -> FloatArray:
-        """Return the log density of pixels (..., 3) as the background at rows and columns (...)."""
-        anywhere = self.parts[-1, _cells(pixels)]
-        deviation = self.deviation[row, column]
+        """Return the log density of pixels (..., 3) as the background at rows and columns (...).
+
+        In float64: exponentials of float32 differ between versions of numpy in their last digit, and edges
+        that such differences move by a millionth of a pixel are, now and then, read from the next pixel.
+        """
+        anywhere = self.parts[-1, _cells(pixels)].astype(np.float64)
+        deviation = self.deviation[row, column].astype(np.float64)
         # Channel by channel: sums over an axis of three are slow.
-        usual = [self.colour[..., channel][row, column] for channel in range(3)]
-        seen = [pixels[..., channel].astype(np.float32) for channel in range(3)]
+        usual = [self.colour[..., channel][row, column].astype(np.float64) for channel in range(3)]
+        seen = [pixels[..., channel].astype(np.float64) for channel in range(3)]
         power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
         light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
         light = np.clip(light / np.maximum(power, 1.0), _DARKEST, _BRIGHTEST)
@@ -135,12 +139,13 @@ def _interior(label: NDArray[np.int8]) -> BoolArray:
 
 def _log_densities(counts: IntArray) -> FloatArray:
     """Return the logarithm of smoothed histograms (rows, cells) as densities per level³."""
-    smoothed = counts.astype(np.float32).reshape(-1, _LEVELS, _LEVELS, _LEVELS)
+    smoothed = counts.astype(np.float64).reshape(-1, _LEVELS, _LEVELS, _LEVELS)
     for _ in range(3):  # each time along what is the last axis, and turns them
         smoothed = np.moveaxis(smoothed @ _BLUR, -1, 1)
     smoothed = smoothed.reshape(counts.shape)
     share = smoothed / np.maximum(smoothed.sum(axis=1, keepdims=True), 1.0)
-    return np.asarray(np.log((1.0 - _UNSEEN) * share / _CELL_VOLUME + np.float32(np.exp(_STRANGE))))
+    density = np.log((1.0 - _UNSEEN) * share / _CELL_VOLUME + np.exp(_STRANGE))
+    return np.asarray(density.astype(np.float32))
 
 
 def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, FloatArray]:

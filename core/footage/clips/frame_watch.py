@@ -20,8 +20,8 @@ _SIDE: Final = 64
 _COMBED_EVERY: Final = 15
 """Frames between two that are looked at for combing."""
 _COMBED, _COMBED_MORE = 5e-4, 10.0
-"""Share of an interlaced picture that is combed, and how much more than by columns. Twenty takes that are not
-interlaced stay below 1.2e-4 and three times as much; one that is has 1e-2 and four thousand times."""
+"""Share of an interlaced picture that is combed, and how much more than by columns. Sixteen clips
+that are not interlaced stay below 1.2e-4 and three times as much; three made so have 1e-2 and more."""
 _COLOURLESS: Final = 10
 """Levels between the channels of grey, but for what compression adds."""
 _CUT: Final = 10.0
