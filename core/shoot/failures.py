@@ -11,7 +11,9 @@ from pathlib import Path
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import read_json, write_json
-from .take_names import RESERVED
+from .description import clip_name
+from .shoot import Shoot
+from .take_names import RESERVED, name_of_way
 
 FOLDER = Path(RESERVED[0]) / "failures"
 """Below the folder of the results."""
@@ -63,6 +65,34 @@ def read_failure(output: Path, take: str) -> Failure | None:
     """A take's failure; None where it has none, or none that can be read."""
     found = _read(_file(output, take))
     return found if found is not None and found.take == take else None
+
+
+def forget_gone_takes(output: Path, shoot: Shoot) -> None:
+    """Forget failures of takes that were deleted: else every library merged from then on would lack some.
+
+    A list or one clip says nothing of takes that it lacks.
+
+    Args:
+        output: The folder of all results.
+        shoot: All takes.
+    """
+    known = {take.name for take in shoot.takes}
+    for failure in read_failures(output):
+        if failure.take not in known and _is_gone(shoot.path, failure.take):
+            clear_failure(output, failure.take)
+
+
+def _is_gone(folder: Path, take: str) -> bool:
+    """Whether a folder of takes has lost one: there is neither its folder nor its clip."""
+    if not folder.is_dir():
+        return False
+    try:
+        inside = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):  # it may be there
+        return False
+    return take not in {name_of_way(way.with_name(clip_name(folder / way))) for way in inside}
 
 
 def _read(path: Path) -> Failure | None:

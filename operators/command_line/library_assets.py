@@ -22,8 +22,8 @@ def blend_command(arguments: argparse.Namespace) -> None:
         refuse_existing(file, arguments.replace)
         console.stage("Writing Blender's files")
         with blender_silence(arguments.debug):
-            from ..bridge.asset_catalogs import NAME
-            from ..bridge.library_blend import write_library_blend
+            from ..bridge.assets.catalogs import NAME
+            from ..bridge.library.blend import write_library_blend
 
             write_library_blend(file, library)
         files = [str(file), str(arguments.output / NAME)]
@@ -42,7 +42,7 @@ def read_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Reading the pose assets")
         with blender_silence(arguments.debug):
-            from ..bridge.library_blend import read_library_blend
+            from ..bridge.library.blend import read_library_blend
 
             found = read_library_blend(arguments.file)
         chosen = [one for one in found if arguments.identifier in (None, one.identifier)]

@@ -18,7 +18,7 @@ from .console import Console, arguments_console
 from .conversion import MOTION, require_blender
 
 if TYPE_CHECKING:
-    from ..bridge.motion_assets import MotionAsset
+    from ..bridge.assets.motions import MotionAsset
 
 ENDING = ".blend"
 LONGEST_NAME = 63
@@ -46,8 +46,8 @@ def merge_command(arguments: argparse.Namespace) -> None:
         gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):
-            from ..bridge.asset_catalogs import NAME
-            from ..bridge.motion_assets import write_motion_library
+            from ..bridge.assets.catalogs import NAME
+            from ..bridge.assets.motions import write_motion_library
 
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
@@ -75,7 +75,7 @@ class Gathering:
         Raises:
             ConversionError: There is none.
         """
-        from ..bridge.motion_assets import MotionAsset
+        from ..bridge.assets.motions import MotionAsset
 
         names: set[str] = set()
         for index, result in enumerate(self._found.sound):

@@ -17,7 +17,7 @@ from keymark.core.motion_file import write_motion
 from keymark.core.shoot.failures import Failure, write_failure
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.asset_catalogs import NAME as CATALOGS
+from keymark.operators.bridge.assets.catalogs import NAME as CATALOGS
 from keymark.operators.cli import main
 
 RECORD = ConversionRecord(

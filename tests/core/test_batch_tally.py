@@ -39,10 +39,24 @@ def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
     assert [summary["b"] for summary in written] == [Status.WAITING, Status.CONVERTED]
 
 
-def test_failures_of_takes_that_have_left_the_shoot_are_forgotten(shoot: Shoot, tmp_path: Path) -> None:
+def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path: Path) -> None:
     """Else every library merged from then on would be called incomplete."""
     output = tmp_path / "out"
-    for name in ("a", "gone"):
+    (tmp_path / "day1").mkdir()
+    (tmp_path / "day1" / "clip.mp4").touch()
+    (tmp_path / "folder").mkdir()
+    for name in ("a", "gone", "day1/clip", "day1/gone", "day2/gone", "folder"):
         write_failure(output, Failure(name, "it is cut off", "input"))
     Tally(shoot, output, [], Console(quiet=True, as_json=False))
-    assert [failure.take for failure in read_failures(output)] == ["a"]
+    assert [failure.take for failure in read_failures(output)] == ["a", "day1/clip", "folder"]
+
+
+def test_a_list_makes_nobody_forget_the_takes_it_lacks(shoot: Shoot, tmp_path: Path) -> None:
+    """It may name a part of a larger shoot, whose other failures still count."""
+    output = tmp_path / "out"
+    for name in ("a", "of the larger shoot"):
+        write_failure(output, Failure(name, "it is cut off", "input"))
+    part = replace(shoot, path=tmp_path / "part.jsonl")
+    part.path.touch()
+    Tally(part, output, [], Console(quiet=True, as_json=False))
+    assert [failure.take for failure in read_failures(output)] == ["a", "of the larger shoot"]

@@ -3,9 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ..shoot.outcome import Outcome, Status
-from .summary_text import counted, duration, isolated, percent
-from .summary_verdict import Verdict, result
+from ...shoot.outcome import Outcome, Status
+from .text import counted, duration, isolated, percent
+from .verdict import Verdict, result
 
 NAMED = 3
 """So many takes are named in a sentence."""

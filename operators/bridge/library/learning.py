@@ -2,13 +2,13 @@
 
 import bpy
 
-from ...core.body.human import HUMAN
-from ...core.library.learning import About, learn_library
-from ...core.library.library import Library
-from ...core.progress import run
-from .actor_lengths import read_body
-from .final_motion import motion_frames, read_values, shown_postures
-from .rig import read_rig
+from ....core.body.human import HUMAN
+from ....core.library.learning import About, learn_library
+from ....core.library.library import Library
+from ....core.progress import run
+from ..actor_lengths import read_body
+from ..final_motion import motion_frames, read_values, shown_postures
+from ..rig import read_rig
 
 
 def library_from_action(

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import bpy
 
-from ...core.errors import InputError
-from ...core.files.output_folder import output_folder
-from .asset_catalogs import NAME, ensure_catalog, read_catalogs
-from .blend_writer import write_blend
+from ....core.errors import InputError
+from ....core.files.output_folder import output_folder
+from ..blend_writer import write_blend
+from .catalogs import NAME, ensure_catalog, read_catalogs
 
 
 def write_asset_blend(

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from ...core.errors import InputError
-from ...core.library.library import Library
-from ...core.library.library_file import read_library, write_library
-from .library_blend import read_library_blend, write_library_blend
+from ....core.errors import InputError
+from ....core.library.library import Library
+from ....core.library.library_file import read_library, write_library
+from .blend import read_library_blend, write_library_blend
 
 JSON, BLEND = ".json", ".blend"
 

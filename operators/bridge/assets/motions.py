@@ -11,19 +11,19 @@ from pathlib import Path
 
 import bpy
 
-from ...core.motion import Motion
-from ...core.report.thumbnail import thumbnail
-from .actions import assign_action, new_channelbag
-from .armature import build_armature
-from .asset_blend import write_asset_blend
-from .assets import AssetDetails, mark_asset
-from .bone_channels import channels_at_rest
-from .bones import bone_models, rest_matrices, usual_mode
-from .fcurves import channel_columns
-from .frame_times import scene_frames
-from .keys import add_generated_keys
-from .object_space import AT_ORIGIN
-from .scene_file import own_scene
+from ....core.motion import Motion
+from ....core.report.thumbnail import thumbnail
+from ..actions import assign_action, new_channelbag
+from ..armature import build_armature
+from ..bone_channels import channels_at_rest
+from ..bones import bone_models, rest_matrices, usual_mode
+from ..fcurves import channel_columns
+from ..frame_times import scene_frames
+from ..keys import add_generated_keys
+from ..object_space import AT_ORIGIN
+from ..scene_file import own_scene
+from .blend import write_asset_blend
+from .marking import AssetDetails, mark_asset
 
 MOTIONS, ACTORS = "Keymark", "Keymark Actors"
 """Above the catalogs of all shoots."""

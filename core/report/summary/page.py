@@ -9,13 +9,13 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..shoot.outcome import Outcome, Status
-from .summary_head import counts, first_things
-from .summary_row import COLUMNS, SIGNS, kind, row
-from .summary_script import SCRIPT
-from .summary_style import STYLE
-from .summary_text import counted, escaped, isolated, percent
-from .summary_verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
+from ...shoot.outcome import Outcome, Status
+from .head import counts, first_things
+from .row import COLUMNS, SIGNS, kind, row
+from .script import SCRIPT
+from .style import STYLE
+from .text import counted, escaped, isolated, percent
+from .verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
 MOST_ROWS = 5000
 """A browser takes long to lay out more."""

@@ -7,14 +7,14 @@ import bpy
 import cv2
 import numpy as np
 
-from ...core.body.human import HUMAN
-from ...core.motion import Motion
-from ...core.progress import run, within
-from ...core.report.canvas import Image
-from ...core.report.thumbnail import thumbnail
-from .actor_lengths import read_body
-from .final_motion import motion_frames, read_values, shown_postures
-from .rig import read_rig
+from ....core.body.human import HUMAN
+from ....core.motion import Motion
+from ....core.progress import run, within
+from ....core.report.canvas import Image
+from ....core.report.thumbnail import thumbnail
+from ..actor_lengths import read_body
+from ..final_motion import motion_frames, read_values, shown_postures
+from ..rig import read_rig
 
 DRAWN_FRAMES = 25
 """Frames over the whole motion that the picture is made from."""

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import bpy
 
-from ...core.errors import InputError
-from ...core.library.library import Library
-from ...core.library.library_fields import MOST_POSTURES
-from ...core.report.canvas import Image
-from .asset_blend import write_asset_blend
-from .library_assets import add_assets, catalog_of, is_posture, library_from_assets
+from ....core.errors import InputError
+from ....core.library.library import Library
+from ....core.library.library_fields import MOST_POSTURES
+from ....core.report.canvas import Image
+from ..assets.blend import write_asset_blend
+from ..blend_writer import one_line
+from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
 """A library of a thousand postures with pictures fits; a film's scene handed in by mistake does not."""
@@ -91,7 +92,7 @@ def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
                     wanted.actions = names
         except (OSError, RuntimeError, UnicodeDecodeError) as error:
             raise InputError(
-                f"{path}: Blender cannot read it ({_one_line(error)}); it may be damaged or cut off"
+                f"{path}: Blender cannot read it ({one_line(error)}); it may be damaged or cut off"
             ) from error
         if len(names) > MOST_POSTURES:
             raise InputError(
@@ -100,7 +101,3 @@ def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
         yield [action for action in wanted.actions if action is not None and is_posture(action)]
     finally:
         bpy.data.batch_remove(set(bpy.data.user_map()) - before)
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:200]

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import bpy
 
-from ...core.errors import InputError
-from ...core.files.json_file import write_whole
+from ....core.errors import InputError
+from ....core.files.json_file import write_whole
 
 NAME = "blender_assets.cats.txt"
 VERSION = "VERSION 1"

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.body.actor import Actor
-from ...core.body.kinematics import Body
-from ...core.body.mirror import mirrored
-from ...core.body.posture import Posture
-from ...core.body.soles import lower_sole_m
-from ...core.errors import InputError
-from ...core.library.applying import applied
-from ...core.library.library import Library, LibraryPosture
-from ...core.library.shapes import headings_rad, moved
+from ....core.body.actor import Actor
+from ....core.body.kinematics import Body
+from ....core.body.mirror import mirrored
+from ....core.body.posture import Posture
+from ....core.body.soles import lower_sole_m
+from ....core.errors import InputError
+from ....core.library.applying import applied
+from ....core.library.library import Library, LibraryPosture
+from ....core.library.shapes import headings_rad, moved
 
 Array = NDArray[np.float64]
 
