@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from keymark.core.conversion_record import ConversionRecord
-from keymark.core.shoot.outcome import Outcome, Status
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
 
 FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
 RECORD = ConversionRecord(

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ...shoot.outcome import Outcome, Status
+from ...shoot.outcomes.outcome import Outcome, Status
 from .text import counted, duration, isolated, percent
 from .verdict import Verdict, result
 

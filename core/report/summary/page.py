@@ -9,7 +9,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ...shoot.outcome import Outcome, Status
+from ...shoot.outcomes.outcome import Outcome, Status
 from .head import counts, first_things
 from .row import COLUMNS, SIGNS, kind, row
 from .script import SCRIPT

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
 from ...conversion_record import ConversionRecord
-from ...shoot.outcome import Outcome, Status
+from ...shoot.outcomes.outcome import Outcome, Status
 from ..film_strip import PICTURES as STRIP_FRAMES
 from ..film_strip import SIZE as STRIP_SIZE
 from ..pictures import STRIP

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from ...conversion_record import ConversionRecord
 from ...estimate.weak_frames import WEAK_CONFIDENCE
-from ...shoot.outcome import Outcome, Status
+from ...shoot.outcomes.outcome import Outcome, Status
 
 GOOD = WEAK_CONFIDENCE
 """Mean confidence from which a take is good: frames believed as far need no keyframe."""

@@ -10,7 +10,7 @@ from ....core.files.json_file import write_whole
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.text import way_to
 from ....core.report.summary.verdict import result
-from ....core.shoot.outcome import Outcome
+from ....core.shoot.outcomes.outcome import Outcome
 from ....core.shoot.shoot import Shoot
 
 LINES, PAGE = "summary.jsonl", "summary.html"

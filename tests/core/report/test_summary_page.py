@@ -17,7 +17,7 @@ from keymark.core.report.summary.page import summary_page
 from keymark.core.report.summary.style import DARK, LIGHT
 from keymark.core.report.summary.text import LONGEST, duration, percent, visible
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
-from keymark.core.shoot.outcome import Outcome, Status
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")

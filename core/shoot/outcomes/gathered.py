@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from ..conversion_record import ConversionRecord, read_record
-from ..errors import InputError
+from ...conversion_record import ConversionRecord, read_record
+from ...errors import InputError
+from ..shoot import Shoot, ShootTake
 from .failures import read_failure
 from .outcome import Outcome, Status
-from .shoot import Shoot, ShootTake
 
 
 def gather_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:

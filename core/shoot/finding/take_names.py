@@ -5,9 +5,9 @@ import unicodedata
 from collections.abc import Sequence
 from pathlib import Path, PurePath, PurePosixPath
 
-from ..errors import InputError
-from ..files.json_file import shown
-from .shoot import Shoot, ShootTake
+from ...errors import InputError
+from ...files.json_file import shown
+from ..shoot import Shoot, ShootTake
 
 RESERVED = (".keymark", "summary.html", "summary.jsonl")
 """What a batch itself writes into its folder."""

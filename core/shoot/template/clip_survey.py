@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..footage.clips.clip import Clip
-from ..footage.clips.glance import glance
-from ..footage.colours.strong_colours import StrongColour, strong_colours
-from ..progress import run
-from .description import KEYFRAMES, OWN, beside
-from .shoot import Shoot, ShootTake
+from ...errors import InputError
+from ...footage.clips.clip import Clip
+from ...footage.clips.glance import glance
+from ...footage.colours.strong_colours import StrongColour, strong_colours
+from ...progress import run
+from ..description import KEYFRAMES, OWN, beside
+from ..shoot import Shoot, ShootTake
 
 Image = NDArray[np.uint8]
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..conversion_record import NAME, ConversionRecord, read_record
-from ..errors import InputError
-from .take_names import name_of_way
+from ...conversion_record import NAME, ConversionRecord, read_record
+from ...errors import InputError
+from ..finding.take_names import name_of_way
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,16 +4,16 @@ import os
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..files.fields import Fields
-from ..files.inherited import COMMENT
-from ..files.inside import check_links, inside_path
-from ..files.json_file import parse_json, shown
-from ..files.ordinary import ordinary_size
-from .description import clip_name
+from ...errors import InputError
+from ...files.fields import Fields
+from ...files.inherited import COMMENT
+from ...files.inside import check_links, inside_path
+from ...files.json_file import parse_json, shown
+from ...files.ordinary import ordinary_size
+from ..description import clip_name
+from ..shoot import Shoot, ShootTake
+from ..shoot_file import SETTINGS, SHARED
 from .find_takes import MOST_TAKES
-from .shoot import Shoot, ShootTake
-from .shoot_file import SETTINGS, SHARED
 from .take_names import check_names, name_of_way
 
 ENDING = ".jsonl"

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from ..footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
+from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
+from ..shoot_file import SCHEMA_VERSION
 from .clip_survey import ClipSurvey
-from .shoot_file import SCHEMA_VERSION
 
 MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The five that Keymark is made for."""

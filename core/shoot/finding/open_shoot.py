@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from ..shoot import Shoot, ShootTake
 from .find_takes import VIDEOS, find_takes
-from .shoot import Shoot, ShootTake
 from .take_list import ENDING, read_take_list
 from .take_names import check_names, name_of_way
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from _outcomes import RECORD
 from keymark.core.conversion_record import write_record
-from keymark.core.shoot.failures import Failure, read_failures, write_failure
-from keymark.core.shoot.outcome import Outcome, Status
+from keymark.core.shoot.outcomes.failures import Failure, read_failures, write_failure
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.operators.command_line.batch import tally
 from keymark.operators.command_line.batch.tally import Tally

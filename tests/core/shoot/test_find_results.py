@@ -9,8 +9,8 @@ import pytest
 from _outcomes import RECORD
 from keymark.core.conversion_record import write_record
 from keymark.core.errors import InputError
-from keymark.core.shoot import results
-from keymark.core.shoot.results import find_results
+from keymark.core.shoot.outcomes import results
+from keymark.core.shoot.outcomes.results import find_results
 
 
 def add(folder: Path) -> Path:

@@ -8,12 +8,12 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from ..errors import InputError
-from ..files.fields import Fields
-from ..files.json_file import read_json, write_json
-from .description import clip_name
-from .shoot import Shoot
-from .take_names import RESERVED, name_of_way
+from ...errors import InputError
+from ...files.fields import Fields
+from ...files.json_file import read_json, write_json
+from ..description import clip_name
+from ..finding.take_names import RESERVED, name_of_way
+from ..shoot import Shoot
 
 FOLDER = Path(RESERVED[0]) / "failures"
 """Below the folder of the results."""
