@@ -119,7 +119,7 @@ def test_matched_keyframes_can_be_given_back(
 def test_a_clip_that_no_library_fits_is_said_to_be_one(
     take: Path, library: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    """Status 1, one line, and the output folder as it was."""
+    """Status 1, one line, and the output folder as it was; a take that is posed converts all the same."""
     from keymark.core.match_take import LibraryChoice
     from keymark.operators.command_line import matching
 
@@ -133,6 +133,11 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
     said = capsys.readouterr().err
     assert "none of them fits; likeliest are Swaying 50%" in said and len(said.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+    posed = ["--keyframes", tmp_path / "posed.json"]
+    assert convert(take, tmp_path / "out", "--library", "auto", *posed, "--json") == 0
+    said = said_as_json(capsys)
+    assert "none of them fits; only the posed keyframes count" in said["notes"] and "matches" not in said
+    assert not (tmp_path / "out" / "keyframes.json").exists()
 
 
 @pytest.mark.parametrize(

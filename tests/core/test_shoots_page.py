@@ -76,5 +76,5 @@ def test_the_table_names_every_field(page: str) -> None:
     from keymark.core.shoot.finding.take_list import KNOWN as LISTED
     from keymark.core.shoot.shoot_file import KNOWN
 
-    fields = re.findall(r"^\| `(\w+)` \|", page, flags=re.MULTILINE)
+    fields = re.findall(r"^\| `([\w$]+)` \|", page, flags=re.MULTILINE)
     assert set(fields) == {*KNOWN, *LISTED} - {"take"}

@@ -64,8 +64,9 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
         tally.finish()
         counts = tally.counts
         ready = counts["converted"] + counts["unchanged"]
+        wrong = f", {counts['failed']} failed" if counts["failed"] else ""
         raise KeyboardInterrupt(
-            f"interrupted; {ready} of {len(jobs)} takes are converted, the same command converts the others"
+            f"interrupted; {ready} of {len(jobs)} takes are converted{wrong}; the same command goes on"
         ) from None
     except ConversionError:
         tally.finish()
