@@ -23,7 +23,7 @@ RECORD = ConversionRecord(
     weakest=0.8,
     weak_frames=(87, 31),
     notes=("the frames are unevenly spaced in time",),
-    files=dict.fromkeys(FILES, ""),
+    files=dict.fromkeys(FILES, 64 * "0"),
 )
 
 
