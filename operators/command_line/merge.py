@@ -11,9 +11,9 @@ from ...core.files.digest import content_digest
 from ...core.motion import Motion
 from ...core.motion_file import read_motion
 from ...core.progress import Progress
-from ...core.shoot.shoot_file import whole_way
 from ...core.shoot.outcomes.failures import Failure, read_failures
 from ...core.shoot.outcomes.results import Result, Results, find_results
+from ...core.shoot.shoot_file import whole_way
 from .blender_silence import blender_silence
 from .console import Console, arguments_console
 from .conversion import MOTION, require_blender

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from ...conversion_record import NAME, ConversionRecord, read_record
 from ...errors import InputError
-from ..shoot_file import whole_way
 from ..finding.take_names import name_of_way
+from ..shoot_file import whole_way
 
 
 @dataclass(frozen=True, eq=False)
