@@ -122,10 +122,10 @@ def match_notes(take: Take) -> tuple[str, ...]:
         worst = sorted(doubted, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
         named = listed([str(frame) for frame in frames], MOST_NAMED)
-        notes.append(
-            f"{len(doubted)} of {len(matched)} matched postures may be wrong; pose frame {named} to set them "
-            "right"
-        )
+        which, them = f"{len(doubted)} of {len(matched)} matched postures", "them"
+        if len(matched) == 1:
+            which, them = "the matched posture", "it"
+        notes.append(f"{which} may be wrong; pose frame {named} to set {them} right")
     return tuple(notes)
 
 

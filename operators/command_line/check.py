@@ -1,19 +1,18 @@
 """`keymark check`."""
 
 import argparse
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
-from shutil import get_terminal_size
 
 from ...core.errors import ConversionError
 from ...core.progress import Job, Progress, run
 from ...core.shoot.conversion_settings import ConversionSettings
-from ...core.shoot.open_shoot import open_shoot
+from ...core.shoot.finding.open_shoot import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.shoot_check.odd_takes import with_odd_ones
 from ...core.shoot_check.take_check import TakeCheck, check_take
+from .broken_lines import terminal_columns
 from .check_text import check_summary, check_text
 from .console import arguments_console
 from .line_parser import UsageError
@@ -37,8 +36,7 @@ def check_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
         checks = run(_checks(shoot, farther, jobs, arguments.debug), console.progress)
-        columns = get_terminal_size().columns if sys.stdout.isatty() else None
-        console.finish(check_summary(checks), check_text(shoot, checks, columns))
+        console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {_takes(len(checks))} would not convert")

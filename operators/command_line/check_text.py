@@ -2,13 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from textwrap import wrap
 from typing import Any
 
 from ...core.files.fields import listed
 from ...core.shoot.shoot import Shoot
 from ...core.shoot.shoot_file import whole_way
 from ...core.shoot_check.take_check import TakeCheck
+from .broken_lines import broken
 
 READY, LOOK, FAILS = "ready", "look", "fails"
 """It would convert; it would, but something is likely to go wrong; it would not."""
@@ -16,10 +16,11 @@ STOPS, LIKELY = "!", "-"
 """Before what stops a conversion, and before what is only likely to go wrong."""
 FEWEST_IN_COMMON = 3
 """Takes that must share a sentence for it to be said once."""
-SHARE_IN_COMMON = 0.5
 MOST_NAMED = 3
-NARROWEST = 60
-"""Columns that sentences have at least."""
+BETWEEN = "  "
+"""Two columns."""
+NARROWEST_NAME = 12
+"""Columns that a name has at least beside its figures."""
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
@@ -50,8 +51,8 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
     for those, sentences in together.items():
         where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
         lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
-        lines += [line for sentence in sentences for line in _broken(sentence, 2, columns)]
-    return "\n".join([*lines, "", _last_line(checks)])
+        lines += [line for sentence in sentences for line in broken(sentence, 2, columns)]
+    return "\n".join([*lines, "", *broken(_last_line(checks), 0, columns)])
 
 
 def _table(
@@ -63,12 +64,15 @@ def _table(
     titles = ("", "take", "frames", "size", "rate", "keyframes", *markers)
     rows = [(_word(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)]
     widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
+    if columns is not None:
+        figures = sum(width + len(BETWEEN) for width in (widths[0], *widths[2:]))
+        widths[1] = max(min(widths[1], columns - figures), NARROWEST_NAME)
     said_once = set(shared)
-    lines = [_aligned(titles, widths)]
+    lines = _aligned(titles, widths)
     for check, row in zip(checks, rows, strict=True):
-        lines.append(_aligned(row, widths))
+        lines += _aligned(row, widths)
         own = [sentence for sentence in _marked(check) if sentence not in said_once]
-        lines += [line for sentence in own for line in _broken(sentence, widths[0] + 2, columns)]
+        lines += [line for sentence in own for line in broken(sentence, widths[0] + 2, columns)]
     return lines
 
 
@@ -89,26 +93,15 @@ def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
     return (frames, size, rate, posed, *(seen.get(name, "-") for name in markers))
 
 
-def _aligned(cells: Sequence[str], widths: Sequence[int]) -> str:
-    """Words to the left, numbers to the right."""
-    words = [f"{cell:{width}}" for cell, width in zip(cells[:2], widths[:2], strict=True)]
-    numbers = [f"{cell:>{width}}" for cell, width in zip(cells[2:], widths[2:], strict=True)]
-    return "  ".join([*words, *numbers]).rstrip()
-
-
-def _broken(sentence: str, indent: int, columns: int | None) -> list[str]:
-    """A sentence as lines that begin below its first word."""
-    if columns is None:
-        return [" " * indent + sentence]
-    begin = " " * indent
-    return wrap(
-        sentence,
-        max(columns, NARROWEST),
-        initial_indent=begin,
-        subsequent_indent=f"{begin}  ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
+    """Words to the left, numbers to the right; below a name that is too long for its column."""
+    first, name, *rest = cells
+    numbers = [f"{cell:>{width}}" for cell, width in zip(rest, widths[2:], strict=True)]
+    words = f"{first:{widths[0]}}"
+    if len(name) > widths[1]:
+        whole = BETWEEN.join([words, name])
+        return [whole, BETWEEN.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
+    return [BETWEEN.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
 
 
 def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
@@ -117,13 +110,12 @@ def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
 
 
 def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
-    """Sentences that many takes share, with these: a mistake in a shoot's description is one mistake."""
+    """Sentences that several takes share, with these: a mistake in a shoot's description is one mistake."""
     found: dict[str, list[str]] = {}
     for check in checks:
         for sentence in _marked(check):
             found.setdefault(sentence, []).append(check.name)
-    fewest = max(FEWEST_IN_COMMON, SHARE_IN_COMMON * len(checks))
-    return {sentence: takes for sentence, takes in found.items() if len(takes) >= fewest}
+    return {sentence: takes for sentence, takes in found.items() if len(takes) >= FEWEST_IN_COMMON}
 
 
 def _last_line(checks: Sequence[TakeCheck]) -> str:

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any
 
 from ...core.progress import Progress
+from .broken_lines import broken, terminal_columns
 from .farm_progress import FarmProgress, is_wanted
 from .line_parser import complain
 
@@ -30,6 +31,7 @@ class Console:
         self.seconds: dict[str, float] = {}
         """Time spent in each stage so far [s]."""
         self._stage = "Starting"
+        self._overall = ""
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
         if is_wanted() and not quiet and not as_json:
@@ -69,7 +71,8 @@ class Console:
     def overall(self, fraction: float, name: str) -> None:
         """Show how far many jobs are together, 0 to 1, and in a few words what they are doing."""
         if self._bar is not None:
-            self._bar.set_description(name, refresh=False)
+            self._bar.set_description(name, refresh=name != self._overall)
+            self._overall = name
             self._bar.update(max(0.0, 100.0 * fraction - self._bar.n))
 
     def take(self, text: str, error: str | None) -> None:
@@ -81,7 +84,7 @@ class Console:
             return
         if self._bar is not None:
             self._bar.clear()
-        self._write(" ".join(text.split("\n")))
+        self._write("\n".join(broken(" ".join(text.split("\n")), 0, terminal_columns())))
         if self._bar is not None:
             self._bar.refresh()
 

@@ -56,8 +56,8 @@ def convert(
 
     Raises:
         InputError: The take or the output folder is unusable.
-        ConversionError: No motion could be computed or written, no library fits, or there is no Blender to
-            write with.
+        ConversionError: No motion could be computed or written, no library fits a take that is not posed, or
+            there is no Blender to write with.
     """
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
@@ -134,7 +134,8 @@ def _convert_into(
     made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
     files = tuple(output / name for name in (*made, RECORD))
     aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
-    left_aside = (*_left_aside(description, settings), *(kept_note(*names) for names in aside.items()))
+    kept = (kept_note(*names) for names in aside.items())
+    left_aside = (*_left_aside(description, settings), *solved.unfit, *kept)
     conversion = Conversion(take, result, files, solved.choice, left_aside)
     write_record(place, conversion_record(conversion, inputs.digest, place, made, {BLEND: curves}))
     return conversion

@@ -55,18 +55,19 @@ def conversion_record(
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
     judged = run(review(take, conversion.reconstruction, frames))
     believed = judged.confidence[np.isfinite(judged.confidence)]
-    matched = None if conversion.choice is None else conversion.choice.match
+    match = None if conversion.choice is None else conversion.choice.match
+    matched = {keyframe.index for keyframe in take.keyframes if keyframe.matched is not None}
     return ConversionRecord(
         digest=digest,
         keymark=version(),
         take=take.name,
         method=motion.method,
-        library=None if matched is None else matched.library.identifier,
+        library=None if match is None else match.library.identifier,
         frames=len(motion.time_s),
         frame_start=motion.frame_start,
         fps=motion.fps,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
-        matched=tuple(k.index + motion.frame_start for k in take.keyframes if k.matched is not None),
+        matched=tuple(i + motion.frame_start for i in motion.keyframe_indices if i in matched),
         confidence=round(float(believed.mean()), 4) if len(believed) else None,
         weakest=round(float(np.percentile(believed, WEAKEST)), 4) if len(believed) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in judged.weak_frames),

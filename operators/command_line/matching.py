@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.errors import ConversionError
+from ...core.keyframe_file import FEWEST_KEYFRAMES
 from ...core.library.library import Library
 from ...core.library.shelf import find_library, shelved
 from ...core.library.texts import EVERY_LIBRARY
@@ -12,12 +13,12 @@ from ...core.match_take import LibraryChoice, match_take, with_matches
 from ...core.progress import Job, stretch
 from ...core.reconstruct import Reconstruction, read_footage, reconstruct
 from ...core.take import Take
-from .libraries import library_folders
+from .library.folders import library_folders
 
 NAMED = 3
 """So many libraries are named where none fits."""
-READING_SHARE, MATCHING_SHARE = 0.5, 0.6
-"""How far the whole job is when the footage is read, and when it is matched."""
+SHARES_WITH_ONE, SHARES_WITH_MORE = (0.3, 0.5), (0.1, 0.8)
+"""How far the whole job is when the footage is read, and when it is matched with one library or several."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,9 @@ class Solved:
     """With its matched keyframes, where there are some."""
     reconstruction: Reconstruction
     choice: LibraryChoice | None = None
-    """Which library was matched; None where none was asked for."""
+    """Which library was matched; None where none was asked for, or none fits."""
+    unfit: tuple[str, ...] = ()
+    """A sentence where no library fits and the posed keyframes count alone."""
 
 
 def chosen_libraries(wanted: str) -> tuple[Library, ...]:
@@ -54,19 +57,24 @@ def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float 
 
     Raises:
         InputError: The clip cannot be used.
-        ConversionError: No library fits the footage, or no motion could be computed.
+        ConversionError: No library fits the footage of a take that is not posed, or no motion could be
+            computed.
     """
     if not libraries:
         return Solved(take, (yield from reconstruct(take, method)))
-    reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
-    matching = match_take(take, reading, libraries, floor_m)
-    choice = yield from stretch(matching, READING_SHARE, MATCHING_SHARE)
+    read, matched = SHARES_WITH_ONE if len(libraries) == 1 else SHARES_WITH_MORE
+    reading = yield from stretch(read_footage(take), 0.0, read)
+    choice = yield from stretch(match_take(take, reading, libraries, floor_m), read, matched)
     if choice.match is None:
-        likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
-        raise ConversionError(f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written")
+        if len(take.keyframes) < FEWEST_KEYFRAMES:
+            likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
+            said = f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written"
+            raise ConversionError(said)
+        result = yield from stretch(reconstruct(take, method, reading), matched, 1.0)
+        return Solved(take, result, unfit=(f"{choice.reason}; only the posed keyframes count",))
     take = with_matches(take, choice.match)
     solving = reconstruct(take, method, choice.reading or reading)
-    return Solved(take, (yield from stretch(solving, MATCHING_SHARE, 1.0)), choice)
+    return Solved(take, (yield from stretch(solving, matched, 1.0)), choice)
 
 
 def match_summary(take: Take, choice: LibraryChoice) -> dict[str, Any]:

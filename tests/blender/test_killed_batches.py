@@ -111,9 +111,7 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
                 said, _ = process.communicate()
                 assert process.returncode == 0, said  # a lost worker costs its take one retry
             victims.append(victim)
-            if (
-                victim == "batch" and chance.random() < 0.5
-            ):  # its workers live on a little
+            if victim == "batch" and chance.random() < 0.5:  # its workers live on a little
                 assert to_the_end(shoot, out, "--jobs", "2") == undisturbed
         for record in out.rglob("conversion.json"):
             is_whole(record.parent)

@@ -13,9 +13,9 @@ from pathlib import Path
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
 from ....core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
-from ....core.shoot.open_shoot import open_shoot
+from ....core.shoot.finding.open_shoot import open_shoot
+from ....core.shoot.finding.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
-from ....core.shoot.take_names import check_output
 from ..console import Console, arguments_console
 from ..conversion import require_blender
 from ..line_parser import UsageError
@@ -67,8 +67,9 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
             tally.finish()
         counts = tally.counts
         ready = counts["converted"] + counts["unchanged"]
+        wrong = f", {counts['failed']} failed" if counts["failed"] else ""
         raise KeyboardInterrupt(
-            f"interrupted; {ready} of {len(jobs)} takes are converted, the same command converts the others"
+            f"interrupted; {ready} of {len(jobs)} takes are converted{wrong}; the same command goes on"
         ) from None
     except ConversionError:
         tally.finish()

@@ -7,10 +7,10 @@ from typing import Any
 
 from ....core.conversion_record import NAME as RECORD
 from ....core.files.json_file import write_whole
-from ....core.report.summary_page import summary_page
-from ....core.report.summary_text import way_to
-from ....core.report.summary_verdict import result
-from ....core.shoot.outcome import Outcome
+from ....core.report.summary.page import summary_page
+from ....core.report.summary.text import way_to
+from ....core.report.summary.verdict import result
+from ....core.shoot.outcomes.outcome import Outcome
 from ....core.shoot.shoot import Shoot
 from ....core.shoot.shoot_file import whole_way
 

@@ -10,10 +10,17 @@ from typing import Any
 
 from ....core.conversion_record import ConversionRecord, read_record
 from ....core.errors import InputError, KeymarkError
-from ....core.shoot.failures import CONVERSION, Failure, clear_failure, read_failures, write_failure
-from ....core.shoot.gathered import gather_outcomes, gathered
-from ....core.shoot.outcome import Outcome, Status
+from ....core.shoot.outcomes.failures import (
+    CONVERSION,
+    Failure,
+    clear_failure,
+    forget_gone_takes,
+    write_failure,
+)
+from ....core.shoot.outcomes.gathered import gather_outcomes, gathered
+from ....core.shoot.outcomes.outcome import Outcome, Status
 from ....core.shoot.shoot import Shoot
+from ..broken_lines import broken, terminal_columns
 from ..console import Console
 from .protocol import FAILED, Done, Job, Step
 from .share import Share
@@ -51,9 +58,7 @@ class Tally:
         """Of the summary."""
         self.wrong: list[str] = []
         """What of it all could not be written, in sentences."""
-        for failure in read_failures(output):
-            if failure.take not in self._outcomes:  # no longer of the shoot; nothing else would forget it
-                clear_failure(output, failure.take)
+        forget_gone_takes(output, shoot)
         self._show()
 
     @property
@@ -145,12 +150,15 @@ class Tally:
         failed = [outcome for outcome in self.outcomes if outcome.status is Status.FAILED]
         lines = [f"{_takes(len(self._names))}: {counts}."]
         if failed:
-            lines += ["Failed:", *(f"  {outcome.take}: {outcome.error}" for outcome in failed)]
-        return "\n".join([*lines, *(f"  {file}" for file in self.files)])
+            lines.append("Failed:")
+            for outcome in failed:
+                lines += broken(f"{outcome.take}: {outcome.error}", 2, terminal_columns())
+        return "\n".join([*lines, "Summary:", *(f"  {file}" for file in self.files)])
 
     def _line(self, outcome: Outcome) -> str:
         count = len(self._names) - self._counts[Status.WAITING]
-        line = f"[{count}/{len(self._names)}] {outcome.take:{self._width}}  {outcome.status.value}"
+        whole = str(len(self._names))
+        line = f"[{count:{len(whole)}}/{whole}] {outcome.take:{self._width}}  {outcome.status.value}"
         if outcome.status is Status.FAILED:
             return f"{line}: {outcome.error}"
         if outcome.record is not None and outcome.record.confidence is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from keymark.core.shoot.failures import read_failure
+from keymark.core.shoot.outcomes.failures import read_failure
 from keymark.operators.cli import main
 from keymark.operators.command_line.batch import command, supervisor
 from keymark.operators.command_line.batch.share import Share
@@ -178,7 +178,7 @@ def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
     studio.takes("a", "interrupt", "z")
     assert studio.batch(jobs=1) == 130
     said = capsys.readouterr()
-    assert "interrupted; 1 of 3 takes are converted" in said.err and len(said.err.splitlines()) == 1
+    assert said.err == "keymark: interrupted; 1 of 3 takes are converted; the same command goes on\n"
     statuses = {name: row["status"] for name, row in studio.summary.items()}
     assert statuses == {"a": "converted", "interrupt": "waiting", "z": "waiting"}
     for job in studio.told:

@@ -18,6 +18,7 @@ from keymark.operators.command_line.check_text import check_text
 
 FRAMES = 10
 TAKE = "day1/take01"
+LONG = "a/name that is much too long for the table"
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +150,7 @@ def few(shoot: Path) -> None:
 
 def elsewhere(shoot: Path) -> None:
     """A camera that was moved to the side."""
-    said_of_take(camera={"matrix_world": [[1, 0, 0, 3.0], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
+    said_of_take(camera={"matrix_world": [[1, 0, 0, 2.2], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
         shoot
     )
 
@@ -235,6 +236,25 @@ def test_sentences_are_broken_to_the_terminal() -> None:
     whole, broken = check_text(shoot, [check]).splitlines(), check_text(shoot, [check], 70).splitlines()
     assert max(map(len, whole)) > 200 and max(map(len, broken[:6])) <= 70
     assert broken[2].startswith("       ! a word") and broken[3].startswith("         word")
+
+
+def test_the_table_fits_the_terminal() -> None:
+    """A long name stands above its figures, which stay in their columns; elsewhere all is one line."""
+    shoot = Shoot(Path("shoot"), ())
+    checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", LONG)]
+    lines = check_text(shoot, checks, 60).splitlines()
+    assert max(map(len, lines)) <= 60
+    assert lines[2] == f"ready  {LONG}" and lines[3].strip().startswith("77")
+    assert lines[1].index("77") == lines[3].index("77")
+    assert len(check_text(shoot, checks).splitlines()) == 5
+
+
+def test_what_three_takes_share_is_said_once() -> None:
+    """However many others there are."""
+    shoot = Shoot(Path("shoot"), ())
+    checks = [TakeCheck(f"take{number}", ("no camera",) if number < 3 else (), ()) for number in range(9)]
+    said = check_text(shoot, checks)
+    assert said.count("! no camera") == 1 and "In 3 takes (take0, take1, take2):" in said
 
 
 def test_an_unusable_shoot_is_one_line_and_status_two(
