@@ -54,7 +54,9 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
         "to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were matched.",
         _convert,
     )
-    convert.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
+    convert.add_argument(
+        "take", metavar="TAKE", type=Path, help="folder that holds take.json, or a clip of a shoot"
+    )
     convert.add_argument(
         "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
     )

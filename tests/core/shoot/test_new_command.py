@@ -126,7 +126,7 @@ def test_nothing_is_replaced_and_what_is_no_shoot_is_refused(
     for place, sentence in (
         (folder, "never replaced"),
         (taken, "take.json of its own"),
-        (empty, "holds no take"),
+        (empty, "holds no clip; a clip is a video"),
         (tmp_path / "none", "no such folder"),
     ):
         assert new(place) == 2
