@@ -53,7 +53,7 @@ class KEYMARK_OT_apply_posture(bpy.types.Operator):
         with reported(self):
             from ..core.body.human import HUMAN
             from .bridge.actor_lengths import read_body
-            from .bridge.library_poses import named_posture, on_actor, standing_as
+            from .bridge.library.poses import named_posture, on_actor, standing_as
             from .bridge.pose import read_posture, write_posture
             from .scene.keyframe_editing import show_keyframes
 

@@ -76,7 +76,7 @@ class KEYMARK_OT_export_library(bpy.types.Operator):
         """Write it."""
         with reported(self):
             from ..core.errors import InputError
-            from .bridge.library_file import write_to
+            from .bridge.library.any_file import write_to
             from .scene.libraries import library_here
             from .scene.library_exchange import only_postures
 

@@ -23,7 +23,7 @@ class KEYMARK_OT_gather_library(bpy.types.Operator):
         """Put together what belongs together, but for what is listed already."""
         with reported(self):
             from ..core.errors import InputError
-            from .bridge.library_assets import assets_by_library, library_from_assets
+            from .bridge.library.pose_assets import assets_by_library, library_from_assets
             from .scene.libraries import add_library
 
             listed = context.scene.keymark.libraries

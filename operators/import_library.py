@@ -83,7 +83,7 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
 
     def _read(self) -> "tuple[Library, ...]":
         from ..core.errors import InputError
-        from .bridge.library_file import read_libraries
+        from .bridge.library.any_file import read_libraries
 
         if not self.filepath:
             raise InputError("no file is named to import; give filepath")

@@ -87,7 +87,7 @@ class InstallOperator(JobOperator):
     def start(self, scene: bpy.types.Scene) -> "Job[list[tuple[Library, list[Image]]]]":
         """Read what is there, and draw the pictures of what is to be installed."""
         from ..core.progress import Progress
-        from .bridge.library_assets import draw_pictures
+        from .bridge.library.pose_assets import draw_pictures
 
         there = _Installed(self._root(bpy.context))
         wanted = settled(self.libraries(bpy.context), there, self.existing)
@@ -105,7 +105,7 @@ class InstallOperator(JobOperator):
 
     def finish(self, scene: bpy.types.Scene, result: "list[tuple[Library, list[Image]]]") -> None:
         """Write the files."""
-        from .bridge.library_blend import write_library_blend
+        from .bridge.library.blend import write_library_blend
 
         root = self._root(bpy.context)
         for library, pictures in result:
@@ -225,7 +225,7 @@ class _Installed:
 
     def __call__(self, identifier: str) -> "Library | None":
         """The library of an identifier; None where it is not installed."""
-        from .bridge.library_blend import read_library_blend
+        from .bridge.library.blend import read_library_blend
 
         if identifier not in self._read:
             path = _file(self._root, identifier)

@@ -79,7 +79,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
             from ..core.library.library_file import library_from_json, library_to_json, write_library
             from ..core.library.shelf import library_path, shelved
             from ..core.library.texts import identifier_from
-            from .bridge.learning import library_from_action
+            from .bridge.library.learning import library_from_action
             from .scene.libraries import add_library
             from .scene.shelf import fill, folders, own_folder
 

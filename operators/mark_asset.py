@@ -24,8 +24,8 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the catalog to its file, then mark the Action."""
         with reported(self):
-            from .bridge.asset_catalogs import catalog_file, ensure_catalog
-            from .bridge.assets import AssetDetails, action_picture, mark_asset
+            from .bridge.assets.catalogs import catalog_file, ensure_catalog
+            from .bridge.assets.marking import AssetDetails, action_picture, mark_asset
 
             take = active_take(context.scene)
             settings, action = take.finish, take.finish.action or take.motion_action

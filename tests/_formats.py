@@ -17,7 +17,7 @@ from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.motion import Motion
 from keymark.core.motion_file import read_motion, write_motion
 from keymark.core.score import read_truth
-from keymark.core.shoot.take_list import read_take_list
+from keymark.core.shoot.finding.take_list import read_take_list
 from keymark.core.take import check_in_front, read_described, read_take
 
 FRAMES = 8

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from keymark.core.conversion_record import ConversionRecord
-from keymark.core.shoot.outcome import Outcome, Status
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
 
 FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
 RECORD = ConversionRecord(
@@ -23,7 +23,7 @@ RECORD = ConversionRecord(
     weakest=0.8,
     weak_frames=(87, 31),
     notes=("the frames are unevenly spaced in time",),
-    files=dict.fromkeys(FILES, ""),
+    files=dict.fromkeys(FILES, 64 * "0"),
 )
 
 

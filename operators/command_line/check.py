@@ -8,7 +8,7 @@ from functools import cache, partial
 from ...core.errors import ConversionError
 from ...core.progress import Job, Progress, run
 from ...core.shoot.conversion_settings import ConversionSettings
-from ...core.shoot.open_shoot import open_shoot
+from ...core.shoot.finding.open_shoot import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.shoot_check.odd_takes import with_odd_ones
 from ...core.shoot_check.take_check import TakeCheck, check_take

@@ -13,7 +13,7 @@ from ...core.match_take import LibraryChoice, match_take, with_matches
 from ...core.progress import Job, stretch
 from ...core.reconstruct import Reconstruction, read_footage, reconstruct
 from ...core.take import Take
-from .libraries import library_folders
+from .library.folders import library_folders
 
 NAMED = 3
 """So many libraries are named where none fits."""

@@ -12,15 +12,16 @@ from ...core.files.fields import listed
 from ...core.motion import Motion
 from ...core.motion_file import read_motion
 from ...core.progress import Progress
-from ...core.shoot.failures import Failure, read_failures
-from ...core.shoot.results import Result, Results, find_results
+from ...core.shoot.outcomes.failures import Failure, read_failures
+from ...core.shoot.outcomes.results import Result, Results, find_results
+from ...core.shoot.shoot_file import whole_way
 from .blender_silence import blender_silence
 from .broken_lines import broken, terminal_columns
 from .console import Console, arguments_console
 from .conversion import MOTION, require_blender
 
 if TYPE_CHECKING:
-    from ..bridge.motion_assets import MotionAsset
+    from ..bridge.assets.motions import MotionAsset
 
 ENDING = ".blend"
 LONGEST_NAME = 63
@@ -44,12 +45,12 @@ def merge_command(arguments: argparse.Namespace) -> None:
         console.stage("Looking for results")
         found = find_results(arguments.results)
         _check_place(arguments.output, found)
-        name = arguments.name or arguments.results.absolute().name
+        name = arguments.name or whole_way(arguments.results).name
         gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):
-            from ..bridge.asset_catalogs import NAME
-            from ..bridge.motion_assets import write_motion_library
+            from ..bridge.assets.catalogs import NAME
+            from ..bridge.assets.motions import write_motion_library
 
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
@@ -79,7 +80,7 @@ class Gathering:
         Raises:
             ConversionError: There is none.
         """
-        from ..bridge.motion_assets import MotionAsset
+        from ..bridge.assets.motions import MotionAsset
 
         names: set[str] = set()
         for index, result in enumerate(self._found.sound):

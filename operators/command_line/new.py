@@ -7,10 +7,10 @@ from pathlib import Path
 from ...core.errors import InputError
 from ...core.files.json_layout import write_readable_json
 from ...core.progress import run, within
-from ...core.shoot.clip_survey import ClipSurvey, survey_clips
-from ...core.shoot.find_takes import find_takes
+from ...core.shoot.finding.find_takes import find_takes
 from ...core.shoot.shoot_file import NAME, shoot_files
-from ...core.shoot.template import clip_lines, shoot_template
+from ...core.shoot.template.clip_survey import ClipSurvey, survey_clips
+from ...core.shoot.template.shoot_template import clip_lines, shoot_template
 from .console import arguments_console
 from .line_parser import program_name
 

@@ -62,7 +62,7 @@ def add_library(
         library: The library.
         actions: The pose assets of its postures, where the file has them already; made by default.
     """
-    from ..bridge.library_assets import add_assets
+    from ..bridge.library.pose_assets import add_assets
 
     settings = scene.keymark
     group = settings.libraries.add()
@@ -140,7 +140,7 @@ def postures_of(group: bpy.types.PropertyGroup) -> "dict[str, LibraryPosture]":
         InputError: An asset is not what Keymark has written.
     """
     from ...core.library.texts import told_apart
-    from ..bridge.library_assets import read_asset
+    from ..bridge.library.pose_assets import read_asset
 
     found: dict[str, LibraryPosture] = {}
     for entry in group.postures:
@@ -180,7 +180,7 @@ def show_again(group: bpy.types.PropertyGroup, drawn: Sequence[bpy.types.Propert
     """
     from ...core.body.kinematics import Body
     from ...core.report.posture_picture import posture_picture
-    from ..bridge.library_assets import show_asset
+    from ..bridge.library.pose_assets import show_asset
 
     postures = postures_of(group)
     library = _said(group, postures)
@@ -203,7 +203,7 @@ def details_changed(part: bpy.types.PropertyGroup) -> None:
     Raises:
         InputError: The properties are not what a library may hold.
     """
-    from ..bridge.library_assets import header_text, stamp_header
+    from ..bridge.library.pose_assets import header_text, stamp_header
 
     group = None if _silent else _library_with(part)
     if group is None:

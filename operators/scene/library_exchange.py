@@ -148,7 +148,7 @@ def only_postures(library: "Library", names: "Iterable[str]") -> "Library":
         InputError: None of its postures is named.
     """
     from ...core.library.library_file import library_from_json, library_to_json
-    from ..bridge.library_assets import present_motions
+    from ..bridge.library.pose_assets import present_motions
 
     wanted = {name: name for name in names}
     kept = tuple(posture for posture in library.postures if posture.name in wanted)

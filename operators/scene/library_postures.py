@@ -13,8 +13,8 @@ from ...core.library.library import LibraryMotion, LibraryPosture, MotionStep
 from ...core.library.library_fields import LONGEST_TAG, MOST_POSTURES
 from ...core.library.mirroring import with_mirrored
 from ...core.library.texts import LONGEST_NAME, text_fault, told_apart
-from ..bridge.library_assets import add_asset
-from ..bridge.library_poses import as_kept
+from ..bridge.library.pose_assets import add_asset
+from ..bridge.library.poses import as_kept
 from ..bridge.posture_curves import rewrite_posture_curves
 from .libraries import (
     active_posture,

@@ -195,7 +195,7 @@ def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
     assert worker.stdin is not None and worker.stdout is not None
     assert b"ready" in worker.stdout.readline()
     from keymark.core.shoot.conversion_settings import NOTHING_CHOSEN
-    from keymark.core.shoot.find_takes import find_takes
+    from keymark.core.shoot.finding.find_takes import find_takes
     from keymark.operators.command_line.batch.protocol import Job
 
     take = find_takes(shoot).takes[0]

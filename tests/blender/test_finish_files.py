@@ -13,7 +13,7 @@ from keymark.core.motion import Motion
 from keymark.core.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
+from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.running.say import warn_if_outdated
 from keymark.operators.scene.export_formats import FORMATS, Format

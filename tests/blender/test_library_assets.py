@@ -16,16 +16,16 @@ from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import read_library, write_library
-from keymark.operators.bridge import library_assets
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.library_assets import (
+from keymark.operators.bridge.library import pose_assets
+from keymark.operators.bridge.library.blend import read_library_blend, write_library_blend
+from keymark.operators.bridge.library.pose_assets import (
     HEADER,
     POSTURE,
     add_assets,
     library_from_assets,
     read_asset,
 )
-from keymark.operators.bridge.library_blend import read_library_blend, write_library_blend
 from keymark.operators.bridge.object_space import evaluated
 from keymark.operators.bridge.pose import read_posture, write_posture
 from keymark.operators.bridge.posture_curves import channel_values
@@ -276,7 +276,7 @@ def test_the_header_that_all_assets_share_is_read_once(
         read.append(text)
         return parse_json(text, where)
 
-    library_assets._parsed.cache_clear()
-    monkeypatch.setattr(library_assets, "parse_json", parse)
+    pose_assets._parsed.cache_clear()
+    monkeypatch.setattr(pose_assets, "parse_json", parse)
     assert len(library_from_assets(actions)[0].postures) == 4
     assert read.count(actions[0][HEADER]) == 1

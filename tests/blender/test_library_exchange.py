@@ -11,7 +11,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import write_library
 from keymark.core.library.shelf import shelved
-from keymark.operators.bridge.library_blend import read_library_blend, write_library_blend
+from keymark.operators.bridge.library.blend import read_library_blend, write_library_blend
 from keymark.operators.scene import shelf
 from keymark.operators.scene.libraries import add_library
 from keymark.operators.scene.library_exchange import on_shelf, settled

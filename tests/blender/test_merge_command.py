@@ -14,10 +14,10 @@ from keymark.core.conversion_record import ConversionRecord, write_record
 from keymark.core.files.digest import content_digest
 from keymark.core.motion import Motion
 from keymark.core.motion_file import write_motion
-from keymark.core.shoot.failures import Failure, write_failure
+from keymark.core.shoot.outcomes.failures import Failure, write_failure
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.asset_catalogs import NAME as CATALOGS
+from keymark.operators.bridge.assets.catalogs import NAME as CATALOGS
 from keymark.operators.cli import main
 
 RECORD = ConversionRecord(

@@ -8,8 +8,8 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.operators.bridge.library_assets import add_assets
-from keymark.operators.bridge.library_blend import read_library_blend
+from keymark.operators.bridge.library.blend import read_library_blend
+from keymark.operators.bridge.library.pose_assets import add_assets
 
 RandomPosture = Callable[[int], Posture]
 

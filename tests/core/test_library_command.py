@@ -16,7 +16,7 @@ from keymark.core.library.library_file import read_library, write_library
 from keymark.core.motion import Motion
 from keymark.core.motion_file import write_motion
 from keymark.operators.cli import main
-from keymark.operators.command_line import libraries
+from keymark.operators.command_line.library import folders
 
 FRAMES = 40
 
@@ -28,8 +28,8 @@ def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     write_library(folder / "any name.json", small_library())
     (folder / "broken.json").write_text("{", encoding="utf-8")
-    monkeypatch.setenv(libraries.VARIABLE, str(folder))
-    monkeypatch.setattr(libraries, "SHIPPED", tmp_path / "nothing")
+    monkeypatch.setenv(folders.VARIABLE, str(folder))
+    monkeypatch.setattr(folders, "SHIPPED", tmp_path / "nothing")
     return folder
 
 

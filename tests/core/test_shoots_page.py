@@ -73,8 +73,8 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
 
 def test_the_table_names_every_field(page: str) -> None:
     """Those of `shoot.json` by name, and no other ones as its own."""
+    from keymark.core.shoot.finding.take_list import KNOWN as LISTED
     from keymark.core.shoot.shoot_file import KNOWN
-    from keymark.core.shoot.take_list import KNOWN as LISTED
 
     fields = re.findall(r"^\| `([\w$]+)` \|", page, flags=re.MULTILINE)
     assert set(fields) == {*KNOWN, *LISTED} - {"take"}

@@ -12,9 +12,9 @@ from pathlib import Path
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
 from ....core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
-from ....core.shoot.open_shoot import open_shoot
+from ....core.shoot.finding.open_shoot import open_shoot
+from ....core.shoot.finding.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
-from ....core.shoot.take_names import check_output
 from ..console import Console, arguments_console
 from ..conversion import require_blender
 from ..line_parser import UsageError

@@ -80,7 +80,7 @@ class Done:
     error: str | None = None
     """Why it failed, in a sentence."""
     kind: str | None = None
-    """Of failure, see `core/shoot/failures`."""
+    """Of failure, see `core/shoot/outcomes/failures`."""
     memory_bytes: int | None = None
     """What the worker holds now; None where the system does not tell."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from ....core.errors import ConversionError
-from ....core.shoot.failures import CRASH
+from ....core.shoot.outcomes.failures import CRASH
 from .protocol import BUSY, FAILED, Done, Job, Step
 from .worker_process import WorkerLostError, WorkerProcess
 

@@ -10,9 +10,15 @@ from typing import Any
 
 from ....core.conversion_record import ConversionRecord, read_record
 from ....core.errors import InputError, KeymarkError
-from ....core.shoot.failures import CONVERSION, Failure, clear_failure, read_failures, write_failure
-from ....core.shoot.gathered import gather_outcomes, gathered
-from ....core.shoot.outcome import Outcome, Status
+from ....core.shoot.outcomes.failures import (
+    CONVERSION,
+    Failure,
+    clear_failure,
+    forget_gone_takes,
+    write_failure,
+)
+from ....core.shoot.outcomes.gathered import gather_outcomes, gathered
+from ....core.shoot.outcomes.outcome import Outcome, Status
 from ....core.shoot.shoot import Shoot
 from ..broken_lines import broken, terminal_columns
 from ..console import Console
@@ -52,9 +58,7 @@ class Tally:
         """Of the summary."""
         self.wrong: list[str] = []
         """What of it all could not be written, in sentences."""
-        for failure in read_failures(output):
-            if failure.take not in self._outcomes:  # no longer of the shoot; nothing else would forget it
-                clear_failure(output, failure.take)
+        forget_gone_takes(output, shoot)
         self._show()
 
     @property

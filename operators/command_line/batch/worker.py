@@ -12,7 +12,7 @@ import cv2
 
 from ....core.errors import BusyError, InputError, KeymarkError
 from ....core.progress import Progress
-from ....core.shoot.failures import CONVERSION, CRASH, INPUT
+from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
 from ..conversion import convert, convert_if_changed

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from keymark.core.shoot.failures import read_failure
+from keymark.core.shoot.outcomes.failures import read_failure
 from keymark.operators.cli import main
 from keymark.operators.command_line.batch import command, supervisor
 from keymark.operators.command_line.batch.share import Share

@@ -15,7 +15,7 @@ import pytest
 from _outcomes import converted, failed, waiting
 from keymark.core.report.canvas import write_jpg
 from keymark.core.report.film_strip import SIZE
-from keymark.core.report.summary_page import summary_page
+from keymark.core.report.summary.page import summary_page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 BROWSER = next((found for found in map(shutil.which, BROWSERS) if found), None)

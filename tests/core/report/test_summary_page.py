@@ -13,11 +13,11 @@ from _page import Page
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.conversion_record import ConversionRecord
-from keymark.core.report.summary_page import summary_page
-from keymark.core.report.summary_style import DARK, LIGHT
-from keymark.core.report.summary_text import LONGEST, duration, percent, visible
-from keymark.core.report.summary_verdict import Verdict, sections, verdict
-from keymark.core.shoot.outcome import Outcome, Status
+from keymark.core.report.summary.page import summary_page
+from keymark.core.report.summary.style import DARK, LIGHT
+from keymark.core.report.summary.text import LONGEST, duration, percent, visible
+from keymark.core.report.summary.verdict import Verdict, sections, verdict
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")
@@ -199,7 +199,7 @@ def test_takes_that_need_a_person_come_first() -> None:
 
 def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest.MonkeyPatch) -> None:
     """What needs a person is shown first; how many are not is said where they would stand."""
-    monkeypatch.setattr("keymark.core.report.summary_page.MOST_ROWS", 3)
+    monkeypatch.setattr("keymark.core.report.summary.page.MOST_ROWS", 3)
     fair = [converted(OUTPUT, f"fair {number}", confidence=0.6) for number in range(4)]
     found = page(*fair, failed(OUTPUT, "z", "no clip"), converted(OUTPUT, "good"))
     assert [row.text[:6].strip() for row in found.rows()] == ["zfaile", "fair 0", "fair 1"]

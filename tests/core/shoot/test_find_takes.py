@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.shoot import find_takes as finding
-from keymark.core.shoot import take_list
-from keymark.core.shoot.find_takes import find_takes
-from keymark.core.shoot.open_shoot import open_shoot
-from keymark.core.shoot.take_names import check_output
+from keymark.core.shoot.finding import find_takes as finding
+from keymark.core.shoot.finding import take_list
+from keymark.core.shoot.finding.find_takes import find_takes
+from keymark.core.shoot.finding.open_shoot import open_shoot
+from keymark.core.shoot.finding.take_names import check_output
 
 
 def make(folder: Path, *ways: str) -> Path:

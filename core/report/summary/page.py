@@ -1,0 +1,136 @@
+"""The page that a supervisor opens in the morning: what converted, what failed and why, what needs a hand.
+
+It is one file with no other needed but the pictures it shows, which lie beside it. It says everything
+without its script, which only searches and sorts.
+"""
+
+import base64
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from ...shoot.outcomes.outcome import Outcome, Status
+from .head import counts, first_things
+from .row import COLUMNS, SIGNS, kind, row
+from .script import SCRIPT
+from .style import STYLE
+from .text import counted, escaped, isolated, percent
+from .verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
+
+MOST_ROWS = 5000
+"""A browser takes long to lay out more."""
+HEADINGS = {
+    Verdict.FAILED: ("Failed", "The sentence says what would be valid."),
+    Verdict.POOR: ("Poor", "Pose the frames that are named and convert again."),
+    Verdict.FAIR: ("Fair", "Look at the frames that are named; a few keyframes there make them good."),
+    Verdict.UNJUDGED: ("Not judged", "The method does not say how sure it is."),
+    Verdict.GOOD: ("Good", "Usable as they are; the frames that are named would gain most from a keyframe."),
+    Verdict.WAITING: ("Waiting", "Their turn has not come, or the batch was interrupted: run it again."),
+}
+
+
+def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
+    """A batch as one HTML page.
+
+    Args:
+        title: What people call the shoot.
+        outcomes: What became of each take.
+        output: Where the page will lie; links are relative to it.
+    """
+    named = sorted(outcomes, key=lambda outcome: outcome.take)
+    number = {outcome.take: place for place, outcome in enumerate(named, 1)}
+    found = sections(outcomes)
+    bodies, room = [], MOST_ROWS
+    for verdict, those in found.items():
+        bodies.append(_section(verdict, those[:room], len(those), output, number))
+        room -= min(room, len(those))
+    heads = "".join(f'<th role="columnheader" scope="col">{name}</th>' for name in COLUMNS)
+    parts = (
+        f"<header><h1>{isolated(title)}</h1>",
+        counts(outcomes),
+        first_things(found, number),
+        "</header>",
+        _tools(found),
+        '<main><table role="table"><caption>Takes, those that need a person first</caption>',
+        f'<thead role="rowgroup"><tr role="row">{heads}</tr></thead>',
+        *bodies,
+        "</table></main>",
+        _legend(),
+        _by_name(named[:MOST_ROWS], number),
+    )
+    return _document(f"{title}: {counted(len(outcomes), 'take')}", "\n".join(parts))
+
+
+def _document(title: str, body: str) -> str:
+    allowed = (
+        "default-src 'none'; img-src 'self' file:; base-uri 'none'; form-action 'none'; "
+        f"style-src {_source(STYLE)}; script-src {_source(SCRIPT)}"
+    )
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{allowed}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n<meta name="referrer" content="no-referrer">\n'
+        f"<title>{escaped(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
+        f"{body}\n<script>{SCRIPT}</script>\n</body>\n</html>\n"
+    )
+
+
+def _source(text: str) -> str:
+    """What lets a browser take this very style or script, and no other."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _section(
+    verdict: Verdict, outcomes: Sequence[Outcome], count: int, output: Path, number: Mapping[str, int]
+) -> str:
+    word, advice = HEADINGS[verdict]
+    if len(outcomes) < count:
+        advice += f" {count - len(outcomes)} of them are in summary.jsonl alone."
+    rows = "\n".join(row(outcome, output, number[outcome.take]) for outcome in outcomes)
+    return (
+        f'<tbody role="rowgroup" id="{kind(verdict)}"><tr role="row" class="section">'
+        f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind(verdict)}">'
+        f'<span aria-hidden="true">{SIGNS[verdict]}</span> {word} <span class="count">{count}</span>'
+        f"</h2> <small>{advice}</small></th></tr>\n{rows}</tbody>"
+    )
+
+
+def _tools(found: dict[Verdict, list[Outcome]]) -> str:
+    """Ways into the table: links that always work, and a search that the script brings to life."""
+    links = "".join(
+        f'<a class="{kind(verdict)}" href="#{kind(verdict)}">'
+        f'<span aria-hidden="true">{SIGNS[verdict]}</span> {len(those)} {verdict.value}</a>'
+        for verdict, those in found.items()
+    )
+    return (
+        f'<nav aria-label="Sections">{links}<a href="#names">all by name</a>'
+        '<form id="tools" role="search" hidden><label>Find <input id="find" type="search" '
+        'placeholder="name, note, library ..." autocomplete="off"></label><label>Order <select id="order">'
+        '<option value="need">by need</option><option value="name">by name</option>'
+        '<option value="confidence">by confidence</option></select></label>'
+        '<output id="found" aria-live="polite"></output></form></nav>'
+    )
+
+
+def _legend() -> str:
+    good, fair, weakest = (percent(share) for share in (GOOD, FAIR, GOOD_WEAKEST))
+    return (
+        '<section id="legend"><h2>How to read this page</h2><p>Confidence is the expected share of the '
+        "body\u2019s joints that lie within a fortieth of the performer\u2019s height of their true places, "
+        "as a mean over all frames; the mark on the bar is what one frame in twenty falls short of. "
+        f"<b>Good</b> is a mean of at least {good} and a weakest twentieth of at least {weakest}, "
+        f"<b>fair</b> a mean of at least {fair}, <b>poor</b> anything below. Frames worth a keyframe are "
+        "scene frames, the one that helps most first. On the pictures the performer\u2019s left limbs are "
+        "solid and blue, the right ones hollow and red; a click shows more of them, larger.</p></section>"
+    )
+
+
+def _by_name(named: Sequence[Outcome], number: dict[str, int]) -> str:
+    items = "".join(
+        f'<li><a href="#take-{number[outcome.take]}">{isolated(outcome.take)}</a>'
+        + ("" if outcome.status is Status.CONVERTED else f" <small>{outcome.status.value}</small>")
+        + "</li>"
+        for outcome in named
+    )
+    return f'<section id="names"><h2>All takes by name</h2><ol>{items}</ol></section>'

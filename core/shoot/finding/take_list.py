@@ -1,0 +1,80 @@
+"""A list of takes, JSON Lines: an object a line with `take`, its path, and any field of `take.json`."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+from ...errors import InputError
+from ...files.fields import Fields
+from ...files.inherited import COMMENT
+from ...files.inside import check_links, inside_path
+from ...files.json_file import parse_json, shown
+from ...files.ordinary import ordinary_size
+from ..description import clip_name
+from ..shoot import Shoot, ShootTake
+from ..shoot_file import SETTINGS, SHARED
+from .find_takes import MOST_TAKES
+from .take_names import check_names, name_of_way
+
+ENDING = ".jsonl"
+LARGEST_BYTES = 64 * 2**20
+LONGEST_LINE_BYTES = 2**20
+TAKE = "take"
+TAKE_VALID = "a path inside the list's folder, as in day1/clip01.mp4"
+KNOWN = (TAKE, "clip", "frame_count", "keyframes", *SHARED, *SETTINGS)
+
+
+def read_take_list(path: Path) -> Shoot:
+    """Read a list of takes; what its fields hold is checked where each take uses them.
+
+    Args:
+        path: The list, UTF-8. Takes are relative to its folder, paths in a take's own fields to the take's.
+
+    Raises:
+        InputError: It cannot be read, is too large, holds no take, or a line is no object or has an unknown
+            field, a path outside the folder, or the name of another.
+    """
+    takes: list[ShootTake] = []
+    for number, line in enumerate(_lines(path), 1):
+        if not line.strip():
+            continue
+        takes.append(_take(path, f"{path}, line {number}", line))
+        if len(takes) > MOST_TAKES:
+            raise InputError(f"{path}: lists more than {MOST_TAKES} takes; make several lists of it")
+    if not takes:
+        raise InputError(f'{path}: lists no take; it must hold lines such as {{"take": "day1/clip01.mp4"}}')
+    check_names(path, takes)
+    return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
+
+
+def _lines(path: Path) -> list[str]:
+    valid = "it must be a list of takes in UTF-8, one JSON object a line"
+    ordinary_size(path, "a list of takes in UTF-8, one JSON object a line")
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_BYTES + 1)
+        if len(content) > LARGEST_BYTES:
+            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; {valid}")
+        lines = content.decode("utf-8-sig").split("\n")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); {valid}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: cannot be read ({error}); {valid}") from error
+    return lines
+
+
+def _take(path: Path, where: str, line: str) -> ShootTake:
+    if len(line) > LONGEST_LINE_BYTES:
+        raise InputError(f"{where}: has {len(line)} characters; at most {LONGEST_LINE_BYTES} are read")
+    values: dict[str, Any] = parse_json(line, where)
+    fields = Fields(values, where)
+    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
+    place = inside_path(fields, TAKE, path.parent, TAKE_VALID)
+    check_links([place], [path.parent])
+    way = place.relative_to(path.parent)
+    if not way.parts:
+        raise InputError(f"{where}: {TAKE} is {shown(values[TAKE])}; it must be {TAKE_VALID}")
+    if os.path.isfile(place):  # which is false for a name no file can have, too
+        way = way.with_name(clip_name(place))
+    nearest = {name: value for name, value in values.items() if name != TAKE}
+    return ShootTake(name_of_way(way), place, nearest, where)

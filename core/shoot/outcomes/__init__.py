@@ -1,0 +1,1 @@
+"""What became of takes: kept beside the results, and found there again."""

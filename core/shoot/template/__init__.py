@@ -1,0 +1,1 @@
+"""A new description of a shoot, from what its clips tell."""

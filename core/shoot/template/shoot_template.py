@@ -1,0 +1,164 @@
+"""A new `shoot.json`: what clips tell filled in, and comments on what a person must say."""
+
+from typing import Any
+
+from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
+from ..shoot_file import SCHEMA_VERSION
+from .clip_survey import ClipSurvey
+
+MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+"""The five that Keymark is made for."""
+MOST_NAMED = 5
+AUTO = "auto"
+
+
+def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
+    """The fields of a new `shoot.json`, in the order they are read in.
+
+    Args:
+        survey: What the clips tell; at least one can be opened.
+        below_another: Whether a folder above has a `shoot.json`, from which this one then inherits.
+    """
+    fields: dict[str, Any] = {
+        "//": [
+            "Describes all clips in this folder and below. Fill in every null, look at what is called a",
+            "guess, then run keymark check on the folder: it says what is missing or seems wrong.",
+            "What begins with // is a comment. What holds for some clips only goes into a shoot.json in",
+            "their folder, or into NAME.take.json beside the clip NAME: the nearest file counts.",
+        ],
+        "//clips": clip_lines(survey),
+        "schema_version": SCHEMA_VERSION,
+    }
+    if not below_another:
+        fields |= {"//root": "nothing above this folder is inherited", "root": True}
+    fields |= _rate(survey)
+    fields["camera"] = _camera(survey)
+    fields["markers"] = _markers(survey)
+    fields["actor"] = {
+        "//height_m": "the performer's height in metres; lengths measured one by one (segments_m) are better",
+        "height_m": None,
+    }
+    return fields | _library(survey)
+
+
+def clip_lines(survey: ClipSurvey) -> list[str]:
+    """What the clips have in common and where they differ, one line each."""
+    lines = [f"{_count(len(survey.clips))}, {_time(survey)}"]
+    lines += [
+        f"{_count(count)} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
+        for (width, height), count in survey.sizes.most_common()
+    ]
+    lines += [
+        f"{_count(count)} {_at(fps)}{_examples(survey, fps=fps)}" for fps, count in survey.rates.most_common()
+    ]
+    if survey.described:
+        lines.append(f"described already, which counts before what stands here: {_named(survey.described)}")
+    lines += [f"cannot be read: {sentence}" for sentence in survey.unreadable[:MOST_NAMED]]
+    if len(survey.unreadable) > MOST_NAMED:
+        lines.append(f"and {len(survey.unreadable) - MOST_NAMED} more cannot be read")
+    return lines
+
+
+def _rate(survey: ClipSurvey) -> dict[str, Any]:
+    rates = {fps for fps in survey.rates if fps is not None}
+    images = [clip.name for clip in survey.clips if clip.fps is None]
+    if len(rates) == 1:
+        rate = rates.pop()
+        return {"fps": int(rate) if rate.is_integer() else rate}
+    if not rates:
+        return {"//fps": "frames per second, which images cannot tell", "fps": None}
+    told = "left out, for the clips differ: each tells its own"
+    if not images:
+        return {"//fps": told}
+    return {"//fps": f"{told}, but for images, beside which NAME.take.json must say it: {_named(images)}"}
+
+
+def _camera(survey: ClipSurvey) -> dict[str, Any]:
+    size = survey.sizes.most_common(1)[0][0]
+    lens = guess_lens(size)
+    distance = -first_stand(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
+    said: dict[str, Any] = {
+        "//lens_mm": f"a guess, as of {lens.reason}; state the one you filmed with, and its sensor's width",
+        "lens_mm": lens.lens_mm,
+        "sensor_width_mm": lens.sensor_width_mm,
+    }
+    if len(survey.sizes) == 1:
+        said["resolution"] = list(size)
+    else:
+        said["//resolution"] = [
+            "left out, for the clips differ: each tells its own; say so nearer to those that were filmed",
+            "with another lens or from elsewhere",
+        ]
+    said["//matrix_world"] = [
+        "where the camera stood, in metres, as four rows. Blender's Python console tells that of a camera:",
+        "[list(row) for row in bpy.context.scene.camera.matrix_world]",
+        "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
+        "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",
+        f"With this lens a whole person fits the picture from D = {distance:.1f} on at H = {EYE_HEIGHT_M:g}.",
+    ]
+    said["matrix_world"] = None
+    return said
+
+
+def _markers(survey: ClipSurvey) -> dict[str, Any]:
+    said: dict[str, Any] = {
+        "//": [
+            "red, green and blue from 0 to 255, as an eyedropper gives them on the marker in a clip; .L is",
+            "the performer's own left. Take out markers that were not worn.",
+        ]
+    }
+    if survey.colours:
+        said["//seen"] = [
+            "Strong colours that some of the clips show; which is on which limb is for you to say:",
+            *(
+                f"{colour.hue} {list(colour.color_srgb)}, {100.0 * colour.share:.2f} % of the picture"
+                for colour in survey.colours
+            ),
+        ]
+    return said | {name: {"color_srgb": None} for name in MARKERS}
+
+
+def _library(survey: ClipSurvey) -> dict[str, Any]:
+    if not survey.unposed:
+        return {}
+    missing = "no clip has" if survey.unposed == len(survey.clips) else f"{survey.unposed} clips have no"
+    return {
+        "//library": [
+            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): these are matched with a",
+            "keyframe library, auto for the likeliest or a name out of keymark library list. Posed keyframes",
+            "are more exact; with a library some are enough.",
+        ],
+        "library": AUTO,
+        "//floor_m": "height of the floor where the matrix above says how high the camera stood",
+        "floor_m": 0.0,
+    }
+
+
+def _count(count: int) -> str:
+    return "1 clip" if count == 1 else f"{count} clips"
+
+
+def _at(fps: float | None) -> str:
+    return "of images, whose rate nothing tells" if fps is None else f"at {fps:g} frames per second"
+
+
+def _time(survey: ClipSurvey) -> str:
+    frames = sum(clip.frames for clip in survey.clips)
+    return f"{frames} frames in all" if frames != 1 else "1 frame in all"
+
+
+def _examples(
+    survey: ClipSurvey, size: tuple[int, int] | None = None, fps: float | None | bool = False
+) -> str:
+    """Which clips differ from most, by name."""
+    names = [
+        clip.name
+        for clip in survey.clips
+        if (size is None or clip.size == size) and (fps is False or clip.fps == fps)
+    ]
+    return f": {_named(names)}" if 2 * len(names) < len(survey.clips) else ""
+
+
+def _named(names: tuple[str, ...] | list[str]) -> str:
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + more

@@ -1,0 +1,118 @@
+"""Blender's file of asset catalogs, `blender_assets.cats.txt`: a catalog found there, or added.
+
+Each line is `UUID:path/of/catalog:simple name`; lines that are empty or begin with `#` say nothing.
+"""
+
+import uuid
+from pathlib import Path
+
+import bpy
+
+from ....core.errors import InputError
+from ....core.files.json_file import write_whole
+
+NAME = "blender_assets.cats.txt"
+VERSION = "VERSION 1"
+HEADER = (
+    "# This is an Asset Catalog Definition file for Blender.\n#\n"
+    "# Empty lines and lines starting with `#` will be ignored.\n"
+    "# The first non-ignored line should be the version indicator.\n"
+    '# Other lines are of the format "UUID:catalog/path/for/assets:simple catalog name"\n\n'
+    f"{VERSION}\n\n"
+)
+NAMESPACE = uuid.UUID("5b1f3c0e-6a52-4a43-9b57-3d1f6f4c2a90")
+"""The same path gets the same identifier in every file, so that libraries can be joined."""
+
+
+def catalog_file() -> Path:
+    """Where Blender looks for the open file's catalogs: at the root of its asset library, or beside it.
+
+    Raises:
+        InputError: The .blend has never been saved.
+    """
+    if not bpy.data.filepath:
+        raise InputError(
+            "the asset catalog is kept beside the .blend, which has not been saved; save it first, "
+            "or leave Catalog empty"
+        )
+    folder = Path(bpy.data.filepath).parent
+    for library in bpy.context.preferences.filepaths.asset_libraries:
+        root = Path(bpy.path.abspath(library.path)) if library.path else None
+        if root is not None and root in (folder, *folder.parents):
+            return root / NAME
+    return folder / NAME
+
+
+def catalog_identifier(catalog: str) -> str:
+    """The UUID that a catalog gets in a file that does not have it yet."""
+    return str(uuid.uuid5(NAMESPACE, _clean(catalog)))
+
+
+def ensure_catalog(file: Path, catalog: str) -> str:
+    """The identifier of a catalog; it is added to the file where it is missing, all else there is kept.
+
+    Args:
+        file: The file of catalogs; made where it is missing.
+        catalog: The catalog's path, with slashes, such as `Keymark/Walking`.
+
+    Returns:
+        Its UUID.
+
+    Raises:
+        InputError: The catalog's path or the file is unusable.
+        ConversionError: The file cannot be written.
+    """
+    content = read_catalogs(file)
+    known = _catalogs(content)
+    names = _clean(catalog).split("/")
+    paths = ["/".join(names[: depth + 1]) for depth in range(len(names))]
+    if paths[-1] not in known:
+        # Parents get lines of their own: without them Blender calls the file changed as soon as it is read.
+        missing = [path for path in paths if path not in known]
+        known |= {path: catalog_identifier(path) for path in missing}
+        start = content.rstrip("\n") + "\n" if content.strip() else HEADER
+        lines = [f"{known[path]}:{path}:{path.replace('/', '-')}\n" for path in missing]
+        text = start + "".join(lines)
+        write_whole(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+    return known[paths[-1]]
+
+
+def _catalogs(content: str) -> dict[str, str]:
+    """Identifiers of the catalogs in a file's text, by path; where one stands twice, the first."""
+    found: dict[str, str] = {}
+    for line in content.splitlines():
+        parts = line.strip().split(":", 2)
+        if not line.startswith("#") and len(parts) > 1:
+            found.setdefault(parts[1], parts[0])
+    return found
+
+
+def _clean(catalog: str) -> str:
+    parts = [part.strip() for part in catalog.replace("\\", "/").split("/")]
+    path = "/".join(part for part in parts if part)
+    if not path or ":" in path or any(ord(letter) < 32 for letter in path):
+        raise InputError(
+            f"catalog '{catalog}' is not a path of names with slashes between them, without colons, "
+            "such as Keymark/Walking"
+        )
+    return path
+
+
+def read_catalogs(file: Path) -> str:
+    """The text of a file of catalogs; empty where there is none.
+
+    Raises:
+        InputError: It cannot be read, or is of another kind.
+    """
+    try:
+        content = file.read_text("utf-8")
+    except FileNotFoundError:
+        return ""
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: cannot be read as a file of asset catalogs ({error})") from error
+    meant = [line for line in content.splitlines() if line.strip() and not line.startswith("#")]
+    if meant and meant[0].strip() != VERSION:
+        raise InputError(
+            f"{file}: begins with '{meant[0][:40]}'; a file of asset catalogs begins with {VERSION}"
+        )
+    return content

@@ -1,0 +1,85 @@
+"""Actions as assets: what an asset browser shows of them, and by which it finds them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import cv2
+import numpy as np
+
+from ....core.body.human import HUMAN
+from ....core.motion import Motion
+from ....core.progress import run, within
+from ....core.report.canvas import Image
+from ....core.report.thumbnail import thumbnail
+from ..actor_lengths import read_body
+from ..final_motion import motion_frames, read_values, shown_postures
+from ..rig import read_rig
+
+DRAWN_FRAMES = 25
+"""Frames over the whole motion that the picture is made from."""
+
+
+@dataclass(frozen=True)
+class AssetDetails:
+    """What people write about an asset."""
+
+    catalog: str
+    """UUID of its catalog; empty for none."""
+    tags: Sequence[str]
+    author: str
+    license: str
+    description: str
+
+
+def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None) -> None:
+    """Make a data-block an asset, or change what is said of one.
+
+    Args:
+        asset: The data-block, an Action for example.
+        details: What to say of it; its tags replace those it has.
+        picture: (S, S, 3) blue, green, red: its preview; None keeps the one it has.
+    """
+    asset.asset_mark()
+    data = asset.asset_data
+    if details.catalog:
+        data.catalog_id = details.catalog
+    data.author, data.license = details.author, details.license
+    data.description = details.description
+    for tag in list(data.tags):
+        data.tags.remove(tag)
+    for name in details.tags:
+        data.tags.new(name, skip_if_exists=True)
+    if picture is not None:
+        _set_preview(asset, picture)
+
+
+def _set_preview(asset: bpy.types.ID, picture: Image) -> None:
+    """Blender keeps previews from the bottom row up, red, green, blue, alpha from 0 to 1."""
+    rgba = cv2.cvtColor(picture, cv2.COLOR_BGR2RGBA)[::-1].astype(np.float32) / 255.0
+    preview = asset.preview_ensure()
+    preview.image_size = (picture.shape[1], picture.shape[0])
+    preview.image_pixels_float.foreach_set(np.ascontiguousarray(rgba).ravel())
+
+
+def action_picture(
+    scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action
+) -> Image:
+    """A small picture of the motion an Action holds for an actor, (256, 256, 3) blue, green, red.
+
+    Raises:
+        InputError: The Action has no motion of the actor, or the armature is not an actor's.
+    """
+    body = read_body(armature_object, HUMAN)
+    rig = read_rig(armature_object, body)
+    every = motion_frames(armature_object, action, body)
+    frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
+    values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
+    posture = shown_postures(armature_object, rig, rig.show(values), body)
+    points = body.points(body.pose(posture))
+    unknown = np.full((*points.shape, 3), np.nan)
+    rate = scene.render.fps / scene.render.fps_base
+    motion = Motion(
+        body, rate, int(frames[0]), (frames - frames[0]) / rate, posture, points, unknown, (), "interpolation"
+    )
+    return thumbnail(motion)

@@ -1,0 +1,94 @@
+"""Whole motions as assets: Actions, and actors that they animate.
+
+The curves are those that `convert` writes: of an armature as Keymark builds it, at the world's origin, every
+bone in the rotation mode it is built with. All its actors have the same bones, so that any of them can be
+given any of these Actions.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from ....core.motion import Motion
+from ....core.report.thumbnail import thumbnail
+from ..actions import assign_action, new_channelbag
+from ..armature import build_armature
+from ..bone_channels import channels_at_rest
+from ..bones import bone_models, rest_matrices, usual_mode
+from ..fcurves import channel_columns
+from ..frame_times import scene_frames
+from ..keys import add_generated_keys
+from ..object_space import AT_ORIGIN
+from ..scene_file import own_scene
+from .blend import write_asset_blend
+from .marking import AssetDetails, mark_asset
+
+MOTIONS, ACTORS = "Keymark", "Keymark Actors"
+"""Above the catalogs of all shoots."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionAsset:
+    """A motion, and what an asset browser shows of it."""
+
+    name: str
+    catalog: str
+    """Path of its catalog below `MOTIONS` and `ACTORS`, with slashes."""
+    description: str
+    tags: tuple[str, ...]
+    motion: Motion
+
+
+def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
+    """Give an empty Action the curves of a motion: a key for each frame and channel, of type GENERATED."""
+    channelbag = new_channelbag(action)
+    body, skeleton = motion.body, motion.body.skeleton
+    models = bone_models(body)
+    modes = {model.name: usual_mode(skeleton, model) for model in models}
+    frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
+    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture)
+    for path, index, bone, column in channel_columns(channels, modes.__getitem__):
+        add_generated_keys(channelbag, path, index, bone, frames, column)
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
+
+
+def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
+    """Write motions as assets into a .blend, and their catalogs into the file beside it.
+
+    Each is there twice: as an Action, which any actor can be given; and as an actor that it animates, because
+    only objects can be dragged from an asset browser into a scene.
+
+    Args:
+        path: The .blend; one that is there is replaced, while catalogs that are there are kept.
+        assets: Taken one at a time.
+
+    Raises:
+        InputError: As `write_asset_blend`.
+        ConversionError: As `write_asset_blend`.
+    """
+    with own_scene("Motions") as scene:
+        write_asset_blend(path, path.parent, bpy.data, _made(scene, assets))
+
+
+def _made(scene: bpy.types.Scene, assets: Iterable[MotionAsset]) -> Iterator[tuple[bpy.types.ID, str]]:
+    """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
+    actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
+    for asset in assets:
+        picture = thumbnail(asset.motion)
+        details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
+        action = bpy.data.actions.new(asset.name)
+        write_motion_curves(action, asset.motion)
+        mark_asset(action, details, picture)
+        yield action, f"{MOTIONS}/{asset.catalog}"
+        body = asset.motion.body
+        lengths = tuple(sorted(body.actor.segments_m.items()))
+        if lengths not in actors:
+            actors[lengths] = build_armature(scene, body)
+        actor = actors[lengths].copy()
+        actor.name = asset.name
+        assign_action(actor, action)
+        mark_asset(actor, details, picture)
+        yield actor, f"{ACTORS}/{asset.catalog}"

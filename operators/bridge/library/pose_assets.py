@@ -1,0 +1,297 @@
+"""Keyframe libraries as pose assets: one Action of one frame a posture, and back without loss.
+
+Each Action carries all that its curves cannot say, as text in two custom properties: the library's header,
+and its own posture to the last digit. So a library can be put together again from its Actions alone, in
+whatever file they are. What an animator changes counts: curves, name and tags of an asset before the text.
+"""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import bpy
+
+from ....core.body.actor import Actor
+from ....core.body.kinematics import Body
+from ....core.errors import InputError
+from ....core.files.json_file import parse_json
+from ....core.library.library import Library, LibraryPosture
+from ....core.library.library_fields import LONGEST_TAG
+from ....core.library.library_file import library_from_json, library_to_json
+from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
+from ....core.report.canvas import Image
+from ....core.report.posture_picture import posture_picture
+from ..assets.catalogs import catalog_identifier
+from ..assets.marking import AssetDetails, mark_asset
+from ..posture_curves import read_posture_curves, write_posture_curves
+
+HEADER, POSTURE = "keymark_library", "keymark_posture"
+"""Custom properties of an Action."""
+CATALOGS = "Keymark"
+"""Above the catalogs of all libraries."""
+CUT_FROM = 55
+"""Bytes of a name from which Blender 4.5 may have cut it to make room for a number."""
+LONGEST_TEXT = 2_000_000
+"""Letters of a custom property that are read; what is longer is no library's."""
+
+
+def catalog_of(library: Library, posture: LibraryPosture) -> str:
+    """The catalog of a posture: its library's, below that its first motion's where there are several."""
+    of_it = [m.name for m in library.motions if any(step.posture == posture.name for step in m.steps)]
+    names = [library.title, *(of_it[:1] if len(library.motions) > 1 else [])]
+    # Catalogs know slashes and colons as something else.
+    return "/".join([CATALOGS, *("".join("-" if a in ":/\\" else a for a in name) for name in names)])
+
+
+def draw_pictures(library: Library) -> Iterator[Image]:
+    """The picture of each posture, in order; one takes a few hundredths of a second."""
+    return (posture_picture(_body(library), posture.posture) for posture in library.postures)
+
+
+def add_assets(
+    library: Library, data: bpy.types.BlendData | None = None, pictures: Iterable[Image] | None = None
+) -> list[bpy.types.Action]:
+    """An Action for each posture, in order, marked as asset.
+
+    Args:
+        library: The library.
+        data: Where to; the open file by default.
+        pictures: Of each posture; drawn by default.
+    """
+    drawn = draw_pictures(library) if pictures is None else pictures
+    return [
+        add_asset(library, posture, order, picture, data)
+        for order, (posture, picture) in enumerate(zip(library.postures, drawn, strict=True))
+    ]
+
+
+def add_asset(
+    library: Library,
+    posture: LibraryPosture,
+    order: int,
+    picture: Image | None = None,
+    data: bpy.types.BlendData | None = None,
+) -> bpy.types.Action:
+    """An Action for a posture of a library, marked as asset; its picture is drawn by default."""
+    action = (data or bpy.data).actions.new(posture.name)
+    write_posture_curves(action, _body(library), posture.posture)
+    if picture is None:
+        picture = posture_picture(_body(library), posture.posture)
+    show_asset(action, library, posture, order, picture)
+    return action
+
+
+def show_asset(
+    action: bpy.types.Action,
+    library: Library,
+    posture: LibraryPosture,
+    order: int,
+    picture: Image | None = None,
+) -> None:
+    """Let an Action say which posture of which library it is: to people, and to `library_from_assets`.
+
+    Args:
+        action: The Action; its curves stay.
+        library: The library, or one that says the same of itself.
+        posture: What the Action's curves show, under its name.
+        order: Its place among the library's postures.
+        picture: (S, S, 3) blue, green, red; None keeps the one it has.
+    """
+    details = AssetDetails(
+        catalog=catalog_identifier(catalog_of(library, posture)),
+        tags=posture.tags,
+        author=library.author,
+        license=library.license,
+        description=library.description,
+    )
+    mark_asset(action, details, picture)
+    alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
+    asset = {"name": action.name, "tags": _asset_tags(action)}
+    action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
+    stamp_header(action, _header_text(library))
+
+
+def header_text(library: Library) -> str:
+    """All of a library but its postures, as text."""
+    return _text(library_to_json(replace(library, postures=())))
+
+
+@lru_cache(maxsize=4)
+def _header_text(library: Library) -> str:
+    return header_text(library)
+
+
+def stamp_header(action: bpy.types.Action, header: str) -> None:
+    """Write down which library an Action belongs to."""
+    action[HEADER] = header
+
+
+def is_posture(action: bpy.types.Action) -> bool:
+    """Whether an Action says that it is a library's posture."""
+    return isinstance(action.get(HEADER), str) and isinstance(action.get(POSTURE), str)
+
+
+def read_asset(action: bpy.types.Action) -> LibraryPosture:
+    """A posture as its Action has it now.
+
+    Raises:
+        InputError: What the Action says of itself is not what Keymark writes, or it has no posture any more.
+    """
+    header, own = _fields(action, HEADER), _fields(action, POSTURE)
+    where = _where(action)
+    library = library_from_json({**header, "motions": [], "postures": own.get("postures")}, where)
+    if len(library.postures) != 1:
+        raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
+    stored = library.postures[0]
+    shown = read_posture_curves(action, _body(library), stored.posture)
+    if shown is None:
+        raise InputError(f"{where}: none of its curves turns a bone of Keymark's actors")
+    asset = own.get("asset")
+    known = asset if isinstance(asset, Mapping) else {}
+    name, tags = stored.name, stored.tags
+    if not _is_named(action, known.get("name")) and not text_fault(action.name.strip(), LONGEST_NAME):
+        name = action.name.strip()
+    if known.get("tags") != _asset_tags(action):
+        tags = tuple(tag for tag in _asset_tags(action) if not text_fault(tag, LONGEST_TAG))
+    return LibraryPosture(name, shown, tags)
+
+
+def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, ...]:
+    """The libraries that Actions belong to, in the order in which they come; other Actions are passed over.
+
+    Where Actions say different things of their library, those of its newest version count. Motions keep the
+    steps whose postures are there.
+
+    Raises:
+        InputError: What an Action says of itself is not what Keymark writes.
+    """
+    return tuple(_joined(members) for members in assets_by_library(actions).values())
+
+
+def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
+    """The pose assets of each library, in its order, by its identifier; other Actions are passed over.
+
+    Raises:
+        InputError: What an Action says of itself is not what Keymark writes.
+    """
+    found: dict[str, list[bpy.types.Action]] = {}
+    for action in actions:
+        if is_posture(action):
+            found.setdefault(str(_fields(action, HEADER).get("identifier")), []).append(action)
+    return {identifier: sorted(members, key=_order) for identifier, members in found.items()}
+
+
+def _joined(actions: Sequence[bpy.types.Action]) -> Library:
+    header = max((_fields(action, HEADER) for action in actions), key=_version)
+    postures: list[LibraryPosture] = []
+    now: dict[str, str] = {}
+    for action in actions:
+        posture = read_asset(action)
+        name = told_apart(posture.name, [other.name for other in postures])
+        now.setdefault(stored_name(action), name)
+        postures.append(replace(posture, name=name))
+    one = library_from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))
+    document = library_to_json(replace(one, postures=tuple(postures)))
+    motions = present_motions(header.get("motions", []), now)
+    return library_from_json({**document, "motions": motions}, f"library {one.identifier!r}")
+
+
+def stored_name(action: bpy.types.Action) -> str:
+    """The name under which the motions know a pose asset's posture."""
+    alone = _alone(action)
+    first = alone[0] if isinstance(alone, list) and alone else {}
+    return str(first.get("name", "")) if isinstance(first, Mapping) else ""
+
+
+def present_motions(motions: Any, now: Mapping[str, str]) -> Any:
+    """Motions, as in a library's file, of the postures that are there, under the names they have now.
+
+    Args:
+        motions: What stands in the file; what is no motion stays, for the reader to refuse.
+        now: New names by old ones, of those that are there.
+    """
+    if not isinstance(motions, list):
+        return motions
+    kept = []
+    for motion in motions:
+        steps = motion.get("steps") if isinstance(motion, Mapping) else None
+        if not isinstance(steps, list) or not all(_is_step(step) for step in steps):
+            kept.append(motion)
+            continue
+        left = [{**step, "posture": now[step["posture"]]} for step in steps if step["posture"] in now]
+        if not left:
+            continue
+        begin = left[0]["time_s"]
+        left = [{**step, "time_s": step["time_s"] - begin} for step in left]
+        kept.append({**motion, "steps": left})
+    return kept
+
+
+def _is_step(step: Any) -> bool:
+    usable = isinstance(step, Mapping) and isinstance(step.get("posture"), str)
+    return usable and isinstance(step.get("time_s"), int | float)
+
+
+def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
+    """What stands in one of an Action's two texts."""
+    text = action.get(name)
+    if not isinstance(text, str) or len(text) > LONGEST_TEXT:
+        raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
+    if name == HEADER:
+        with suppress(InputError):  # which would not say whose it is
+            return _parsed(text)
+    return parse_json(text, f"{_where(action)}: its property {name}")
+
+
+@lru_cache(maxsize=4)
+def _parsed(text: str) -> dict[str, Any]:
+    """An object in JSON; not to be changed. All assets of a library carry the same long header."""
+    return parse_json(text, "")
+
+
+def _body(library: Library) -> Body:
+    """Who was posed; the same for all libraries of the same lengths, so that bones and skin are made once."""
+    return _body_of(tuple(library.actor.segments_m.items()))
+
+
+@lru_cache(maxsize=4)
+def _body_of(lengths: tuple[tuple[str, float], ...]) -> Body:
+    return Body(Actor(dict(lengths)))
+
+
+def _is_named(action: bpy.types.Action, name: Any) -> bool:
+    """Whether an Action has a name still, but for a number that Blender gave it to tell it from another."""
+    stem, _, number = action.name.rpartition(".")
+    if not isinstance(name, str) or action.name == name:
+        return action.name == name
+    numbered = len(number) >= 3 and number.isdigit()
+    return numbered and (stem == name or (len(stem.encode()) >= CUT_FROM and name.startswith(stem)))
+
+
+def _alone(action: bpy.types.Action) -> Any:
+    return _fields(action, POSTURE).get("postures")
+
+
+def _order(action: bpy.types.Action) -> float:
+    order = _fields(action, POSTURE).get("order")
+    return float(order) if isinstance(order, int) else float("inf")
+
+
+def _version(header: Mapping[str, Any]) -> int:
+    version = header.get("version")
+    return version if isinstance(version, int) else 0
+
+
+def _where(action: bpy.types.Action) -> str:
+    return f"pose asset {action.name!r}"
+
+
+def _asset_tags(action: bpy.types.Action) -> list[str]:
+    return [tag.name for tag in action.asset_data.tags] if action.asset_data is not None else []
+
+
+def _text(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
