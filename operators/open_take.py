@@ -48,7 +48,7 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
-            from ..core.shoot.take_place import take_place
+            from ..core.shoot.finding.take_place import take_place
             from .scene.take_footage import look_through_camera, show_range
             from .scene.take_scene import read_for_scene, show_take
             from .scene.takes import active_take

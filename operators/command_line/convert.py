@@ -6,7 +6,7 @@ from typing import Any
 
 from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.shoot.description import Description, chosen_settings, describe
-from ...core.shoot.take_place import take_place
+from ...core.shoot.finding.take_place import take_place
 from .console import arguments_console
 from .conversion import convert
 from .line_parser import UsageError

@@ -7,7 +7,7 @@ import bpy
 import pytest
 from _shoot import write_shoot
 from keymark.core.errors import InputError
-from keymark.core.shoot.take_place import take_place
+from keymark.core.shoot.finding.take_place import take_place
 from keymark.core.take import read_take
 from keymark.operators.scene.takes import active_take
 

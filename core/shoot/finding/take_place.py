@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ..errors import InputError
-from .description import OWN, clip_name
+from ...errors import InputError
+from ..description import OWN, clip_name
 from .find_takes import VIDEOS
 
 
