@@ -61,7 +61,8 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert (
         len(open_fields) == 7
         and open_fields[0] == "camera.matrix_world"
-        and "the lens, which is a guess" in said
+       
+    assert "the lens, which is a guess" in said
     )
     assert main(["check", str(folder)]) == 1
     said = capsys.readouterr().out
