@@ -15,8 +15,8 @@ from ...core.shoot_check.take_check import TakeCheck, check_take
 from .broken_lines import terminal_columns
 from .check_text import check_summary, check_text
 from .console import arguments_console
+from .conversion.solving import chosen_libraries
 from .line_parser import UsageError
-from .matching import chosen_libraries
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"

@@ -7,10 +7,10 @@ from typing import Any
 from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.shoot.description import Description, chosen_settings, describe
 from .console import arguments_console
-from .conversion import convert
+from .conversion.result import Conversion
+from .conversion.solving import match_summary
+from .conversion.unit import convert
 from .line_parser import UsageError
-from .made import Conversion
-from .matching import match_summary
 
 
 def convert_command(arguments: argparse.Namespace) -> None:

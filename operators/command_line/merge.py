@@ -15,7 +15,7 @@ from ...core.shoot.outcomes.failures import Failure, read_failures
 from ...core.shoot.outcomes.results import Result, Results, find_results
 from .blender_silence import blender_silence
 from .console import Console, arguments_console
-from .conversion import MOTION, require_blender
+from .conversion.unit import MOTION, require_blender
 
 if TYPE_CHECKING:
     from ..bridge.assets.motions import MotionAsset

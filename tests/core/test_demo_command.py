@@ -10,7 +10,8 @@ from keymark.core.motion_file import read_motion
 from keymark.core.score import read_truth, score_points
 from keymark.core.take import read_take
 from keymark.operators.cli import main
-from keymark.operators.command_line import conversion, demo
+from keymark.operators.command_line import demo
+from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
 
@@ -22,12 +23,12 @@ def take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
 
     def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> str:
-        for name in (conversion.BLEND, conversion.BVH):
+        for name in (unit.BLEND, unit.BVH):
             (place / name).touch()
         return "0" * 64
 
-    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
-    monkeypatch.setattr(conversion, "_write_scene", write)
+    monkeypatch.setattr(unit, "require_blender", lambda what: None)
+    monkeypatch.setattr(unit, "_write_scene", write)
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
     return folder

@@ -15,7 +15,7 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion import convert, convert_if_changed
+from ..conversion.unit import convert, convert_if_changed
 from ..line_parser import UsageError
 from ..version import version
 from .memory import resident_bytes

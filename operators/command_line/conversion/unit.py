@@ -5,29 +5,29 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.conversion_record import NAME as RECORD
-from ...core.conversion_record import is_finished, write_record
-from ...core.errors import ConversionError, InputError
-from ...core.files.output_folder import output_folder, real_path
-from ...core.keyframe_file import write_keyframes
-from ...core.library.library import Library
-from ...core.library.library_file import library_digest
-from ...core.match_take import take_to_match
-from ...core.motion import Motion
-from ...core.motion_file import write_motion
-from ...core.progress import run
-from ...core.report.pictures import MATCHES, PICTURES, write_pictures
-from ...core.shoot.conversion_digest import conversion_digest
-from ...core.shoot.conversion_settings import METHODS, ConversionSettings
-from ...core.shoot.description import Description
-from ...core.take import Take, read_described
+from ....core.conversion_record import NAME as RECORD
+from ....core.conversion_record import is_finished, write_record
+from ....core.errors import ConversionError, InputError
+from ....core.files.output_folder import output_folder, real_path
+from ....core.keyframe_file import write_keyframes
+from ....core.library.library import Library
+from ....core.library.library_file import library_digest
+from ....core.match_take import take_to_match
+from ....core.motion import Motion
+from ....core.motion_file import write_motion
+from ....core.progress import run
+from ....core.report.pictures import MATCHES, PICTURES, write_pictures
+from ....core.shoot.conversion_digest import conversion_digest
+from ....core.shoot.conversion_settings import METHODS, ConversionSettings
+from ....core.shoot.description import Description
+from ....core.take import Take, read_described
+from ..blender_silence import blender_silence
+from ..console import Console
+from ..version import version
 from .blender_places import check_places
-from .blender_silence import blender_silence
 from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
-from .console import Console
-from .made import Conversion, conversion_record
-from .matching import chosen_libraries, solve
-from .version import version
+from .result import Conversion, conversion_record
+from .solving import chosen_libraries, solve
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
 KEYFRAMES = "keyframes.json"
@@ -183,7 +183,7 @@ def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: b
     hidden = {name: level / f"{place.name}-{name}" for name in (BLEND, BVH)}
     try:
         with blender_silence(debug):
-            from ..bridge.scene_file import write_scene
+            from ...bridge.scene_file import write_scene
 
             curves = write_scene(take, motion, hidden[BLEND], hidden[BVH])
         for name, file in hidden.items():
