@@ -11,24 +11,16 @@ from keymark.core.score import read_truth, score_points
 from keymark.core.take import read_take
 from keymark.operators.cli import main
 from keymark.operators.command_line import demo
-from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
 
 
 @pytest.fixture
-def take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small take in the demonstration's place, and two empty files in place of Blender's."""
     folder = write_synthetic_take(tmp_path / "demo", FRAMES)
     shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
 
-    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> str:
-        for name in (unit.BLEND, unit.BVH):
-            (place / name).touch()
-        return "0" * 64
-
-    monkeypatch.setattr(unit, "require_blender", lambda what: None)
-    monkeypatch.setattr(unit, "_write_scene", write)
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
     return folder
