@@ -11,7 +11,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from pathlib import Path, PurePosixPath
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 from ..errors import InputError
@@ -194,8 +194,8 @@ def _move(source: Path, destination: Path, done: Moves) -> None:
 
 
 def _is_inside(name: Any) -> bool:
-    way = PurePosixPath(name)
-    return not way.is_absolute() and ".." not in way.parts and bool(way.name)
+    way = PureWindowsPath(name)  # which reads both kinds of slash
+    return not way.anchor and ".." not in way.parts and bool(way.name)
 
 
 def _all_to_disk(folders: Iterable[Path]) -> None:

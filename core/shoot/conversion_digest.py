@@ -2,14 +2,15 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..files.digest import content_digest, digest
 from ..footage.clips.image_sequence import find_images
-from .conversion_settings import ConversionSettings
+from .conversion_settings import METHODS, ConversionSettings
 from .description import Description
-from .shoot_file import SETTINGS
+from .shoot_file import OWN, SETTINGS
 
 FORMAT = 1
 """Raised whenever the same input gives another result without a new version."""
@@ -36,7 +37,6 @@ def conversion_digest(
     Raises:
         InputError: A file cannot be read.
     """
-    said = {name: value for name, value in description.fields.values.items() if name not in SETTINGS}
     images = find_images(description.clip)
     footage = [description.clip] if images is None else images
     posed = settings.keyframes
@@ -45,16 +45,25 @@ def conversion_digest(
     return digest(
         FORMAT,
         version,
-        json.dumps(said, sort_keys=True, ensure_ascii=False),
+        _said(description.fields.values),
         description.name,
         _way(description.clip, output),
         tuple((file.name, content_digest(file)) for file in footage),
         None if posed is None else content_digest(posed),
         tuple(libraries),
-        settings.floor_m,
-        settings.method,
-        settings.pictures,
+        settings.floor_m if libraries else None,
+        settings.method or METHODS[0],
+        settings.pictures is not False,
     )
+
+
+def _said(fields: Mapping[str, Any]) -> str:
+    """What is said of the take itself; of its markers also in which order, which is that of the results."""
+    said = {name: value for name, value in fields.items() if name not in (*OWN, *SETTINGS)}
+    markers = said.get("markers")
+    if isinstance(markers, Mapping):
+        said["markers"] = list(markers.items())
+    return json.dumps(said, sort_keys=True, ensure_ascii=False)
 
 
 def _way(clip: Path, output: Path) -> str:

@@ -18,7 +18,7 @@ from ..files.inside import check_links, inside_path
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import is_image
 from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
-from .shoot_file import NAME, read_shoot_file, shoot_files
+from .shoot_file import NAME, read_shoot_file, shoot_files, whole_way
 
 OWN = "take.json"
 KEYFRAMES = "keyframes.json"
@@ -97,7 +97,7 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
     check_links(used, [shared[0].parent if shared else folder, folder])
     return Description(
         place=place,
-        name=place.absolute().name if whole else clip_name(place),
+        name=whole_way(place).name if whole else clip_name(place),
         folder=folder,
         file=files[-1],
         files=tuple(files),
@@ -157,4 +157,4 @@ def beside(place: Path, ending: str) -> Path:
 
 def clip_name(place: Path) -> str:
     """What people call a mere clip: its name without an ending, or that of its folder of images."""
-    return place.name if place.is_dir() else place.stem
+    return whole_way(place).name if place.is_dir() else place.stem

@@ -1,5 +1,6 @@
 """`shoot.json`: what all takes below its folder have in common."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -43,17 +44,23 @@ def read_shoot_file(path: Path) -> dict[str, Any]:
 def shoot_files(folder: Path) -> list[Path]:
     """Every `shoot.json` that takes in a folder inherit from, the farthest first.
 
-    They are looked for in the folder and all above it, up to one that says `"root": true`.
+    They are looked for in the folder and all above it, up to one that says `"root": true`. Whatever is called
+    so counts: what a broken link or a folder of that name was to say is not left out in silence.
 
     Raises:
         InputError: One that is found cannot be read.
     """
     found: list[Path] = []
-    absolute = folder.absolute()
-    for place in (absolute, *absolute.parents):
+    whole = whole_way(folder)
+    for place in (whole, *whole.parents):
         file = place / NAME
-        if file.is_file():
+        if os.path.lexists(file):
             found.append(file)
             if read_json(file, LARGEST_BYTES).get("root") is True:
                 break
     return found[::-1]
+
+
+def whole_way(path: Path) -> Path:
+    """A path from the root, none of whose parents is a way back: those of `/day1/../day2` name `day1`."""
+    return Path(os.path.realpath(path)) if ".." in path.parts else path.absolute()

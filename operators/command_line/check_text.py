@@ -6,6 +6,7 @@ from typing import Any
 
 from ...core.files.fields import listed
 from ...core.shoot.shoot import Shoot
+from ...core.shoot.shoot_file import whole_way
 from ...core.shoot_check.take_check import TakeCheck
 from .broken_lines import broken
 
@@ -143,7 +144,7 @@ def _size(size_bytes: int) -> str:
 
 
 def _name(shoot: Shoot, check: TakeCheck) -> str:
-    return shoot.folder.absolute().name if check.name == "." else check.name
+    return whole_way(shoot.folder).name if check.name == "." else check.name
 
 
 def _word(check: TakeCheck) -> str:

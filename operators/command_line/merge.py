@@ -13,6 +13,7 @@ from ...core.motion_file import read_motion
 from ...core.progress import Progress
 from ...core.shoot.outcomes.failures import Failure, read_failures
 from ...core.shoot.outcomes.results import Result, Results, find_results
+from ...core.shoot.shoot_file import whole_way
 from .blender_silence import blender_silence
 from .console import Console, arguments_console
 from .conversion.unit import MOTION, require_blender
@@ -42,7 +43,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
         console.stage("Looking for results")
         found = find_results(arguments.results)
         _check_place(arguments.output, found)
-        name = arguments.name or arguments.results.absolute().name
+        name = arguments.name or whole_way(arguments.results).name
         gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):

@@ -7,6 +7,7 @@ from pathlib import Path
 from ...conversion_record import NAME, ConversionRecord, read_record
 from ...errors import InputError
 from ..finding.take_names import name_of_way
+from ..shoot_file import whole_way
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +40,7 @@ def find_results(folder: Path) -> Results:
     sound: list[Result] = []
     damaged: dict[str, str] = {}
     for place, error in _places(folder):
-        way = place.relative_to(folder) if place != folder else Path(place.absolute().name)
+        way = place.relative_to(folder) if place != folder else Path(whole_way(place).name)
         name = name_of_way(way)
         if error is not None:
             sentence = f"{place}: cannot be read ({error.strerror or error})"

@@ -12,6 +12,7 @@ from ....core.report.summary.text import way_to
 from ....core.report.summary.verdict import result
 from ....core.shoot.outcomes.outcome import Outcome
 from ....core.shoot.shoot import Shoot
+from ....core.shoot.shoot_file import whole_way
 
 LINES, PAGE = "summary.jsonl", "summary.html"
 
@@ -33,7 +34,7 @@ def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tu
     ordered = sorted(outcomes, key=lambda outcome: outcome.take)
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
     lines = "".join(f"{json.dumps(line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
-    page = summary_page(shoot.path.absolute().name, ordered, output)
+    page = summary_page(whole_way(shoot.path).name, ordered, output)
     for name, text in ((LINES, lines), (PAGE, page)):
         write_whole(output / name, lambda beside, text=text: _write(beside, text))
     return (output / LINES, output / PAGE)

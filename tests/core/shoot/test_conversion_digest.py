@@ -50,6 +50,12 @@ def lengthen(shoot: Path) -> None:
         clip.write(b"\0")
 
 
+def _turned_round(shoot: Path) -> dict[str, Any]:
+    """The shoot's markers in another order, which is that of the results."""
+    markers = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
+    return dict(reversed(markers.items()))
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -58,6 +64,7 @@ def lengthen(shoot: Path) -> None:
         edit("shoot.json", actor={"height_m": 1.6}),
         edit("shoot.json", method="ekf"),
         edit("shoot.json", pictures=True),
+        lambda shoot: edit("shoot.json", markers=_turned_round(shoot))(shoot),
         edit("day1/shoot.json", fps=25),
         edit("day1/take01.take.json", frame_start=7),
         lengthen,
@@ -77,7 +84,7 @@ def test_settings_libraries_and_version_count(shoot: Path) -> None:
         digest(shoot, version="2"),
         digest(shoot, libraries=("a",)),
         digest(shoot, libraries=("a", "b")),
-        digest(shoot, floor_m=0.1),
+        digest(shoot, libraries=("a",), floor_m=0.1),
     ]
     assert len(set(digests)) == len(digests)
 
@@ -89,4 +96,14 @@ def test_times_comments_and_other_files_do_not(shoot: Path) -> None:
         os.utime(file, (1e9, 1e9))
     edit("shoot.json", **{"// why": "a comment"})(shoot)
     (shoot / "day1" / "take02.mp4").touch()
+    assert digest(shoot) == before
+
+
+def test_what_is_said_but_changes_nothing_does_not(shoot: Path) -> None:
+    """Defaults that are given, a floor without a library, a schema for the editor."""
+    edit("shoot.json", method=None, pictures=None)(shoot)
+    before = digest(shoot)
+    assert digest(shoot, method="map", pictures=True, floor_m=0.1) == before
+    edit("shoot.json", method="map", floor_m=0.5)(shoot)
+    edit("day1/take01.take.json", **{"$schema": "take.schema.json", "schema_version": 1})(shoot)
     assert digest(shoot) == before

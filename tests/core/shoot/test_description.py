@@ -60,6 +60,29 @@ def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
     assert settings_of(take).method is None and not describe(take).fields.has("fps")
 
 
+def test_a_way_back_leads_through_no_other_shoot(shoot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder that `../day2` begins in is not above `day2`."""
+    (shoot / "day1").mkdir()
+    write_json(shoot / "day1" / "shoot.json", {"method": "ekf"})
+    take = take_in(shoot / "day2" / "take")
+    monkeypatch.chdir(shoot / "day1")
+    description = describe(Path("..") / "day2" / "take")
+    assert description.settings.method is None and len(description.files) == 2
+    monkeypatch.chdir(take)
+    assert describe(Path()).name == "take"
+    (take / "inner").mkdir()
+    monkeypatch.chdir(take / "inner")
+    assert describe(Path("..")).name == "take"
+
+
+def test_a_shoot_file_that_is_none_is_not_passed_over(shoot: Path) -> None:
+    """What it was to say of the takes is lacking, so they would convert in another way than was meant."""
+    take = take_in(shoot / "day" / "take")
+    (shoot / "day" / "shoot.json").mkdir()
+    with pytest.raises(InputError, match=r"shoot\.json: is a folder, no file"):
+        describe(take)
+
+
 def test_what_a_person_says_on_the_command_line_comes_last_in_a_batch(shoot: Path) -> None:
     """It counts where nothing nearer says anything."""
     take = take_in(shoot / "take", method="ekf")
