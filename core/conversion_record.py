@@ -97,11 +97,18 @@ def read_record(folder: Path) -> ConversionRecord:
     )
 
 
+def record_if_any(folder: Path) -> ConversionRecord | None:
+    """A folder's record; None where there is none, or none that can be read."""
+    try:
+        return read_record(folder)
+    except InputError:
+        return None
+
+
 def is_finished(folder: Path, digest: str) -> bool:
     """Whether a folder holds the whole result of a conversion with this digest."""
-    try:
-        record = read_record(folder)
-    except InputError:
+    record = record_if_any(folder)
+    if record is None:
         return False
     return record.digest == digest and all(os.path.isfile(folder / name) for name in record.files)
 

@@ -10,7 +10,7 @@ from typing import BinaryIO
 
 import cv2
 
-from ....core.errors import BusyError, InputError, KeymarkError
+from ....core.errors import BusyError, InputError, KeymarkError, unexpected
 from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
@@ -62,8 +62,8 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
     except OSError as wrong:
         reason = wrong.strerror or wrong
         result, error, kind = FAILED, f"{job.take.place}: cannot be converted ({reason})", CONVERSION
-    except Exception as unexpected:
-        what = f"{type(unexpected).__name__}: {unexpected}" if str(unexpected) else type(unexpected).__name__
+    except Exception as unknown:
+        what = unexpected(unknown)
         result, error, kind = FAILED, f"failed unexpectedly ({what}); convert --debug shows where", CRASH
     return Done(result, time.perf_counter() - started, error, kind, resident_bytes())
 
