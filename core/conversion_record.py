@@ -75,9 +75,7 @@ def read_record(folder: Path) -> ConversionRecord:
     """
     path = folder / NAME
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-    version = fields.whole("schema_version", 1, 10**6)
-    if version > SCHEMA_VERSION:
-        raise InputError(f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}")
+    fields.check_version(SCHEMA_VERSION)
     return ConversionRecord(
         digest=_line(fields, "digest"),
         keymark=_line(fields, "keymark"),

@@ -348,6 +348,15 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
 
 
+def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words are there at once: what computes is loaded by the command that needs it."""
+    monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
+    _, told = module_process(tmp_path, repository, "--help").communicate()
+    loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
+    assert "keymark.operators.command_line.shoot_arguments" in loaded
+    assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
 def test_a_process_that_is_asked_to_end_cleans_up(
     take: Path, out: Path, tmp_path: Path, repository: Path

@@ -15,12 +15,13 @@ from ....core.keyframe_file import write_keyframes
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
 from ....core.match_take import take_to_match
+from ....core.methods import METHODS
 from ....core.motion import Motion
 from ....core.motion_file import write_motion
 from ....core.progress import run
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
 from ....core.shoot.conversion_digest import conversion_digest
-from ....core.shoot.conversion_settings import METHODS, ConversionSettings
+from ....core.shoot.conversion_settings import ConversionSettings
 from ....core.shoot.description import Description
 from ....core.take import Take, read_described
 from ..blender_silence import blender_silence
