@@ -21,7 +21,8 @@ from keymark.core.motion_file import read_motion
 from keymark.core.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.operators.cli import main
-from keymark.operators.command_line import arguments, conversion
+from keymark.operators.command_line import arguments
+from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
 FAST = ("--method", "interpolation", "--no-report")
@@ -123,7 +124,7 @@ def test_a_conversion_writes_its_files_and_says_so(
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
-    for name in set(conversion.BELONGINGS) - {f"report/{MATCHES}"}:
+    for name in set(unit.BELONGINGS) - {f"report/{MATCHES}"}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"
@@ -267,7 +268,7 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
         (place / "motion.blend").write_bytes(b"half a file")
         raise problem
 
-    monkeypatch.setattr(conversion, "_write_scene", fail)
+    monkeypatch.setattr(unit, "_write_scene", fail)
     before = tree(out.parent)
     assert convert(take, out, *FAST, "--quiet") == status
     assert sentence in one_line(capsys.readouterr().err)
@@ -283,7 +284,7 @@ def test_debug_shows_where(
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
-    monkeypatch.setattr(conversion, "_write_scene", fail)
+    monkeypatch.setattr(unit, "_write_scene", fail)
     assert convert(take, out, *FAST, "--quiet", "--debug") == 1
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("Traceback") and "something odd" in lines[-1]
@@ -293,7 +294,7 @@ def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before any work, and with the output folder as it was."""
-    monkeypatch.setattr(conversion.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(unit.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
     assert "pip install 'keymark[blender]'" in one_line(capsys.readouterr().err)
@@ -345,6 +346,15 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
     process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
     said, wrong = process.communicate()
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
+
+
+def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words are there at once: what computes is loaded by the command that needs it."""
+    monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
+    _, told = module_process(tmp_path, repository, "--help").communicate()
+    loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
+    assert "keymark.operators.command_line.shoot_arguments" in loaded
+    assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
