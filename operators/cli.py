@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
-from ..core.errors import InputError, KeymarkError
+from ..core.errors import InputError, KeymarkError, unexpected
 from .command_line.arguments import build_parser
 from .command_line.blender_silence import codec_silence
 from .command_line.line_parser import UsageError, complain
@@ -62,8 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         lacking = f"the Python module {error.name}" if error.name else "a Python module"
         return _say(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
     except Exception as error:
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        return _say(f"failed unexpectedly ({what}); --debug shows where", FAILED, debug)
+        return _say(f"failed unexpectedly ({unexpected(error)}); --debug shows where", FAILED, debug)
 
 
 def _open_standard_streams() -> None:

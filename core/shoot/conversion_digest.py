@@ -9,7 +9,8 @@ from typing import Any
 from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..footage.clips.image_sequence import find_images
-from .conversion_settings import METHODS, ConversionSettings
+from ..methods import METHODS
+from .conversion_settings import ConversionSettings
 from .description import Description
 from .shoot_file import OWN, SETTINGS
 

@@ -6,18 +6,19 @@ from typing import Any
 
 from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.shoot.description import Description, chosen_settings, describe
+from ...core.shoot.finding.take_place import take_place
 from .console import arguments_console
-from .conversion import convert
+from .conversion.result import Conversion
+from .conversion.solving import match_summary
+from .conversion.unit import convert
 from .line_parser import UsageError
-from .made import Conversion
-from .matching import match_summary
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
     """Convert the take that the command line names, and say what was made."""
     with arguments_console(arguments) as console:
         console.stage("Reading the take")
-        description = describe(arguments.take)
+        description = describe(take_place(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert(description, arguments.output, console, settings, arguments.debug)
         console.finish(summary(conversion), _text(conversion))

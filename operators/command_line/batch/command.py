@@ -17,9 +17,9 @@ from ....core.shoot.finding.open_shoot import open_shoot
 from ....core.shoot.finding.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ..console import Console, arguments_console
-from ..conversion import require_blender
+from ..conversion.solving import chosen_libraries
+from ..conversion.unit import require_blender
 from ..line_parser import UsageError
-from ..matching import chosen_libraries
 from .memory import machine_bytes, processors
 from .protocol import Job
 from .supervisor import Supervisor

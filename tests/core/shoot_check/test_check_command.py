@@ -15,6 +15,7 @@ from keymark.core.shoot_check.take_check import TakeCheck
 from keymark.operators.cli import main
 from keymark.operators.command_line import check as command
 from keymark.operators.command_line.check_text import check_text
+from keymark.operators.command_line.line_parser import program_name
 
 FRAMES = 10
 TAKE = "day1/take01"
@@ -197,7 +198,7 @@ def test_a_mistake_of_all_is_said_once(
     own = said.out.partition("fails  day1/take01")[2].splitlines()[1]
     assert own.strip().startswith("! ") and "cannot be decoded" in own
     assert "3 takes: 0 ready, 0 to look at, 3 that would not convert" in said.out
-    assert said.err == "keymark: 3 of 3 takes would not convert\n"
+    assert said.err == f"{program_name()}: 3 of 3 takes would not convert\n"
 
 
 def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[..., Any]) -> None:
@@ -224,10 +225,12 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     assert main(["check", str(pristine), "--jobs", jobs]) == 1
     said = capsys.readouterr()
     assert "take01.mp4: looking at it failed unexpectedly (ZeroDivisionError: two lines)" in said.out
-    assert said.out.count("\nready") == 2 and said.err == "keymark: 1 of 3 takes would not convert\n"
+    assert (
+        said.out.count("\nready") == 2 and said.err == f"{program_name()}: 1 of 3 takes would not convert\n"
+    )
     raised[0] = KeyboardInterrupt()
     assert main(["check", str(pristine), "--jobs", jobs]) == 130
-    assert capsys.readouterr().err == "keymark: interrupted; nothing was written\n"
+    assert capsys.readouterr().err == f"{program_name()}: interrupted; nothing was written\n"
 
 
 def test_sentences_are_broken_to_the_terminal() -> None:
