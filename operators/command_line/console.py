@@ -5,10 +5,10 @@ import json
 import os
 import sys
 import time
-from contextlib import suppress
 from types import TracebackType
 from typing import Any
 
+from ...core.errors import ConversionError
 from ...core.progress import Progress
 from .broken_lines import broken, terminal_columns
 from .farm_progress import FarmProgress, is_wanted
@@ -111,11 +111,20 @@ class Console:
             self._bar = None
 
     def _write(self, text: str) -> None:
+        """Write a line; where that fails, nothing more is written, and the work goes on.
+
+        The reader has had enough, the disk of a log is full, or the terminal is gone.
+        """
         encoding = sys.stdout.encoding or "utf-8"
-        with suppress(BrokenPipeError):  # the reader has had enough; the work is worth finishing
+        try:
             print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
-            return
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        except OSError as error:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            if self.as_json and not isinstance(error, BrokenPipeError):
+                reason = error.strerror or error
+                raise ConversionError(
+                    f"standard output cannot be written ({reason}), so the result is not told; the rest is done"
+                ) from error
 
 
 def arguments_console(arguments: argparse.Namespace) -> Console:

@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import NoReturn
 
 from ...core.files.letters import seen
@@ -33,7 +34,8 @@ def complain(sentence: str) -> None:
     """Write one line on standard error, whatever the sentence holds."""
     line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
     encoding = sys.stderr.encoding or "utf-8"
-    print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+    with suppress(OSError):  # the exit status tells, too
+        print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
 
 
 def add_command(

@@ -189,6 +189,34 @@ def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
             os.kill(job["process"], 0)
 
 
+def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
+    studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C while the summary is written, and again while it is written once more."""
+
+    def interrupted(self: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command.Tally, "finish", interrupted)
+    studio.takes("a", "b")
+    assert studio.batch() == 130
+    assert "2 of 2 takes are converted" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no disk that is always full")
+def test_a_log_that_cannot_grow_stops_nothing(
+    studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All takes are converted; only a program that waits for the result learns that it gets none."""
+    studio.takes("a", "b")
+    for more, status in (((), 0), (("--again", "--json"), 1)):
+        with monkeypatch.context() as patched, open("/dev/full", "w", encoding="utf-8") as full:
+            patched.setattr(sys, "stdout", full)
+            assert studio.batch(*more) == status
+    assert "standard output cannot be written" in capsys.readouterr().err
+    assert [row["status"] for row in studio.summary.values()] == ["converted", "converted"]
+
+
 def test_parts_share_the_takes(studio: Studio) -> None:
     """Three machines convert every take once between them, and the last's summary has all."""
     names = [f"take{number}" for number in range(5)]
