@@ -107,7 +107,7 @@ def test_two_workers_give_the_same_bytes_as_one(
 def test_what_is_converted_is_skipped_until_its_input_changes(
     shoot: Path, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A run on a copy leaves every file alone; other keyframes or a lost file are reason to convert a take."""
+    """A run on a copy leaves every file alone; other keyframes or a lost file are reason to convert."""
     own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
     shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
     (own / "day1" / "text.mp4").unlink()
