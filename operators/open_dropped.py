@@ -8,7 +8,7 @@ from .running.failures import reported
 from .running.requirements import all_met, idle
 
 TAKE_FILE = "take.json"
-"""A take is opened by its folder: a file of another name there would not be the one that is read."""
+"""Or NAME.take.json beside the clip NAME; a file of another name would not be the one that is read."""
 
 
 class KEYMARK_OT_open_dropped(bpy.types.Operator):
@@ -43,7 +43,7 @@ class KEYMARK_OT_open_dropped(bpy.types.Operator):
             value = read_json(path, LARGEST_BYTES)
             if "schema" in value:
                 opened = bpy.ops.keymark.import_library
-            elif path.name == TAKE_FILE:
+            elif path.name == TAKE_FILE or path.name.endswith(f".{TAKE_FILE}"):
                 opened = bpy.ops.keymark.open_take
             elif "clip" in value:
                 raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")

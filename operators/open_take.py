@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bpy
 
+from .load_footage import VIDEOS
 from .running.failures import reported
 from .running.requirements import all_met, idle, object_mode_possible
 from .running.say import say
@@ -18,7 +19,7 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
 
     filepath: bpy.props.StringProperty(
         name="File Path",
-        description="The take's folder, or the take.json in it",
+        description="The take's folder, or the take.json in it; of a shoot also a mere clip",
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
@@ -27,7 +28,9 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
         description="Name of the keyframe file in the take's folder",
         default="keyframes.json",
     )
-    filter_glob: bpy.props.StringProperty(default="take.json", options={"HIDDEN"})
+    filter_glob: bpy.props.StringProperty(
+        default=";".join(("*take.json", *(f"*{ending}" for ending in VIDEOS))), options={"HIDDEN"}
+    )
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     @classmethod
@@ -45,26 +48,21 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
+            from ..core.shoot.finding.take_place import take_place
             from .scene.take_footage import look_through_camera, show_range
             from .scene.take_scene import read_for_scene, show_take
             from .scene.takes import active_take
 
-            folder = _take_folder(self.filepath)
-            opened = read_for_scene(folder, self.keyframes)
+            opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)
             show_take(context, opened)
             look_through_camera(context, active_take(context.scene))
             show_range(context)
             for note in opened.notes:
                 self.report({"WARNING"}, note)
             count = len(opened.take.keyframes)
-            say(self, "INFO", "Opened {name} with {count} keyframes", name=folder.name, count=count)
+            say(self, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
             return {"FINISHED"}
         return {"CANCELLED"}
-
-
-def _take_folder(filepath: str) -> Path:
-    path = Path(bpy.path.abspath(filepath))
-    return path.parent if path.suffix == ".json" else path
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

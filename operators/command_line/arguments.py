@@ -16,11 +16,15 @@ examples:
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
   {program} convert takes/walk --output out/walk --library walking --floor 0
+  {program} new shoot
+  {program} check shoot
   {program} batch shoot --output out --jobs 4
+  {program} merge out --output library.blend
   {program} propose takes/walk --count 12
   {program} library list
 
-A take is a folder with take.json, the clip and keyframes.json; a library takes the place of keyframes.
+A take is a folder with take.json, the clip and keyframes.json, or a clip below a shoot.json, which tells of
+many; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
 
 
@@ -54,7 +58,9 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
         "to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were matched.",
         _convert,
     )
-    convert.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
+    convert.add_argument(
+        "take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"
+    )
     convert.add_argument(
         "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
     )
@@ -95,7 +101,7 @@ def _add_propose(commands: "Commands[LineParser]") -> None:
         "markers move slowly.",
         _propose,
     )
-    propose.add_argument("take", metavar="TAKE", type=Path, help="folder that holds take.json")
+    propose.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
     propose.add_argument(
         "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
     )

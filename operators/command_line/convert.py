@@ -6,6 +6,7 @@ from typing import Any
 
 from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.shoot.description import Description, chosen_settings, describe
+from ...core.shoot.finding.take_place import take_place
 from .console import arguments_console
 from .conversion.result import Conversion
 from .conversion.solving import match_summary
@@ -17,7 +18,7 @@ def convert_command(arguments: argparse.Namespace) -> None:
     """Convert the take that the command line names, and say what was made."""
     with arguments_console(arguments) as console:
         console.stage("Reading the take")
-        description = describe(arguments.take)
+        description = describe(take_place(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert(description, arguments.output, console, settings, arguments.debug)
         console.finish(summary(conversion), _text(conversion))

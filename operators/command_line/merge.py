@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.digest import content_digest
+from ...core.files.fields import listed
 from ...core.motion import Motion
 from ...core.motion_file import read_motion
 from ...core.progress import Progress
@@ -15,6 +16,7 @@ from ...core.shoot.outcomes.failures import Failure, read_failures
 from ...core.shoot.outcomes.results import Result, Results, find_results
 from ...core.shoot.shoot_file import whole_way
 from .blender_silence import blender_silence
+from .broken_lines import broken, terminal_columns
 from .console import Console, arguments_console
 from .conversion.unit import MOTION, require_blender
 
@@ -54,9 +56,11 @@ def merge_command(arguments: argparse.Namespace) -> None:
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
         wrong = gathering.wrong
         result = {"motions": gathering.count, "wrong": wrong, "files": files}
-        console.finish(result, "\n".join([f"{gathering.count} motions:", *(f"  {file}" for file in files)]))
+        console.finish(result, _text(gathering.count, files, wrong))
     if wrong:
-        raise ConversionError(f"{arguments.output} lacks takes or holds earlier results: {_listed(wrong)}")
+        raise ConversionError(
+            f"{arguments.output} lacks takes or holds earlier results of them: {listed(sorted(wrong), NAMED)}"
+        )
 
 
 class Gathering:
@@ -65,7 +69,7 @@ class Gathering:
     def __init__(self, found: Results, failures: Sequence[Failure], shoot: str, console: Console) -> None:
         self.wrong = dict(found.damaged)
         """Of each take that the library lacks, or has of an earlier input, why, in a sentence."""
-        self.wrong |= {failure.take: f"the take {failure.take}: {failure.error}" for failure in failures}
+        self.wrong |= {failure.take: failure.error for failure in failures}
         self.count = 0
         """How many are in the library."""
         self._found, self._shoot, self._console = found, shoot, console
@@ -163,6 +167,15 @@ def _check_place(output: Path, found: Results) -> None:
             raise InputError(
                 f"{output}: lies in the results of the take {result.name}; name a file outside of them"
             )
+
+
+def _text(count: int, files: Sequence[str], wrong: dict[str, str]) -> str:
+    lines = ["1 motion:" if count == 1 else f"{count} motions:", *(f"  {file}" for file in files)]
+    if wrong:
+        lines.append("Takes that are not in it, or as they were before:")
+    for name in sorted(wrong):
+        lines += broken(f"{name}: {wrong[name]}", 2, terminal_columns())
+    return "\n".join(lines)
 
 
 def _listed(wrong: dict[str, str]) -> str:

@@ -71,4 +71,5 @@ def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str,
 def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
     lines = [*clip_lines(survey), "", f"{output} describes them. Now fill in"]
     lines += [f"  {way}" for way in todo]
-    return "\n".join([*lines, f"then run: {program_name()} check {folder}"])
+    lines.append("and put right the lens, which is a guess; the comments beside each say how.")
+    return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])

@@ -232,8 +232,9 @@ def test_damaged_results_are_named_and_the_others_merged(
     said = capsys.readouterr()
     assert json.loads(said.out)["motions"] == 1
     assert sorted(json.loads(said.out)["wrong"]) == ["changed", "cut", "without"]
-    assert said.err.count("\n") == 1 and "lacks takes" in said.err
-    assert all(str(folder) in said.err for folder in (changed, cut, without))
+    assert said.err.count("\n") == 1 and "lacks takes" in said.err and "changed, cut, without" in said.err
+    reasons = json.loads(said.out)["wrong"]
+    assert all(str(folder) in reasons[folder.name] for folder in (changed, cut, without))
     assert [action.name for action in loaded(tmp_path / "library.blend")] == ["a"]
 
 
@@ -244,9 +245,10 @@ def test_takes_that_have_failed_are_named(
     add_result("a")
     for number in range(7):
         write_failure(results, Failure(f"bad{number}", f"clip {number} is cut off", "input"))
-    assert merge(results, tmp_path / "library.blend") == 1
-    said = capsys.readouterr().err
-    assert "bad0: clip 0 is cut off" in said and "bad4" in said and "bad5" not in said and "2 more" in said
+    assert main(["merge", str(results), "--output", str(tmp_path / "library.blend")]) == 1
+    said = capsys.readouterr()
+    assert "bad0, bad1, bad2, bad3, bad4 and 2 more" in said.err and "bad5" not in said.err
+    assert all(f"  bad{number}: clip {number} is cut off\n" in said.out for number in range(7))
     assert [action.name for action in loaded(tmp_path / "library.blend")] == ["a"]
 
 

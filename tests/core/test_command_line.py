@@ -325,6 +325,17 @@ def test_proposed_frames_lie_in_the_clip(
     assert "keyframe count is 1" in one_line(capsys.readouterr().err)
 
 
+def test_a_process_without_standard_streams_does_its_work(
+    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As one that something started with `>&-`; there is nobody to tell, but the exit status tells."""
+    for stream in ("stdin", "stdout", "stderr"):
+        monkeypatch.setattr(sys, stream, None)
+    assert main(["propose", str(take), "--count", "4", "--picture", str(tmp_path / "speed.png")]) == 0
+    assert main(["propose", str(take), "--count", "1"]) == 2
+    assert (tmp_path / "speed.png").is_file()
+
+
 def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess.Popen[str]":
     """`python -m keymark` in a process of its own, whatever the repository's folder is called."""
     links = tmp_path / "links"

@@ -14,6 +14,8 @@ from .take_names import check_names, name_of_way
 
 VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv"})
 MOST_TAKES = 100_000
+NO_TAKE = f"holds no take; a take is a folder with {OWN}, or a clip with a {NAME}, which keymark new writes"
+NO_CLIP = "holds no clip; a clip is a video or a folder of numbered images"
 DEEPEST = 64
 """Folders below each other that are looked through: more are a circle that a file system has made."""
 
@@ -35,19 +37,15 @@ def find_takes(folder: Path, without: Path | None = None, undescribed: bool = Fa
             of one name.
     """
     if not folder.is_dir():
-        raise InputError(
-            f"{folder}: no such folder; a shoot is a folder of takes, or a list of them (.jsonl)"
-        )
+        wrong = "is no folder" if os.path.exists(folder) else "no such folder"
+        raise InputError(f"{folder}: {wrong}; a shoot is a folder of takes, or a list of them (.jsonl)")
     left_out = None if without is None else os.path.realpath(without)
     if os.path.realpath(folder) == left_out:
         raise InputError(f"{without}: is the shoot's own folder; name another one, which may lie in it")
     search = _Search(folder, left_out)
     search.look_through(folder, described=undescribed or bool(shoot_files(folder)))
     if not search.takes:
-        raise InputError(
-            f"{folder}: holds no take; a take is a folder with {OWN}, or a clip that a {NAME} describes, "
-            "which keymark new writes"
-        )
+        raise InputError(f"{folder}: {NO_CLIP if undescribed else NO_TAKE}")
     takes = tuple(sorted(search.takes, key=lambda take: take.name))
     check_names(folder, takes)
     return Shoot(folder, takes)

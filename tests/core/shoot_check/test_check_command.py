@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _shoot import write_frames, write_shoot
-from _synthetic_take import drawn_frames, true_postures
+from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.shoot_check.take_check import TakeCheck
 from keymark.operators.cli import main
@@ -117,6 +117,7 @@ BEHIND = [[-1.0, 0, 0, 0], [0, 0, 1.0, -4.0], [0, 1.0, 0, 1.0], [0, 0, 0, 1.0]]
         (late_keyframe, f"keyframe {FRAMES + 5} lies outside the clip"),
         (said_of_take(camera={"resolution": [320, 240]}), "camera.resolution is [320, 240]"),
         (said_of_take(camera={"matrix_world": BEHIND}), "behind the camera"),
+        (said_of_take(camera={"matrix_world_frames": 5 * [MATRIX_WORLD]}), "matrix_world_frames has 5 poses"),
         (said_of_take(frame_count=12), "frame_count is 12"),
         (said_of_take(library="walkin"), "is 'walking' meant?"),
         (said_of_take(markers={"shin.L": {"color_srgb": [0, 255, 255]}}), "marker shin.L has the colour"),
