@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from keymark.core.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.operators.cli import main
 from keymark.operators.command_line import arguments
+from keymark.operators.command_line.blender_silence import blender_silence
 from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
@@ -334,6 +336,16 @@ def test_a_process_without_standard_streams_does_its_work(
     assert main(["propose", str(take), "--count", "4", "--picture", str(tmp_path / "speed.png")]) == 0
     assert main(["propose", str(take), "--count", "1"]) == 2
     assert (tmp_path / "speed.png").is_file()
+
+
+def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its exporters print where they write, and fail where standard output takes no such letters."""
+    with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        with blender_silence(debug=False):
+            print("舞者")
+        with pytest.raises(UnicodeEncodeError):
+            print("舞者")
 
 
 def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess.Popen[str]":
