@@ -105,7 +105,7 @@ def conversion_s(take: Path) -> dict[str, float]:
     load_project()
     import cv2
     from keymark.core.shoot.description import chosen_settings, describe
-    from keymark.operators.command_line.conversion import convert
+    from keymark.operators.command_line.conversion.unit import convert
 
     cv2.setNumThreads(1)
     description = describe(take)

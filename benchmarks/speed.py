@@ -64,7 +64,7 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     load_project()
     import bpy  # noqa: F401  # loading it is part of the start-up
     from keymark.core.shoot.description import chosen_settings, describe
-    from keymark.operators.command_line.conversion import convert
+    from keymark.operators.command_line.conversion.unit import convert
 
     clock = StageClock()
     started = time.perf_counter() - began

@@ -75,9 +75,7 @@ def read_record(folder: Path) -> ConversionRecord:
     """
     path = folder / NAME
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-    version = fields.whole("schema_version", 1, 10**6)
-    if version > SCHEMA_VERSION:
-        raise InputError(f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}")
+    fields.check_version(SCHEMA_VERSION)
     return ConversionRecord(
         digest=_line(fields, "digest"),
         keymark=_line(fields, "keymark"),
@@ -97,11 +95,18 @@ def read_record(folder: Path) -> ConversionRecord:
     )
 
 
+def record_if_any(folder: Path) -> ConversionRecord | None:
+    """A folder's record; None where there is none, or none that can be read."""
+    try:
+        return read_record(folder)
+    except InputError:
+        return None
+
+
 def is_finished(folder: Path, digest: str) -> bool:
     """Whether a folder holds the whole result of a conversion with this digest."""
-    try:
-        record = read_record(folder)
-    except InputError:
+    record = record_if_any(folder)
+    if record is None:
         return False
     return record.digest == digest and all(os.path.isfile(folder / name) for name in record.files)
 

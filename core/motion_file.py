@@ -70,9 +70,7 @@ def read_motion(path: Path) -> Motion:
         InputError: The file or a field is unusable; the sentence names it.
     """
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-    version = fields.whole("schema_version", 1, 10**6)
-    if version > SCHEMA_VERSION:
-        raise InputError(f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}")
+    fields.check_version(SCHEMA_VERSION)
     count = fields.whole("frame_count", 1, 10**6)
     lengths = fields.child("actor", "an object with segments_m").child("segments_m", "an object of lengths")
     try:

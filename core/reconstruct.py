@@ -21,6 +21,7 @@ from .footage.read_clip import read_clip
 from .footage.reading import Reading
 from .footage.reading_key import of_same_footage
 from .footage.tracks import ExpectedRegions, RegionTracks
+from .methods import METHODS
 from .motion import Motion
 from .notes import clip_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .observation.regions import MarkerPlacement, RegionModel
@@ -28,7 +29,6 @@ from .prior.interpolation import interpolate
 from .prior.speed import marker_speed
 from .prior.style import with_style
 from .progress import Job, Progress, stretch, within
-from .shoot.conversion_settings import METHODS
 from .take import Take, check_frame_count, check_in_front, open_clip
 
 Array = NDArray[np.float64]

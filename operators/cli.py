@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
-from ..core.errors import InputError, KeymarkError
+from ..core.errors import InputError, KeymarkError, unexpected
 from .command_line.arguments import build_parser
 from .command_line.blender_silence import codec_silence
 from .command_line.line_parser import UsageError, complain
@@ -35,6 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
+    _open_standard_streams()
     words = list(sys.argv[1:] if argv is None else argv)
     if words[: len(AS_IN_BLENDER)] == AS_IN_BLENDER:
         words = words[len(AS_IN_BLENDER) :]
@@ -58,13 +59,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeymarkError as error:
         return _say(str(error), FAILED, debug)
     except ImportError as error:
-        lacking = error.name or str(error)
-        return _say(
-            f"the Python module {lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug
-        )
+        lacking = f"the Python module {error.name}" if error.name else "a Python module"
+        return _say(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
     except Exception as error:
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        return _say(f"failed unexpectedly ({what}); --debug shows where", FAILED, debug)
+        return _say(f"failed unexpectedly ({unexpected(error)}); --debug shows where", FAILED, debug)
+
+
+def _open_standard_streams() -> None:
+    """Let nobody hear what a process says that was started with closed streams.
+
+    Else the next files to be opened got their numbers, and what Blender says would be written into these.
+    """
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))
 
 
 def _say(sentence: str, status: int, debug: bool) -> int:

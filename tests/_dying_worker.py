@@ -15,9 +15,9 @@ from _boot import load_package
 load_package()
 
 from keymark.operators.cli import main  # noqa: E402
-from keymark.operators.command_line import conversion  # noqa: E402
+from keymark.operators.command_line.conversion import unit  # noqa: E402
 
-write = conversion._write_scene
+write = unit._write_scene
 
 
 def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
@@ -29,5 +29,5 @@ def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
     write(take, motion, place, *rest)
 
 
-conversion._write_scene = write_or_die
+unit._write_scene = write_or_die
 sys.exit(main(["worker"]))

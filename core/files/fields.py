@@ -94,6 +94,16 @@ class Fields:
             raise InputError(f"{self.at(name)}: {name} is {shown(value)}; it must be {valid}")
         return int(value)
 
+    def check_version(self, newest: int) -> None:
+        """Refuse what a newer Keymark has written, by its `schema_version`; `newest` is still read."""
+        version = self.whole("schema_version", 1, 10**6)
+        if version > newest:
+            place = self.at("schema_version")
+            raise InputError(
+                f"{place}: schema_version is {version}, made by a newer Keymark; "
+                f"this one reads up to {newest}"
+            )
+
     def text(self, name: str, valid: str) -> str:
         """A text that is not empty."""
         value = self.required(name, valid)

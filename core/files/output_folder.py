@@ -108,7 +108,11 @@ def real_path(path: Path) -> Path:
 
 def _target(path: Path) -> Path:
     target = real_path(path)
-    if os.path.lexists(target) and not target.is_dir():
+    try:
+        os.lstat(target)  # a name that cannot be is an error here, and from Python 3.14 on nowhere else
+    except FileNotFoundError:
+        return target
+    if not target.is_dir():
         raise FileExistsError(errno.EEXIST, "is a file; the output must be a folder, new or old")
     return target
 

@@ -6,6 +6,7 @@ from functools import cached_property
 
 from ..body.actor import Actor
 from ..body.posture import Posture
+from ..counted import counted
 
 Travel = tuple[float, float, float]
 
@@ -70,10 +71,7 @@ class Library:
     @property
     def size(self) -> str:
         """How many postures and motions, in words."""
-        postures, motions = len(self.postures), len(self.motions)
-        return (
-            f"{postures} posture{'' if postures == 1 else 's'}, {motions} motion{'' if motions == 1 else 's'}"
-        )
+        return f"{counted(len(self.postures), 'posture')}, {counted(len(self.motions), 'motion')}"
 
     @cached_property
     def by_name(self) -> Mapping[str, LibraryPosture]:

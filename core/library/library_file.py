@@ -56,12 +56,7 @@ def library_from_json(value: Any, where: str) -> Library:
     schema = fields.values.get("schema")
     if schema != SCHEMA:
         raise InputError(f'{where}: schema is {shown(schema)}; a keyframe library has "{SCHEMA}" there')
-    version = fields.whole("schema_version", 1, 10**6)
-    if version > SCHEMA_VERSION:
-        raise InputError(
-            f"{where}: schema_version is {version}, made by a newer Keymark; "
-            f"this one reads libraries up to version {SCHEMA_VERSION}"
-        )
+    fields.check_version(SCHEMA_VERSION)
     return read_library_fields(fields, HUMAN)
 
 

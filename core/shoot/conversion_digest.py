@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..footage.clips.image_sequence import find_images
-from .conversion_settings import METHODS, ConversionSettings
+from ..methods import METHODS
+from .conversion_settings import ConversionSettings
 from .description import Description
 from .shoot_file import OWN, SETTINGS
 
@@ -37,10 +39,13 @@ def conversion_digest(
     Raises:
         InputError: A file cannot be read.
     """
-    images = find_images(description.clip)
+    try:
+        images = find_images(description.clip)
+    except OSError as error:
+        raise InputError(f"{description.clip}: the clip cannot be read ({error.strerror})") from error
     footage = [description.clip] if images is None else images
     posed = settings.keyframes
-    if posed is None and description.keyframes.exists():
+    if posed is None and os.path.exists(description.keyframes):
         posed = description.keyframes
     return digest(
         FORMAT,

@@ -8,8 +8,8 @@ from ..files.fields import Fields, listed
 from ..files.inside import inside_path
 from ..files.json_file import shown
 from ..files.letters import is_hidden
+from ..methods import METHODS
 
-METHODS = ("map", "ekf", "interpolation")
 HIGHEST_FLOOR_M = 1000.0
 LONGEST_NAME = 200
 KEYFRAMES_VALID = "a path inside the take's folder, as in keyframes.json"

@@ -31,11 +31,7 @@ def read_shoot_file(path: Path) -> dict[str, Any]:
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
     if fields.has("schema_version"):
-        version = fields.whole("schema_version", 1, 10**6)
-        if version > SCHEMA_VERSION:
-            raise InputError(
-                f"{path}: schema_version is {version}; this Keymark reads up to {SCHEMA_VERSION}"
-            )
+        fields.check_version(SCHEMA_VERSION)
     if not isinstance(values.get("root", False), bool):
         raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
     return {name: value for name, value in values.items() if name not in OWN}

@@ -12,7 +12,7 @@ from ..footage.clips.video_file import VideoFile
 from ..footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ..progress import run
 from ..reconstruct import expected_regions
-from ..take import Take, check_frame_count, check_size, rate_note
+from ..take import Take, check_size, rate_note
 from .findings import Findings
 
 ENOUGH = SAMPLED_FRAMES // 2
@@ -65,8 +65,6 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
     """
     with said.noting():
         check_size(take, clip)
-    with said.noting():
-        check_frame_count(take, frames)
     rate = rate_note(take, clip) if clip.knows_its_rate else None
     if rate is not None:
         said.warn(rate)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..take import Take, check_in_front
+from ..take import Take, check_frame_count, check_in_front
 from .findings import Findings
 
 LONGEST_GAP_S = 1.0
@@ -25,6 +25,7 @@ def check_keyframes(take: Take, frames: int, with_library: bool, said: Findings)
     """
     _check_fit(take, said)
     with said.noting():
+        check_frame_count(take, frames)  # first: a moving camera may lack the poses of keyframes
         check_in_front(take)
     if said.problems or not take.keyframes:
         return

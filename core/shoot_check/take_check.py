@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from ..footage.clips.clip import Clip
 from ..footage.marker_check import MarkerReadout
 from ..match_take import take_to_match
-from ..shoot.conversion_settings import METHODS, NOTHING_CHOSEN, ConversionSettings
+from ..methods import METHODS
+from ..shoot.conversion_settings import NOTHING_CHOSEN, ConversionSettings
 from ..shoot.description import Description
 from ..shoot.shoot import ShootTake
 from ..shoot.unfilled import unfilled

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ...core.shoot.conversion_settings import METHODS
+from ...core.methods import METHODS
 from .library.arguments import add_library
 from .line_parser import Commands, LineParser, UsageError, add_command, program_name
 from .shoot_arguments import add_shoot_commands

@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from io import TextIOWrapper
 from typing import Any
 
 
@@ -29,13 +30,29 @@ def blender_silence(debug: bool) -> Iterator[None]:
         os.dup2(2 if debug else nowhere, 1)
         if not debug:
             os.dup2(nowhere, 2)
-        yield
+        with _any_letters():
+            yield
     finally:
         _flush()
         for descriptor, copy in zip((1, 2), kept, strict=True):
             os.dup2(copy, descriptor)
             os.close(copy)
         os.close(nowhere)
+
+
+@contextmanager
+def _any_letters() -> Iterator[None]:
+    """Let every letter be printed: Blender's exporters print paths, which a pipe on Windows may not take."""
+    stream = sys.stdout
+    if not isinstance(stream, TextIOWrapper):
+        yield
+        return
+    errors = stream.errors
+    stream.reconfigure(errors="backslashreplace")
+    try:
+        yield
+    finally:
+        stream.reconfigure(errors=errors)
 
 
 def _flush() -> None:

@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
 
-from ...core.errors import ConversionError
+from ...core.counted import counted
+from ...core.errors import ConversionError, unexpected
 from ...core.progress import Job, Progress, run
 from ...core.shoot.conversion_settings import ConversionSettings
 from ...core.shoot.finding.open_shoot import open_shoot
@@ -15,8 +16,8 @@ from ...core.shoot_check.take_check import TakeCheck, check_take
 from .broken_lines import terminal_columns
 from .check_text import check_summary, check_text
 from .console import arguments_console
+from .conversion.solving import chosen_libraries
 from .line_parser import UsageError
-from .matching import chosen_libraries
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
@@ -39,11 +40,7 @@ def check_command(arguments: argparse.Namespace) -> None:
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
-        raise ConversionError(f"{failing} of {_takes(len(checks))} would not convert")
-
-
-def _takes(count: int) -> str:
-    return "1 take" if count == 1 else f"{count} takes"
+        raise ConversionError(f"{failing} of {counted(len(checks), 'take')} would not convert")
 
 
 def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
@@ -67,9 +64,9 @@ def _look(
     except Exception as error:
         if debug:
             raise
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        what = unexpected(error)
         said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
-        return TakeCheck(take.name, (" ".join(said.split()),), ())
+        return TakeCheck(take.name, (said,), ())
 
 
 def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:

@@ -8,10 +8,10 @@ from ...core.shoot.conversion_settings import HIGHEST_FLOOR_M, ConversionSetting
 from ...core.shoot.description import Description, chosen_settings, describe
 from ...core.shoot.finding.take_place import take_place
 from .console import arguments_console
-from .conversion import convert
+from .conversion.result import Conversion
+from .conversion.solving import match_summary
+from .conversion.unit import convert
 from .line_parser import UsageError
-from .made import Conversion
-from .matching import match_summary
 
 
 def convert_command(arguments: argparse.Namespace) -> None:

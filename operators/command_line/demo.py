@@ -12,7 +12,7 @@ from ...core.shoot.conversion_settings import ConversionSettings
 from ...core.shoot.description import describe
 from ...core.take import Take
 from .console import arguments_console
-from .conversion import BLEND, REPORT, convert
+from .conversion.unit import BLEND, REPORT, convert
 from .convert import summary
 from .version import ROOT
 

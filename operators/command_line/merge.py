@@ -18,7 +18,7 @@ from ...core.shoot.shoot_file import whole_way
 from .blender_silence import blender_silence
 from .broken_lines import broken, terminal_columns
 from .console import Console, arguments_console
-from .conversion import MOTION, require_blender
+from .conversion.unit import MOTION, require_blender
 
 if TYPE_CHECKING:
     from ..bridge.assets.motions import MotionAsset

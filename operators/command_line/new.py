@@ -8,7 +8,7 @@ from ...core.errors import InputError
 from ...core.files.json_layout import write_readable_json
 from ...core.progress import run, within
 from ...core.shoot.finding.find_takes import find_takes
-from ...core.shoot.shoot_file import NAME, shoot_files
+from ...core.shoot.shoot_file import NAME, shoot_files, whole_way
 from ...core.shoot.template.clip_survey import ClipSurvey, survey_clips
 from ...core.shoot.template.shoot_template import clip_lines, shoot_template
 from .console import arguments_console
@@ -28,7 +28,7 @@ def new_command(arguments: argparse.Namespace) -> None:
         shoot = find_takes(folder, undescribed=True)
         survey = run(within("Looking at the clips", survey_clips(shoot), 0.0, 1.0), console.progress)
         _check_clips(folder, survey)
-        above = [file for file in shoot_files(folder) if file != (folder / NAME).absolute()]
+        above = [file for file in shoot_files(folder) if file != whole_way(folder) / NAME]
         template = shoot_template(survey, bool(above))
         write_readable_json(output, template)
         todo = to_fill_in(template)

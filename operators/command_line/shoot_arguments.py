@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ...core.shoot.conversion_settings import METHODS
+from ...core.methods import METHODS
 from .line_parser import Commands, LineParser, add_command
 
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"

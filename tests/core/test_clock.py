@@ -9,7 +9,7 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.shoot.conversion_settings import ConversionSettings
 from keymark.core.shoot.description import describe
 from keymark.operators.command_line.console import Console
-from keymark.operators.command_line.conversion import convert_if_changed
+from keymark.operators.command_line.conversion.unit import convert_if_changed
 
 FAST = ConversionSettings(method="interpolation", pictures=False)
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,9 @@ from keymark.core.motion_file import read_motion
 from keymark.core.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.operators.cli import main
-from keymark.operators.command_line import arguments, conversion
+from keymark.operators.command_line import arguments
+from keymark.operators.command_line.blender_silence import blender_silence
+from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
 FAST = ("--method", "interpolation", "--no-report")
@@ -123,7 +126,7 @@ def test_a_conversion_writes_its_files_and_says_so(
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
-    for name in set(conversion.BELONGINGS) - {f"report/{MATCHES}"}:
+    for name in set(unit.BELONGINGS) - {f"report/{MATCHES}"}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"
@@ -267,7 +270,7 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
         (place / "motion.blend").write_bytes(b"half a file")
         raise problem
 
-    monkeypatch.setattr(conversion, "_write_scene", fail)
+    monkeypatch.setattr(unit, "_write_scene", fail)
     before = tree(out.parent)
     assert convert(take, out, *FAST, "--quiet") == status
     assert sentence in one_line(capsys.readouterr().err)
@@ -283,7 +286,7 @@ def test_debug_shows_where(
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
-    monkeypatch.setattr(conversion, "_write_scene", fail)
+    monkeypatch.setattr(unit, "_write_scene", fail)
     assert convert(take, out, *FAST, "--quiet", "--debug") == 1
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("Traceback") and "something odd" in lines[-1]
@@ -293,7 +296,7 @@ def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before any work, and with the output folder as it was."""
-    monkeypatch.setattr(conversion.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(unit.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
     assert "pip install 'keymark[blender]'" in one_line(capsys.readouterr().err)
@@ -324,6 +327,27 @@ def test_proposed_frames_lie_in_the_clip(
     assert "keyframe count is 1" in one_line(capsys.readouterr().err)
 
 
+def test_a_process_without_standard_streams_does_its_work(
+    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As one that something started with `>&-`; there is nobody to tell, but the exit status tells."""
+    for stream in ("stdin", "stdout", "stderr"):
+        monkeypatch.setattr(sys, stream, None)
+    assert main(["propose", str(take), "--count", "4", "--picture", str(tmp_path / "speed.png")]) == 0
+    assert main(["propose", str(take), "--count", "1"]) == 2
+    assert (tmp_path / "speed.png").is_file()
+
+
+def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its exporters print where they write, and fail where standard output takes no such letters."""
+    with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        with blender_silence(debug=False):
+            print("舞者")
+        with pytest.raises(UnicodeEncodeError):
+            print("舞者")
+
+
 def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess.Popen[str]":
     """`python -m keymark` in a process of its own, whatever the repository's folder is called."""
     links = tmp_path / "links"
@@ -345,6 +369,15 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
     process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
     said, wrong = process.communicate()
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
+
+
+def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words are there at once: what computes is loaded by the command that needs it."""
+    monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
+    _, told = module_process(tmp_path, repository, "--help").communicate()
+    loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
+    assert "keymark.operators.command_line.shoot_arguments" in loaded
+    assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")

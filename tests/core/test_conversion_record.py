@@ -66,7 +66,10 @@ def test_a_damaged_record_vouches_for_nothing(content: bytes, tmp_path: Path) ->
 
 
 MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
-    (lambda v: v.update(schema_version=2), "schema_version is 2; this Keymark reads up to 1"),
+    (
+        lambda v: v.update(schema_version=2),
+        "version is 2, made by a newer Keymark; this one reads up to 1",
+    ),
     (lambda v: v.pop("digest"), "digest is missing"),
     (lambda v: v.update(take="x" * 2000), "take is 'xxx"),
     (lambda v: v.update(frames=0), "frames is 0"),

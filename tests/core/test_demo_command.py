@@ -10,24 +10,17 @@ from keymark.core.motion_file import read_motion
 from keymark.core.score import read_truth, score_points
 from keymark.core.take import read_take
 from keymark.operators.cli import main
-from keymark.operators.command_line import conversion, demo
+from keymark.operators.command_line import demo
 
 FRAMES = 16
 
 
 @pytest.fixture
-def take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small take in the demonstration's place, and two empty files in place of Blender's."""
     folder = write_synthetic_take(tmp_path / "demo", FRAMES)
     shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
 
-    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> str:
-        for name in (conversion.BLEND, conversion.BVH):
-            (place / name).touch()
-        return "0" * 64
-
-    monkeypatch.setattr(conversion, "require_blender", lambda what: None)
-    monkeypatch.setattr(conversion, "_write_scene", write)
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
     return folder

@@ -11,7 +11,8 @@ from keymark.core.files import inside, json_file
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
-from keymark.core.shoot import find_takes, shoot_file, take_list
+from keymark.core.shoot import shoot_file
+from keymark.core.shoot.finding import find_takes, take_list
 
 MIB = 2**20
 LIMITS = {

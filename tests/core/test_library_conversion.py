@@ -121,13 +121,13 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
 ) -> None:
     """Status 1, one line, and the output folder as it was; a take that is posed converts all the same."""
     from keymark.core.match_take import LibraryChoice
-    from keymark.operators.command_line import matching
+    from keymark.operators.command_line.conversion import solving
 
     def nothing_fits(_take: object, _reading: object, given: Any, _floor_m: object) -> Any:
         yield from ()
         return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits")
 
-    monkeypatch.setattr(matching, "match_take", nothing_fits)
+    monkeypatch.setattr(solving, "match_take", nothing_fits)
     monkeypatch.setattr(folders, "SHIPPED", tmp_path)
     assert convert(take, tmp_path / "out", "--library", "auto", "--quiet") == 1
     said = capsys.readouterr().err

@@ -93,8 +93,7 @@ class FrameWatch:
             return False
         step = max(min(image.shape[:2]) // _SIDE, 1)
         small = image[step // 2 :: step, step // 2 :: step].copy()
-        spread = np.sort((small.max(axis=-1) - small.min(axis=-1)).ravel())
-        self._colour = max(self._colour, int(spread[-min(_FEW_PIXELS, spread.size)]))
+        self._colour = max(self._colour, _colourfulness(small))
         if index % _COMBED_EVERY == 0:
             self._combed.append(combing(image))
         if self._last is not None:
@@ -123,6 +122,15 @@ class FrameWatch:
     def _cuts(self) -> tuple[int, ...]:
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
         return tuple(index for index, one in self._changes.items() if one > max(_CUT, _CUT_MORE * usual))
+
+
+def _colourfulness(image: Image) -> int:
+    """Levels between the channels of all but a few pixels, at most."""
+    blue, green, red = cv2.split(image)
+    brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)
+    spread = (brightest - darkest).ravel()
+    last = spread.size - min(_FEW_PIXELS, spread.size)
+    return int(np.partition(spread, last)[last])
 
 
 def _ranges(frames: Sequence[int], first: int) -> str:

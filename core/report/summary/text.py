@@ -63,11 +63,6 @@ def duration(seconds: float) -> str:
     return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
-def counted(count: int, one: str, many: str | None = None) -> str:
-    """`1 take`, `2 takes`."""
-    return f"{count} {one if count == 1 else many or one + 's'}"
-
-
 def _is_hidden(letter: str) -> bool:
     return letter in TURNING or letter in BREAKS or unicodedata.category(letter) in ("Cc", "Cs")
 

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from ...conversion_record import ConversionRecord, read_record
-from ...errors import InputError
+from ...conversion_record import record_if_any
 from ..shoot import Shoot, ShootTake
 from .failures import read_failure
 from .outcome import Outcome, Status
@@ -17,15 +16,8 @@ def gather_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:
 def gathered(take: ShootTake, output: Path) -> Outcome:
     """What became of one take as the folder of the results shows it; its input is not looked at."""
     folder = output / take.name
-    record = _record(folder)
+    record = record_if_any(folder)
     failure = read_failure(output, take.name)
     if failure is not None:
         return Outcome(take.name, folder, Status.FAILED, record, failure.error)
     return Outcome(take.name, folder, Status.WAITING if record is None else Status.CONVERTED, record)
-
-
-def _record(folder: Path) -> ConversionRecord | None:
-    try:
-        return read_record(folder)
-    except InputError:
-        return None

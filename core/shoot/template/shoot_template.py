@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from ...counted import counted
+from ...files.fields import listed
 from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
 from ..shoot_file import SCHEMA_VERSION
 from .clip_survey import ClipSurvey
@@ -43,16 +45,20 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
 
 def clip_lines(survey: ClipSurvey) -> list[str]:
     """What the clips have in common and where they differ, one line each."""
-    lines = [f"{_count(len(survey.clips))}, {_time(survey)}"]
+    frames = sum(clip.frames for clip in survey.clips)
+    lines = [f"{counted(len(survey.clips), 'clip')}, {counted(frames, 'frame')} in all"]
     lines += [
-        f"{_count(count)} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
+        f"{counted(count, 'clip')} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
         for (width, height), count in survey.sizes.most_common()
     ]
     lines += [
-        f"{_count(count)} {_at(fps)}{_examples(survey, fps=fps)}" for fps, count in survey.rates.most_common()
+        f"{counted(count, 'clip')} {_at(fps)}{_examples(survey, fps=fps)}"
+        for fps, count in survey.rates.most_common()
     ]
     if survey.described:
-        lines.append(f"described already, which counts before what stands here: {_named(survey.described)}")
+        lines.append(
+            f"described already, which counts before what stands here: {listed(survey.described, MOST_NAMED)}"
+        )
     lines += [f"cannot be read: {sentence}" for sentence in survey.unreadable[:MOST_NAMED]]
     if len(survey.unreadable) > MOST_NAMED:
         lines.append(f"and {len(survey.unreadable) - MOST_NAMED} more cannot be read")
@@ -70,7 +76,8 @@ def _rate(survey: ClipSurvey) -> dict[str, Any]:
     told = "left out, for the clips differ: each tells its own"
     if not images:
         return {"//fps": told}
-    return {"//fps": f"{told}, but for images, beside which NAME.take.json must say it: {_named(images)}"}
+    said = f"{told}, but for images, beside which NAME.take.json must say it"
+    return {"//fps": f"{said}: {listed(images, MOST_NAMED)}"}
 
 
 def _camera(survey: ClipSurvey) -> dict[str, Any]:
@@ -134,17 +141,8 @@ def _library(survey: ClipSurvey) -> dict[str, Any]:
     }
 
 
-def _count(count: int) -> str:
-    return "1 clip" if count == 1 else f"{count} clips"
-
-
 def _at(fps: float | None) -> str:
     return "of images, whose rate nothing tells" if fps is None else f"at {fps:g} frames per second"
-
-
-def _time(survey: ClipSurvey) -> str:
-    frames = sum(clip.frames for clip in survey.clips)
-    return f"{frames} frames in all" if frames != 1 else "1 frame in all"
 
 
 def _examples(
@@ -156,9 +154,4 @@ def _examples(
         for clip in survey.clips
         if (size is None or clip.size == size) and (fps is False or clip.fps == fps)
     ]
-    return f": {_named(names)}" if 2 * len(names) < len(survey.clips) else ""
-
-
-def _named(names: tuple[str, ...] | list[str]) -> str:
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + more
+    return f": {listed(names, MOST_NAMED)}" if 2 * len(names) < len(survey.clips) else ""

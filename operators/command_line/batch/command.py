@@ -5,6 +5,7 @@ import errno
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -16,9 +17,9 @@ from ....core.shoot.finding.open_shoot import open_shoot
 from ....core.shoot.finding.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ..console import Console, arguments_console
-from ..conversion import require_blender
+from ..conversion.solving import chosen_libraries
+from ..conversion.unit import require_blender
 from ..line_parser import UsageError
-from ..matching import chosen_libraries
 from .memory import machine_bytes, processors
 from .protocol import Job
 from .supervisor import Supervisor
@@ -60,8 +61,10 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
     start = partial(WorkerProcess.started, worker_words(), arguments.debug, LONGEST_SILENCE_S)
     try:
         Supervisor(jobs, start, tally).run(min(_workers(arguments.jobs), max(len(jobs), 1)))
-    except KeyboardInterrupt:
         tally.finish()
+    except KeyboardInterrupt:
+        with suppress(KeyboardInterrupt):  # whoever is in such a hurry can do without a summary
+            tally.finish()
         counts = tally.counts
         ready = counts["converted"] + counts["unchanged"]
         wrong = f", {counts['failed']} failed" if counts["failed"] else ""
@@ -71,7 +74,6 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
     except ConversionError:
         tally.finish()
         raise
-    tally.finish()
     console.finish(tally.to_dict(), tally.text())
     failed = [outcome.take for outcome in tally.outcomes if outcome.error is not None]
     if failed and arguments.failed_takes == "fail":

@@ -3,13 +3,13 @@
 import time
 from collections import Counter
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ....core.conversion_record import ConversionRecord, read_record
-from ....core.errors import InputError, KeymarkError
+from ....core.conversion_record import ConversionRecord, record_if_any
+from ....core.counted import counted
+from ....core.errors import KeymarkError
 from ....core.shoot.outcomes.failures import (
     CONVERSION,
     Failure,
@@ -83,7 +83,7 @@ class Tally:
 
     def done(self, job: Job, done: Done) -> None:
         """A take has come to its end."""
-        name, record = job.take.name, _record(job.folder)
+        name, record = job.take.name, record_if_any(job.folder)
         self._share.come(self._places[name], 1.0, _frames(record))
         if done.result == FAILED:
             self._keep(Failure(name, done.error or "failed", done.kind or CONVERSION))
@@ -148,7 +148,7 @@ class Tally:
         """What has become of the takes, in lines for a person, failures with their reasons."""
         counts = ", ".join(f"{count} {name}" for name, count in self.counts.items() if count)
         failed = [outcome for outcome in self.outcomes if outcome.status is Status.FAILED]
-        lines = [f"{_takes(len(self._names))}: {counts}."]
+        lines = [f"{counted(len(self._names), 'take')}: {counts}."]
         if failed:
             lines.append("Failed:")
             for outcome in failed:
@@ -169,7 +169,7 @@ class Tally:
 
     def _show(self) -> None:
         count, failed = len(self._names), self._counts[Status.FAILED]
-        words = f"{count - self._counts[Status.WAITING]} of {_takes(count)}"
+        words = f"{count - self._counts[Status.WAITING]} of {counted(count, 'take')}"
         self.console.overall(self._share.value, f"{words}, {failed} failed" if failed else words)
 
     def _keep(self, failure: Failure) -> None:
@@ -187,15 +187,5 @@ def _known(outcome: Outcome) -> tuple[Status, str | None, ConversionRecord | Non
     return outcome.status, outcome.error, outcome.record
 
 
-def _record(folder: Path) -> ConversionRecord | None:
-    with suppress(InputError):
-        return read_record(folder)
-    return None
-
-
 def _frames(record: ConversionRecord | None) -> int | None:
     return None if record is None else record.frames
-
-
-def _takes(count: int) -> str:
-    return "1 take" if count == 1 else f"{count} takes"

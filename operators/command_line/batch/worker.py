@@ -10,12 +10,12 @@ from typing import BinaryIO
 
 import cv2
 
-from ....core.errors import BusyError, InputError, KeymarkError
+from ....core.errors import BusyError, InputError, KeymarkError, unexpected
 from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion import convert, convert_if_changed
+from ..conversion.unit import convert, convert_if_changed
 from ..line_parser import UsageError
 from ..version import version
 from .memory import resident_bytes
@@ -62,8 +62,8 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
     except OSError as wrong:
         reason = wrong.strerror or wrong
         result, error, kind = FAILED, f"{job.take.place}: cannot be converted ({reason})", CONVERSION
-    except Exception as unexpected:
-        what = f"{type(unexpected).__name__}: {unexpected}" if str(unexpected) else type(unexpected).__name__
+    except Exception as unknown:
+        what = unexpected(unknown)
         result, error, kind = FAILED, f"failed unexpectedly ({what}); convert --debug shows where", CRASH
     return Done(result, time.perf_counter() - started, error, kind, resident_bytes())
 

@@ -8,7 +8,7 @@ from ....core.library.shelf import find_library
 from ....core.library.texts import checked_identifier
 from ..blender_silence import blender_silence
 from ..console import arguments_console
-from ..conversion import require_blender
+from ..conversion.unit import require_blender
 from .folders import library_folders, refuse_existing
 from .looking import described, library_summary
 

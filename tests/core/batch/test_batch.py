@@ -12,6 +12,7 @@ from keymark.core.shoot.outcomes.failures import read_failure
 from keymark.operators.cli import main
 from keymark.operators.command_line.batch import command, supervisor
 from keymark.operators.command_line.batch.share import Share
+from keymark.operators.command_line.line_parser import program_name
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 
@@ -178,7 +179,9 @@ def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
     studio.takes("a", "interrupt", "z")
     assert studio.batch(jobs=1) == 130
     said = capsys.readouterr()
-    assert said.err == "keymark: interrupted; 1 of 3 takes are converted; the same command goes on\n"
+    assert (
+        said.err == f"{program_name()}: interrupted; 1 of 3 takes are converted; the same command goes on\n"
+    )
     statuses = {name: row["status"] for name, row in studio.summary.items()}
     assert statuses == {"a": "converted", "interrupt": "waiting", "z": "waiting"}
     for job in studio.told:

@@ -268,6 +268,7 @@ def test_a_paper_that_is_not_to_be_trusted_is_cleared_away(tmp_path: Path) -> No
     for change in (
         {"made": ["../../elsewhere"]},
         {"gone": ["/etc/passwd"]},
+        {"gone": ["..\\..\\elsewhere"]},
         {"aside": {"a.bin": "../a.bin"}},
         {"made": "seal.json"},
         {"target": "another"},

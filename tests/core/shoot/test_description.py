@@ -144,7 +144,7 @@ def test_null_gives_a_choice_back(shoot: Path) -> None:
     ("content", "said"),
     [
         ({"root": 1}, "root is 1; it must be true or false"),
-        ({"schema_version": 2}, "schema_version is 2; this Keymark reads up to 1"),
+        ({"schema_version": 2}, "schema_version is 2, made by a newer Keymark; this one reads up to 1"),
         ({"schema_version": 0}, "schema_version is 0"),
         ({"actr": {}}, "unknown field 'actr' \\(is 'actor' meant\\?\\)"),
         ({"clip": "a.mp4"}, "unknown field 'clip'"),

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from _shoot import write_frames, write_shoot
-from _synthetic_take import drawn_frames, true_postures
+from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.shoot_check.take_check import TakeCheck
 from keymark.operators.cli import main
 from keymark.operators.command_line import check as command
 from keymark.operators.command_line.check_text import check_text
+from keymark.operators.command_line.line_parser import program_name
 
 FRAMES = 10
 TAKE = "day1/take01"
@@ -117,6 +118,7 @@ BEHIND = [[-1.0, 0, 0, 0], [0, 0, 1.0, -4.0], [0, 1.0, 0, 1.0], [0, 0, 0, 1.0]]
         (late_keyframe, f"keyframe {FRAMES + 5} lies outside the clip"),
         (said_of_take(camera={"resolution": [320, 240]}), "camera.resolution is [320, 240]"),
         (said_of_take(camera={"matrix_world": BEHIND}), "behind the camera"),
+        (said_of_take(camera={"matrix_world_frames": 5 * [MATRIX_WORLD]}), "matrix_world_frames has 5 poses"),
         (said_of_take(frame_count=12), "frame_count is 12"),
         (said_of_take(library="walkin"), "is 'walking' meant?"),
         (said_of_take(markers={"shin.L": {"color_srgb": [0, 255, 255]}}), "marker shin.L has the colour"),
@@ -196,7 +198,7 @@ def test_a_mistake_of_all_is_said_once(
     own = said.out.partition("fails  day1/take01")[2].splitlines()[1]
     assert own.strip().startswith("! ") and "cannot be decoded" in own
     assert "3 takes: 0 ready, 0 to look at, 3 that would not convert" in said.out
-    assert said.err == "keymark: 3 of 3 takes would not convert\n"
+    assert said.err == f"{program_name()}: 3 of 3 takes would not convert\n"
 
 
 def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[..., Any]) -> None:
@@ -223,10 +225,12 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     assert main(["check", str(pristine), "--jobs", jobs]) == 1
     said = capsys.readouterr()
     assert "take01.mp4: looking at it failed unexpectedly (ZeroDivisionError: two lines)" in said.out
-    assert said.out.count("\nready") == 2 and said.err == "keymark: 1 of 3 takes would not convert\n"
+    assert (
+        said.out.count("\nready") == 2 and said.err == f"{program_name()}: 1 of 3 takes would not convert\n"
+    )
     raised[0] = KeyboardInterrupt()
     assert main(["check", str(pristine), "--jobs", jobs]) == 130
-    assert capsys.readouterr().err == "keymark: interrupted; nothing was written\n"
+    assert capsys.readouterr().err == f"{program_name()}: interrupted; nothing was written\n"
 
 
 def test_sentences_are_broken_to_the_terminal() -> None:

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.conversion_record import ConversionRecord
-from ...core.files.digest import content_digest
-from ...core.match_take import LibraryChoice
-from ...core.progress import run
-from ...core.reconstruct import Reconstruction
-from ...core.review import review
-from ...core.take import Take
-from .version import version
+from ....core.conversion_record import ConversionRecord
+from ....core.files.digest import content_digest
+from ....core.match_take import LibraryChoice
+from ....core.progress import run
+from ....core.reconstruct import Reconstruction
+from ....core.review import review
+from ....core.take import Take
+from ..version import version
 
 WEAKEST = 5.0
 """Percent of the frames that are less certain than what is recorded as the weakest."""

@@ -2,32 +2,35 @@
 
 import importlib.util
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.conversion_record import NAME as RECORD
-from ...core.conversion_record import is_finished, write_record
-from ...core.errors import ConversionError, InputError
-from ...core.files.output_folder import output_folder, real_path
-from ...core.keyframe_file import write_keyframes
-from ...core.library.library import Library
-from ...core.library.library_file import library_digest
-from ...core.match_take import take_to_match
-from ...core.motion import Motion
-from ...core.motion_file import write_motion
-from ...core.progress import run
-from ...core.report.pictures import MATCHES, PICTURES, write_pictures
-from ...core.shoot.conversion_digest import conversion_digest
-from ...core.shoot.conversion_settings import METHODS, ConversionSettings
-from ...core.shoot.description import Description
-from ...core.take import Take, read_described
+from ....core.conversion_record import NAME as RECORD
+from ....core.conversion_record import is_finished, write_record
+from ....core.errors import ConversionError, InputError
+from ....core.files.output_folder import output_folder, real_path
+from ....core.keyframe_file import write_keyframes
+from ....core.library.library import Library
+from ....core.library.library_file import library_digest
+from ....core.match_take import take_to_match
+from ....core.methods import METHODS
+from ....core.motion import Motion
+from ....core.motion_file import write_motion
+from ....core.progress import run
+from ....core.report.pictures import MATCHES, PICTURES, write_pictures
+from ....core.shoot.conversion_digest import conversion_digest
+from ....core.shoot.conversion_settings import ConversionSettings
+from ....core.shoot.description import Description
+from ....core.take import Take, read_described
+from ..blender_silence import blender_silence
+from ..console import Console
+from ..version import version
 from .blender_places import check_places
-from .blender_silence import blender_silence
 from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
-from .console import Console
-from .made import Conversion, conversion_record
-from .matching import chosen_libraries, solve
-from .version import version
+from .result import Conversion, conversion_record
+from .solving import chosen_libraries, solve
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
 KEYFRAMES = "keyframes.json"
@@ -59,13 +62,8 @@ def convert(
         ConversionError: No motion could be computed or written, no library fits a take that is not posed, or
             there is no Blender to write with.
     """
-    console.stage("Reading the take")
-    require_blender("writing motion.blend needs")
-    check_places(description, output)
-    aside: dict[str, str] = {}
-    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
-        inputs = _inputs(description, output, settings)
-        return _convert_into(place, output, inputs, console, debug, aside)
+    with _work(description, output, console, settings) as work:
+        return _convert(work, console, debug)
 
 
 def convert_if_changed(
@@ -80,45 +78,46 @@ def convert_if_changed(
     Returns:
         What was made; None where it was there.
     """
-    console.stage("Reading the take")
-    require_blender("writing motion.blend needs")
-    check_places(description, output)
-    aside: dict[str, str] = {}
-    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
-        inputs = _inputs(description, output, settings)
-        if is_finished(output, inputs.digest):
-            return None
-        return _convert_into(place, output, inputs, console, debug, aside)
+    with _work(description, output, console, settings) as work:
+        return None if is_finished(output, work.digest) else _convert(work, console, debug)
 
 
 @dataclass(frozen=True, eq=False)
-class _Inputs:
-    """All that a conversion follows from."""
+class _Work:
+    """One conversion: all that it follows from, and where it goes."""
 
     description: Description
     settings: ConversionSettings
     libraries: tuple[Library, ...]
     digest: str
+    output: Path
+    """Where the results will be."""
+    place: Path
+    """Where they are made."""
+    aside: dict[str, str]
+    """Files that a person has changed, and where each is kept."""
 
 
-def _inputs(description: Description, output: Path, settings: ConversionSettings) -> _Inputs:
-    libraries = () if settings.library is None else chosen_libraries(settings.library)
-    digests = [library_digest(library) for library in libraries]
-    made_of = conversion_digest(description, settings, digests, output, version())
-    return _Inputs(description, settings, libraries, made_of)
+@contextmanager
+def _work(
+    description: Description, output: Path, console: Console, settings: ConversionSettings
+) -> Iterator[_Work]:
+    """The folder for a conversion while it is held, and what the take, its settings and libraries come to."""
+    console.stage("Reading the take")
+    require_blender("writing motion.blend needs")
+    check_places(description, output)
+    aside: dict[str, str] = {}
+    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
+        libraries = () if settings.library is None else chosen_libraries(settings.library)
+        digests = [library_digest(library) for library in libraries]
+        digest = conversion_digest(description, settings, digests, output, version())
+        yield _Work(description, settings, libraries, digest, output, place, aside)
 
 
-def _convert_into(
-    place: Path,
-    output: Path,
-    inputs: _Inputs,
-    console: Console,
-    debug: bool,
-    aside: dict[str, str],
-) -> Conversion:
-    description, settings = inputs.description, inputs.settings
+def _convert(work: _Work, console: Console, debug: bool) -> Conversion:
+    description, settings, output, place = work.description, work.settings, work.output, work.place
     take = _take(description, settings, output)
-    solving = solve(take, inputs.libraries, settings.method or METHODS[0], settings.floor_m)
+    solving = solve(take, work.libraries, settings.method or METHODS[0], settings.floor_m)
     solved = run(solving, console.progress)
     take, result = solved.take, solved.reconstruction
     console.stage("Writing the motion")
@@ -133,11 +132,11 @@ def _convert_into(
         write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
     made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
     files = tuple(output / name for name in (*made, RECORD))
-    aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
-    kept = (kept_note(*names) for names in aside.items())
+    work.aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
+    kept = (kept_note(*names) for names in work.aside.items())
     left_aside = (*_left_aside(description, settings), *solved.unfit, *kept)
     conversion = Conversion(take, result, files, solved.choice, left_aside)
-    write_record(place, conversion_record(conversion, inputs.digest, place, made, {BLEND: curves}))
+    write_record(place, conversion_record(conversion, work.digest, place, made, {BLEND: curves}))
     return conversion
 
 
@@ -183,7 +182,7 @@ def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: b
     hidden = {name: level / f"{place.name}-{name}" for name in (BLEND, BVH)}
     try:
         with blender_silence(debug):
-            from ..bridge.scene_file import write_scene
+            from ...bridge.scene_file import write_scene
 
             curves = write_scene(take, motion, hidden[BLEND], hidden[BVH])
         for name, file in hidden.items():

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from ...core.errors import InputError
-from ...core.files.output_folder import real_path
-from ...core.shoot.description import Description
+from ....core.errors import InputError
+from ....core.files.output_folder import real_path
+from ....core.shoot.description import Description
 
 LONGEST_BYTES = 1023
 """Of a path in Blender."""

@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.errors import ConversionError
-from ...core.keyframe_file import FEWEST_KEYFRAMES
-from ...core.library.library import Library
-from ...core.library.shelf import find_library, shelved
-from ...core.library.texts import EVERY_LIBRARY
-from ...core.match_take import LibraryChoice, match_take, with_matches
-from ...core.progress import Job, stretch
-from ...core.reconstruct import Reconstruction, read_footage, reconstruct
-from ...core.take import Take
-from .library.folders import library_folders
+from ....core.errors import ConversionError
+from ....core.keyframe_file import FEWEST_KEYFRAMES
+from ....core.library.library import Library
+from ....core.library.shelf import find_library, shelved
+from ....core.library.texts import EVERY_LIBRARY
+from ....core.match_take import LibraryChoice, match_take, with_matches
+from ....core.progress import Job, stretch
+from ....core.reconstruct import Reconstruction, read_footage, reconstruct
+from ....core.take import Take
+from ..library.folders import library_folders
 
 NAMED = 3
 """So many libraries are named where none fits."""

@@ -3,11 +3,11 @@
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from ...core.conversion_record import NAME, read_record
-from ...core.errors import InputError
-from ...core.files.arrival import free_name
-from ...core.files.digest import content_digest
-from ...core.files.json_file import read_json, write_json
+from ....core.conversion_record import NAME, read_record
+from ....core.errors import InputError
+from ....core.files.arrival import free_name
+from ....core.files.digest import content_digest
+from ....core.files.json_file import read_json, write_json
 
 AS_MADE = ".as_made.json"
 """SHA-256 of files as they were made, beside the results; for those that differ from run to run, though
