@@ -58,12 +58,8 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert new(folder) == 0
     said = capsys.readouterr().out
     open_fields = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
-    assert (
-        len(open_fields) == 7
-        and open_fields[0] == "camera.matrix_world"
-       
+    assert len(open_fields) == 7 and open_fields[0] == "camera.matrix_world"
     assert "the lens, which is a guess" in said
-    )
     assert main(["check", str(folder)]) == 1
     said = capsys.readouterr().out
     assert said.count("still to be filled in") == 7 and said.count("\nfails") == 3
