@@ -4,10 +4,8 @@ import json
 import os
 import re
 import shutil
-import sys
 import tomllib
 from collections.abc import Callable
-from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +20,6 @@ from keymark.core.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.operators.cli import main
 from keymark.operators.command_line import arguments
-from keymark.operators.command_line.blender_silence import blender_silence
 from keymark.operators.command_line.conversion import unit
 
 FRAMES = 16
@@ -308,24 +305,3 @@ def test_proposed_frames_lie_in_the_clip(
     assert cv2.imread(str(tmp_path / "speed.png")) is not None
     assert main(["propose", str(take), "--count", "1"]) == 2
     assert "keyframe count is 1" in one_line(capsys.readouterr().err)
-
-
-def test_a_process_without_standard_streams_does_its_work(
-    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As one that something started with `>&-`; there is nobody to tell, but the exit status tells."""
-    for stream in ("stdin", "stdout", "stderr"):
-        monkeypatch.setattr(sys, stream, None)
-    assert main(["propose", str(take), "--count", "4", "--picture", str(tmp_path / "speed.png")]) == 0
-    assert main(["propose", str(take), "--count", "1"]) == 2
-    assert (tmp_path / "speed.png").is_file()
-
-
-def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its exporters print where they write, and fail where standard output takes no such letters."""
-    with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
-        monkeypatch.setattr(sys, "stdout", stream)
-        with blender_silence(debug=False):
-            print("舞者")
-        with pytest.raises(UnicodeEncodeError):
-            print("舞者")
