@@ -96,7 +96,6 @@ def read_take(
     keyframes: Path | None = None,
     *,
     keyframes_required: bool = True,
-    fewest_keyframes: int = FEWEST_KEYFRAMES,
 ) -> Take:
     """Read a take and what it inherits from the shoots above; the clip is not checked yet (see `open_clip`).
 
@@ -104,14 +103,11 @@ def read_take(
         place: The folder that holds `take.json`, or a clip that a shoot describes (see `shoot/description`).
         keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
         keyframes_required: Whether a take without a keyframe file is refused.
-        fewest_keyframes: So many the keyframe file must hold; with 0 the folder's own is not even opened.
 
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
-    return read_described(
-        describe(place), keyframes, keyframes_required=keyframes_required, fewest_keyframes=fewest_keyframes
-    )
+    return read_described(describe(place), keyframes, keyframes_required=keyframes_required)
 
 
 def read_described(
@@ -121,7 +117,10 @@ def read_described(
     keyframes_required: bool = True,
     fewest_keyframes: int = FEWEST_KEYFRAMES,
 ) -> Take:
-    """Read a take as it is described; see `read_take`."""
+    """Read a take as it is described; see `read_take`.
+
+    `fewest_keyframes` says how many the keyframe file must hold; with 0 the take's own is not even opened.
+    """
     fields = description.fields
     if description.inherits:
         fields = _with_the_clip(fields, description.clip)

@@ -41,6 +41,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
         with reported(self):
             from ..core.errors import InputError
             from ..core.progress import run
+            from ..core.shoot.finding.take_place import check_free
             from ..core.take import write_take
             from .bridge.scene_take import read_scene_take
 
@@ -57,6 +58,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
                 )
             )
             folder = Path(bpy.path.abspath(self.directory))
+            check_free(folder)
             folder.mkdir(parents=True, exist_ok=True)
             write_take(take, folder)
             for note in notes:

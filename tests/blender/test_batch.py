@@ -105,18 +105,17 @@ def test_two_workers_give_the_same_bytes_as_one(
 
 
 def test_what_is_converted_is_skipped_until_its_input_changes(
-    shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    shoot: Path, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A second run leaves every file alone; other keyframes or a lost file are reason to convert a take."""
+    """A run on a copy leaves every file alone; other keyframes or a lost file are reason to convert."""
     own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
     shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
     (own / "day1" / "text.mp4").unlink()
-    out = tmp_path / "out"
-    assert batch(own, out, capsys, "--jobs", "2")[0] == 0
-    before = {file: file.stat().st_mtime_ns for file in out.rglob("*.json")}
-    status, said = batch(own, out, capsys, "--jobs", "2")
-    assert status == 0 and set(statuses(said).values()) == {"unchanged"}
-    assert {file: file.stat().st_mtime_ns for file in out.rglob("*.json")} == before
+    out = Path(shutil.copytree(results, tmp_path / results.name))
+    before = {file: file.stat().st_mtime_ns for file in (out / "day1").rglob("*.json")}
+    status, said = batch(own, out, capsys, "--jobs", "1")
+    assert status == 0 and statuses(said) == dict.fromkeys(GOOD, "unchanged")
+    assert {file: file.stat().st_mtime_ns for file in (out / "day1").rglob("*.json")} == before
     posed = own / "day1" / "take02.keyframes.json"
     value = json.loads(posed.read_text(encoding="utf-8"))
     value["keyframes"] = value["keyframes"][:2]
@@ -158,12 +157,20 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to one process")
-@pytest.mark.parametrize("to_all", [False, True], ids=["asked to end", "Ctrl-C"])
 def test_an_interrupted_batch_is_whole_and_goes_on(
-    to_all: bool, shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
+    shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 130 and one line; no process is left, nothing half-written; the same command does the rest."""
-    out = shoot.parent / ("interrupted" if to_all else "ended")
+    """By Ctrl-C, and again when it is asked to end; the same command then does the rest."""
+    out = shoot.parent / "interrupted"
+    interrupt(shoot, out, os.killpg, signal.SIGINT)
+    interrupt(shoot, out, os.kill, signal.SIGTERM)
+    status, said = batch(shoot, out, capsys, "--jobs", "1")
+    assert status == 1 and said["counts"]["failed"] == 2
+    assert tree(out) == tree(results)
+
+
+def interrupt(shoot: Path, out: Path, send: Callable[[int, int], None], how: int) -> None:
+    """Interrupt a batch at its first take: status 130, one line, no process left and nothing half-written."""
     process = subprocess.Popen(
         [sys.executable, "-c", THIS_TREE.format(tests=str(TESTS)), "batch", str(shoot), "--output", str(out)]
         + ["--jobs", "2"],
@@ -174,8 +181,7 @@ def test_an_interrupted_batch_is_whole_and_goes_on(
     )
     assert process.stdout is not None
     first = process.stdout.readline()
-    send: Callable[[int, int], None] = os.killpg if to_all else os.kill
-    send(process.pid, signal.SIGINT if to_all else signal.SIGTERM)
+    send(process.pid, how)
     _, wrong = process.communicate()
     assert first.startswith("[1/5]") and process.returncode == 130
     (line,) = wrong.splitlines()
@@ -183,9 +189,6 @@ def test_an_interrupted_batch_is_whole_and_goes_on(
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)
     assert not leftovers(out)
-    status, said = batch(shoot, out, capsys, "--jobs", "1")
-    assert status == 1 and said["counts"]["failed"] == 2
-    assert tree(out) == tree(results)
 
 
 def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:

@@ -50,3 +50,15 @@ def test_a_file_means_one_take(clip: Path) -> None:
     clip.unlink()
     with pytest.raises(InputError, match="0 clips beside it are called take01"):
         take_place(clip.with_name("take01.take.json"))
+
+
+def test_a_take_is_never_saved_where_it_would_hide_others(clip: Path, tmp_path: Path) -> None:
+    """Neither among the clips of a shoot nor around folders of takes; over itself it is."""
+    bpy.ops.keymark.open_take(filepath=str(clip))
+    with pytest.raises(RuntimeError, match="holds other takes, as take01.mp4"):
+        bpy.ops.keymark.save_take(directory=str(clip.parent))
+    assert not (clip.parent / "take.json").exists()
+    for _ in range(2):
+        bpy.ops.keymark.save_take(directory=str(tmp_path / "takes" / "one"))
+    with pytest.raises(RuntimeError, match="holds other takes, as one"):
+        bpy.ops.keymark.save_take(directory=str(tmp_path / "takes"))

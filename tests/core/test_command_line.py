@@ -4,9 +4,6 @@ import json
 import os
 import re
 import shutil
-import signal
-import subprocess
-import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +12,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from _command_line import one_line, tree
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.motion_file import read_motion
@@ -50,25 +48,9 @@ def out(tmp_path: Path) -> Path:
     return folder
 
 
-def tree(folder: Path) -> dict[str, bytes | None]:
-    """Every path below a folder, with what is in the files."""
-    return {
-        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
-        for path in sorted(folder.rglob("*"))
-    }
-
-
 def convert(take: Path, out: Path, *more: str) -> int:
     """Run `keymark convert`."""
     return main(["convert", str(take), "--output", str(out), *more])
-
-
-def one_line(text: str) -> str:
-    """The single line on standard error."""
-    lines = text.splitlines()
-    assert len(lines) == 1, text
-    assert lines[0].startswith("keymark: ") or lines[0].startswith("blender --command keymark: ")
-    return lines[0]
 
 
 @pytest.mark.parametrize(
@@ -323,58 +305,3 @@ def test_proposed_frames_lie_in_the_clip(
     assert cv2.imread(str(tmp_path / "speed.png")) is not None
     assert main(["propose", str(take), "--count", "1"]) == 2
     assert "keyframe count is 1" in one_line(capsys.readouterr().err)
-
-
-def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess.Popen[str]":
-    """`python -m keymark` in a process of its own, whatever the repository's folder is called."""
-    links = tmp_path / "links"
-    links.mkdir()
-    (links / "keymark").symlink_to(repository, target_is_directory=True)
-    # Inside a Blender the libraries that its Python lacks lie in a folder of the tests' own.
-    places = [str(links), *filter(None, [os.environ.get("KEYMARK_TEST_LIBRARIES")])]
-    return subprocess.Popen(
-        [sys.executable, "-m", "keymark", *words],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
-    """The exit status is the process'."""
-    process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
-    said, wrong = process.communicate()
-    assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
-
-
-def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Words are there at once: what computes is loaded by the command that needs it."""
-    monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
-    _, told = module_process(tmp_path, repository, "--help").communicate()
-    loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
-    assert "keymark.operators.command_line.shoot_arguments" in loaded
-    assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
-def test_a_process_that_is_asked_to_end_cleans_up(
-    take: Path, out: Path, tmp_path: Path, repository: Path
-) -> None:
-    """In the middle of its work, on the signal that render farms send, it leaves the output as it was."""
-    before = tree(out.parent)
-    # Inside a Blender program this process has bpy, but the Python that it starts has none.
-    find = "import importlib.util, sys; sys.exit(importlib.util.find_spec('bpy') is None)"
-    has_blender = subprocess.run([sys.executable, "-c", find]).returncode == 0
-    words = ("convert", str(take), "--output", str(out)) if has_blender else ("propose", str(take))
-    process = module_process(tmp_path, repository, *words)
-    assert process.stdout is not None and process.stderr is not None
-    for line in process.stdout:
-        if line.startswith("Following the markers"):
-            process.send_signal(signal.SIGTERM)
-            break
-    process.stdout.close()
-    assert process.wait() == 130
-    assert "interrupted" in one_line(process.stderr.read())
-    process.stderr.close()
-    assert tree(out.parent) == before

@@ -5,16 +5,13 @@ Names, sentences and paths come from whoever filmed or shared a take.
 
 import html
 import os
-import unicodedata
 from pathlib import Path
 from urllib.parse import quote
 
+from ...files.letters import seen
+
 LONGEST = 1000
 """Characters that are shown of one text."""
-TURNING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-"""They turn the order of letters around: `gpj.exe` could pass for a picture. Names in right-to-left writing
-need none of them."""
-BREAKS = frozenset("\u2028\u2029")
 
 
 def visible(text: str) -> str:
@@ -24,7 +21,7 @@ def visible(text: str) -> str:
     marks that turn the direction of writing. The longest are cut.
     """
     shown = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
-    return "".join(_spelt(letter) if _is_hidden(letter) else letter for letter in shown)
+    return seen(shown)
 
 
 def escaped(text: str) -> str:
@@ -61,11 +58,3 @@ def duration(seconds: float) -> str:
     if whole < 3600:
         return f"{whole // 60} min {whole % 60} s"
     return f"{whole // 3600} h {whole % 3600 // 60} min"
-
-
-def _is_hidden(letter: str) -> bool:
-    return letter in TURNING or letter in BREAKS or unicodedata.category(letter) in ("Cc", "Cs")
-
-
-def _spelt(letter: str) -> str:
-    return f"\\u{ord(letter):04x}"

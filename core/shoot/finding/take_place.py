@@ -1,9 +1,10 @@
-"""Which take a file means that a person has chosen."""
+"""Which take a file means that a person has chosen, and where a new take may lie."""
 
 from pathlib import Path
 
 from ...errors import InputError
 from ..description import OWN, clip_name
+from ..shoot_file import shoot_files
 from .find_takes import VIDEOS
 
 
@@ -23,3 +24,22 @@ def take_place(file: Path) -> Path:
     if len(clips) != 1:
         raise InputError(f"{file}: {len(clips)} clips beside it are called {name}; it must tell of one")
     return clips[0]
+
+
+def check_free(folder: Path) -> None:
+    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is looked for.
+
+    Raises:
+        InputError: Clips of a shoot lie in it, or folders that are takes.
+    """
+    if not folder.is_dir() or (folder / OWN).exists():
+        return
+    shared = bool(shoot_files(folder))
+    for other in sorted(folder.iterdir()):
+        if other.name.startswith("."):
+            continue
+        if (other / OWN).is_file() or (shared and other.suffix.lower() in VIDEOS):
+            raise InputError(
+                f"{folder}: holds other takes, as {other.name}, which a {OWN} there would hide; name a "
+                "folder of its own"
+            )

@@ -74,7 +74,7 @@ def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str
     [
         ("walk über 動作 حركة", "walk über 動作 حركة"),
         ("gpj\u202eexe", "gpj\\u202eexe"),
-        ("two\nlines\x1b[2J", "two\\u000alines\\u001b[2J"),
+        ("two\nlines\x1b[2J", "two\\nlines\\x1b[2J"),
         ("no\udcffletter", "no\\udcffletter"),
         ("x" * 2 * LONGEST, "x" * LONGEST + " ..."),
     ],
