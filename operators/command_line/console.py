@@ -123,7 +123,7 @@ class Console:
             if self.as_json and not isinstance(error, BrokenPipeError):
                 reason = error.strerror or error
                 raise ConversionError(
-                    f"standard output cannot be written ({reason}), so the result is not told; the rest is done"
+                    f"standard output cannot be written ({reason}); the result is not told, the rest is done"
                 ) from error
 
 
