@@ -198,6 +198,7 @@ def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
         ([{"take": 3}], "line 1: take is 3"),
         ([{"take": "."}], r"line 1: take is '\.'"),
         ([{"take": "a"}, {"take": "A"}], "have one name"),
+        ([{"take": "day /a."}, {"take": "day/a"}], "have one name"),
         ([{"take": ".keymark/a"}], ".*where a batch keeps its own .keymark"),
         (['{"take": "\\udcff"}'], "line 1: .*half of a character"),
     ],
