@@ -69,6 +69,6 @@ def check_output(shoot: Shoot, output: Path) -> None:
 
 
 def _folded(name: str) -> str:
-    """What a name is to the file system that tells the fewest apart: Windows drops dots and spaces at ends."""
+    """What a name is to the file system that tells fewest apart: Windows drops dots and spaces at ends."""
     parts = [part.rstrip(". ") or part for part in name.split("/")]
     return unicodedata.normalize("NFC", "/".join(parts)).casefold()
