@@ -373,7 +373,7 @@ def test_damage_anywhere_is_survived(
     check_damaged(wholes[name], path, start, length, share, seed)
 
 
-@pytest.mark.slow
+@pytest.mark.faults
 @damage
 @settings(max_examples=400)
 def test_much_damage_is_survived(
