@@ -54,17 +54,42 @@ def folder_lock(file: Path, busy: str, wait: bool = False) -> Iterator[None]:
         BusyError: Another process or thread holds it.
         OSError: The file cannot be made.
     """
-    descriptor = _acquired(file, busy, wait)
+    try:
+        descriptor = _acquired(file, busy, wait)
+    except KeyboardInterrupt:  # perhaps between making the file and knowing of it
+        _remove_idle(file)
+        raise
     try:
         yield
     finally:
-        if sys.platform != "win32":  # where an open file cannot be removed, and a closed one only by the last
-            with suppress(OSError):
+        try:
+            _release(file, descriptor)
+        except KeyboardInterrupt:
+            _release(file, descriptor)
+            raise
+
+
+def _release(file: Path, descriptor: int) -> None:
+    """Remove the lock's file, then let go of it; may be called again where it was interrupted."""
+    if sys.platform != "win32":  # where an open file cannot be removed, and a closed one only by the last
+        with suppress(OSError):
+            if _is_still(file, descriptor):
                 file.unlink()
+    with suppress(OSError):
         os.close(descriptor)
-        if sys.platform == "win32":
-            with suppress(OSError):
-                file.unlink()
+    if sys.platform == "win32":
+        with suppress(OSError):
+            file.unlink()
+
+
+def _remove_idle(file: Path) -> None:
+    """Remove the lock's file where nobody holds it."""
+    with suppress(OSError):
+        descriptor = os.open(file, os.O_RDWR)
+        if _locked(descriptor, wait=False) and _is_still(file, descriptor):
+            _release(file, descriptor)
+        else:
+            os.close(descriptor)
 
 
 def _acquired(file: Path, busy: str, wait: bool) -> int:

@@ -4,7 +4,7 @@ import errno
 import os
 import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
@@ -57,7 +57,7 @@ def output_folder(
         with folder_lock(stem.with_name(stem.name + LOCK), busy):
             empty = Arrival(target, stem, seal)
             _tidy(empty)
-            empty.new.mkdir()
+            _make(empty.new)
             entered = True
             yield from _filled(empty, belongings, aside)
     except KeymarkError:
@@ -83,7 +83,21 @@ def _filled(empty: Arrival, belongings: Collection[str], aside: Mapping[str, str
         undo(empty, done)  # where this fails, the next to come ends what was begun
         clear(empty)
         raise
-    clear(empty)
+    try:
+        clear(empty)
+    except KeyboardInterrupt:
+        clear(empty)
+        raise
+
+
+def _make(folder: Path) -> None:
+    """Make a folder, or leave none where that is interrupted."""
+    try:
+        folder.mkdir()
+    except KeyboardInterrupt:
+        with suppress(OSError):
+            folder.rmdir()
+        raise
 
 
 def _tidy(empty: Arrival) -> None:

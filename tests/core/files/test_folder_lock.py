@@ -114,3 +114,24 @@ def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(ConversionError, match="No space left"):
         write_whole(tmp_path / "a.txt", fail)
     assert tree(tmp_path) == {"a.txt": b"old"}
+
+
+@pytest.mark.parametrize("call", ["open", "stat", "fstat", "unlink", "close"])
+def test_an_interruption_leaves_no_lock(call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C in the moment after any call of taking or releasing a lock, when its result is not known yet."""
+    real, interrupted = getattr(os, call), []
+
+    def interrupt(*words: object, **more: object) -> object:
+        result = real(*words, **more)
+        if not interrupted:
+            interrupted.append(call)
+            raise KeyboardInterrupt
+        return result
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, call, interrupt)
+        with pytest.raises(KeyboardInterrupt), folder_lock(tmp_path / "a.lock", "occupied"):
+            pass
+    assert interrupted and os.listdir(tmp_path) == []
+    with folder_lock(tmp_path / "a.lock", "occupied"):
+        assert os.listdir(tmp_path) == ["a.lock"]
