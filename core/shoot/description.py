@@ -18,7 +18,7 @@ from ..files.inside import check_links, inside_path
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import is_image
 from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
-from .shoot_file import NAME, read_shoot_file, shoot_files, whole_way
+from .shoot_file import NAME, shoot_fields, shoot_files, whole_way
 
 OWN = "take.json"
 KEYFRAMES = "keyframes.json"
@@ -70,8 +70,8 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
         )
     fields = Inherited()
     folders: dict[str, Path] = {}
-    for file in shared:
-        fields = fields.patched(read_shoot_file(file), str(file))
+    for file, values in shared.items():
+        fields = fields.patched(shoot_fields(file, values), str(file))
         folders[str(file)] = file.parent
     files = [*shared]
     if os.path.isfile(own) or whole:
@@ -94,7 +94,7 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
     used = [*files, clip, keyframes, *_linked_images(clip)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
-    check_links(used, [shared[0].parent if shared else folder, folder])
+    check_links(used, [files[0].parent if shared else folder, folder])
     return Description(
         place=place,
         name=whole_way(place).name if whole else clip_name(place),

@@ -21,13 +21,16 @@ OWN = ("$schema", "schema_version", "root")
 KNOWN = (*OWN, *SHARED, *SETTINGS)
 
 
-def read_shoot_file(path: Path) -> dict[str, Any]:
-    """The fields of one `shoot.json`; what they hold is checked where a take uses them.
+def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
+    """What one `shoot.json` says of takes; what the fields hold is checked where a take uses them.
+
+    Args:
+        path: The file, for sentences.
+        values: All that stands in it, as `shoot_files` gives it.
 
     Raises:
-        InputError: The file is unusable, of a newer Keymark, or has a field that is not known.
+        InputError: It is of a newer Keymark, or has a field that is not known.
     """
-    values = read_json(path, LARGEST_BYTES)
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
     if fields.has("schema_version"):
@@ -37,8 +40,8 @@ def read_shoot_file(path: Path) -> dict[str, Any]:
     return {name: value for name, value in values.items() if name not in OWN}
 
 
-def shoot_files(folder: Path) -> list[Path]:
-    """Every `shoot.json` that takes in a folder inherit from, the farthest first.
+def shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
+    """Every `shoot.json` that takes in a folder inherit from, with all that stands in it, the farthest first.
 
     They are looked for in the folder and all above it, up to one that says `"root": true`. Whatever is called
     so counts: what a broken link or a folder of that name was to say is not left out in silence.
@@ -46,15 +49,15 @@ def shoot_files(folder: Path) -> list[Path]:
     Raises:
         InputError: One that is found cannot be read.
     """
-    found: list[Path] = []
+    found: dict[Path, dict[str, Any]] = {}
     whole = whole_way(folder)
     for place in (whole, *whole.parents):
         file = place / NAME
         if os.path.lexists(file):
-            found.append(file)
-            if read_json(file, LARGEST_BYTES).get("root") is True:
+            found[file] = read_json(file, LARGEST_BYTES)
+            if found[file].get("root") is True:
                 break
-    return found[::-1]
+    return dict(reversed(found.items()))
 
 
 def whole_way(path: Path) -> Path:

@@ -20,6 +20,7 @@ from _footage import (
     take_with,
     write_numbered_take,
 )
+from _fuzz import FUZZ
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core import take
@@ -348,17 +349,15 @@ def check_damaged(whole: bytes, path: Path, start: float, length: int, share: fl
         assert np.isfinite(stamps).all() and (np.diff(stamps) > 0.0).all()
 
 
-damage = given(
+@pytest.mark.fuzz
+@settings(max_examples=25 * FUZZ)
+@given(
     name=st.sampled_from(["a.mp4", "a.mkv", "a.ts", "a.avi"]),
     start=st.floats(0.0, 1.0),
     length=st.sampled_from([1, 4, 40, 400, 4000]),
     share=st.sampled_from([1.0, 1.0, 0.9, 0.5, 0.02]),
     seed=st.integers(0, 9),
 )
-
-
-@damage
-@settings(max_examples=25)
 def test_damage_anywhere_is_survived(
     wholes: dict[str, bytes],
     tmp_path_factory: pytest.TempPathFactory,
@@ -370,21 +369,4 @@ def test_damage_anywhere_is_survived(
 ) -> None:
     """Bytes overwritten and ends cut off."""
     path = tmp_path_factory.getbasetemp() / f"damaged_{name}"
-    check_damaged(wholes[name], path, start, length, share, seed)
-
-
-@pytest.mark.faults
-@damage
-@settings(max_examples=400)
-def test_much_damage_is_survived(
-    wholes: dict[str, bytes],
-    tmp_path_factory: pytest.TempPathFactory,
-    name: str,
-    start: float,
-    length: int,
-    share: float,
-    seed: int,
-) -> None:
-    """The same, four hundred times."""
-    path = tmp_path_factory.getbasetemp() / f"much_damaged_{name}"
     check_damaged(wholes[name], path, start, length, share, seed)

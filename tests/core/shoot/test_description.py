@@ -10,7 +10,7 @@ from _synthetic_take import write_json
 from keymark.core.errors import InputError
 from keymark.core.shoot.conversion_settings import ConversionSettings
 from keymark.core.shoot.description import Description, chosen_settings, describe
-from keymark.core.shoot.shoot_file import read_shoot_file
+from keymark.core.shoot.shoot_file import shoot_fields, shoot_files
 from keymark.core.take import read_take
 
 FRAMES = 5
@@ -154,7 +154,7 @@ def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, 
     """What it means would be lost."""
     write_json(tmp_path / "shoot.json", content)
     with pytest.raises(InputError, match=said) as caught:
-        read_shoot_file(tmp_path / "shoot.json")
+        shoot_fields(*shoot_files(tmp_path).popitem())
     assert str(caught.value).startswith(str(tmp_path / "shoot.json"))
 
 
@@ -162,7 +162,7 @@ def test_what_a_shoot_file_says_of_itself_is_no_field_of_a_take(tmp_path: Path) 
     """Version, root, and where an editor finds the schema."""
     said = {"$schema": "shoot.schema.json", "schema_version": 1, "root": True, "fps": 24}
     write_json(tmp_path / "shoot.json", said)
-    assert read_shoot_file(tmp_path / "shoot.json") == {"fps": 24}
+    assert shoot_fields(*shoot_files(tmp_path).popitem()) == {"fps": 24}
 
 
 def described(folder: Path, name: str) -> Description:
