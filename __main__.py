@@ -2,7 +2,7 @@
 
 import sys
 
-from .operators.cli import main
+from .operators.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -19,7 +19,7 @@ from trials import INTERPOLATIONS, Trial, read_trial
 load_project()
 
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.score import Score  # noqa: E402
+from keymark.core.review.score import Score  # noqa: E402
 
 Array = NDArray[np.float64]
 

@@ -22,11 +22,11 @@ from takes import GROUPS, chosen_takes, group_of, load_project, write_results
 load_project()
 
 from keymark.core.body.posture import Posture  # noqa: E402
+from keymark.core.estimate.reconstruct import Reconstruction, reconstruct  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import Reconstruction, reconstruct  # noqa: E402
-from keymark.core.score import read_truth  # noqa: E402
-from keymark.core.take import Take, read_take  # noqa: E402
+from keymark.core.review.score import read_truth  # noqa: E402
+from keymark.core.take.take import Take, read_take  # noqa: E402
 from trials import Trial  # noqa: E402
 
 Array = NDArray[np.float64]

@@ -104,8 +104,8 @@ def conversion_s(take: Path) -> dict[str, float]:
     """Processor time of a conversion's parts [s] as workers do it, on one thread: a mean after a first."""
     load_project()
     import cv2
-    from keymark.core.shoot.description import chosen_settings, describe
-    from keymark.operators.command_line.conversion.unit import convert
+    from keymark.core.take.description import chosen_settings, describe
+    from keymark.operators.cli.conversion.convert_take import convert
 
     cv2.setNumThreads(1)
     description = describe(take)
@@ -193,7 +193,7 @@ def main(arguments: list[str]) -> int:
     """Measure, print, write; with --keymark, be the command line of this tree."""
     if arguments[:1] == ["--keymark"]:
         load_project()
-        from keymark.operators.cli import main as keymark
+        from keymark.operators.cli.main import main as keymark
 
         return keymark(arguments[1:])
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])

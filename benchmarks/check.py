@@ -16,11 +16,11 @@ from takes import chosen_takes, load_project, write_results
 
 load_project()
 
+from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import reconstruct  # noqa: E402
+from keymark.core.shoot.check.take_check import TakeCheck, check_take  # noqa: E402
 from keymark.core.shoot.shoot import ShootTake  # noqa: E402
-from keymark.core.shoot_check.take_check import TakeCheck, check_take  # noqa: E402
-from keymark.core.take import read_take  # noqa: E402
+from keymark.core.take.take import read_take  # noqa: E402
 
 USUAL = "demo/aerobic"
 NOISE = "noise=alls=6:allf=t"

@@ -29,10 +29,10 @@ LONG_REPEATS = 2
 load_project()
 
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.footage.colours.clip_colours import ClipColours  # noqa: E402
+from keymark.core.footage.colors.clip_colors import ClipColours  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.footage.markers import track_markers  # noqa: E402
-from keymark.core.footage.tracks import RegionTracks  # noqa: E402
+from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 
 
 def styles_of(take: Path) -> list[MarkerStyle]:

@@ -19,7 +19,7 @@ load_project()
 
 from keymark.core.library.learning import About, learn_library  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
-from keymark.core.match_take import match_take, with_matches  # noqa: E402
+from keymark.core.matching.match_take import match_take, with_matches  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
 PAIRS = ("stroll:walk", "walk:stroll", "demo/aerobic:aerobic", "aerobic:demo/aerobic")

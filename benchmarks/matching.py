@@ -19,16 +19,17 @@ from takes import chosen_takes, load_project, write_results
 
 load_project()
 
+from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
-from keymark.core.library.shelf import SHIPPED  # noqa: E402
-from keymark.core.match_take import LibraryChoice, match_take, with_matches  # noqa: E402
+from keymark.core.library.registry import SHIPPED  # noqa: E402
+from keymark.core.matching.match_take import LibraryChoice, match_take, with_matches  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import read_footage, reconstruct  # noqa: E402
-from keymark.core.score import Score, read_truth  # noqa: E402
-from keymark.core.take import Take, read_take  # noqa: E402
+from keymark.core.review.score import Score, read_truth  # noqa: E402
+from keymark.core.take.read_footage import read_footage  # noqa: E402
+from keymark.core.take.take import Take, read_take  # noqa: E402
 from trials import Trial  # noqa: E402
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.footage.camera import Camera  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
-from keymark.core.footage.tracks import RegionTracks  # noqa: E402
+from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
 Array = NDArray[np.float64]

@@ -41,8 +41,8 @@ def long_take() -> bpy.types.PropertyGroup:
     bpy.ops.keymark.open_take(filepath=str(DEMO))
     bpy.ops.keymark.reconstruct()
     scene = bpy.context.scene
-    take = keymark("operators.scene.takes").active_take(scene)
-    results = keymark("operators.scene.results")
+    take = keymark("operators.shell.takes").active_take(scene)
+    results = keymark("operators.shell.results")
     short = results.review_of(take)
     index = np.arange(FRAMES) % len(short.frames)
     longer = {
@@ -54,7 +54,7 @@ def long_take() -> bpy.types.PropertyGroup:
     longer["keyframe_indices"] = np.arange(0, FRAMES, 10)
     review = replace(short, **longer)
     results.keep_review(take, review)
-    keymark("operators.scene.reviewing").show_review(take, review)
+    keymark("operators.review.review_results").show_review(take, review)
     take.proposals.clear()
     for frame in range(1, FRAMES + 1, 10):
         take.proposals.add().frame = frame

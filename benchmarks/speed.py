@@ -63,8 +63,8 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     began = time.perf_counter()
     load_project()
     import bpy  # noqa: F401  # loading it is part of the start-up
-    from keymark.core.shoot.description import chosen_settings, describe
-    from keymark.operators.command_line.conversion.unit import convert
+    from keymark.core.take.description import chosen_settings, describe
+    from keymark.operators.cli.conversion.convert_take import convert
 
     clock = StageClock()
     started = time.perf_counter() - began
@@ -115,10 +115,11 @@ def processor_times(folder: Path) -> dict[str, float]:
     """Processor time [ms a frame] on one core of decoding, of following the markers too, and of estimates."""
     load_project()
     import cv2
+    from keymark.core.estimate.reconstruct import reconstruct
     from keymark.core.footage.markers import track_markers
     from keymark.core.progress import run
-    from keymark.core.reconstruct import expected_regions, reconstruct
-    from keymark.core.take import open_clip, read_take
+    from keymark.core.take.read_footage import expected_regions
+    from keymark.core.take.take import open_clip, read_take
 
     cv2.setNumThreads(1)
     take = read_take(folder)

@@ -20,11 +20,11 @@ from trials import Trial, read_trial
 load_project()
 
 from keymark.core.body.posture import Posture  # noqa: E402
-from keymark.core.estimate.confidence import TOLERANCE_SHARE  # noqa: E402
-from keymark.core.estimate.weak_frames import NEAREST  # noqa: E402
+from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import reconstruct  # noqa: E402
-from keymark.core.review import review  # noqa: E402
+from keymark.core.review.confidence import TOLERANCE_SHARE  # noqa: E402
+from keymark.core.review.review import review  # noqa: E402
+from keymark.core.review.weak_frames import NEAREST  # noqa: E402
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

@@ -10,14 +10,14 @@ from takes import load_project
 load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
+from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
-from keymark.core.footage.tracks import RegionTracks  # noqa: E402
-from keymark.core.motion import Motion  # noqa: E402
+from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.reconstruct import reconstruct  # noqa: E402
-from keymark.core.score import Score, read_truth, score_points  # noqa: E402
-from keymark.core.take import Take, read_take  # noqa: E402
+from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
+from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.core.take.take import Take, read_take  # noqa: E402
 
 Array = NDArray[np.float64]
 

@@ -2,13 +2,24 @@
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
-from typing import TypeVar
-
-from .body.posture import Posture
+from typing import Any, Protocol, TypeVar
 
 Result = TypeVar("Result")
 Given = TypeVar("Given")
 Shown = TypeVar("Shown")
+
+
+class Postures(Protocol):
+    """A batch of postures, as `body/posture` has them, for which jobs of every kind have no other use."""
+
+    @property
+    def batch(self) -> tuple[int, ...]:
+        """Shape of the batch."""
+        ...
+
+    def __getitem__(self, index: Any) -> Any:
+        """One posture, or a smaller batch."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +28,7 @@ class Preview:
 
     first: int
     """The first of the frames, from 0 for the clip's first."""
-    posture: Posture
+    posture: Postures
     """A batch of their postures."""
 
 

@@ -1,107 +1,44 @@
-"""Keymark in Blender's user interface and on its command line: one operator a file.
+"""Keymark in Blender's user interface and on its command line: a folder a step of the work.
 
 Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
 """
 
+from collections.abc import Iterator
 from importlib import import_module
 from types import ModuleType
 
-MODULES = (
-    "ui.properties.actor",
-    "ui.properties.marker",
-    "ui.properties.turntable",
-    "ui.properties.clip_state",
-    "ui.properties.review",
-    "ui.properties.finish",
-    "ui.properties.match",
-    "ui.properties.take",
-    "ui.properties.timeline",
-    "ui.properties.progress",
-    "ui.properties.overlays",
-    "ui.properties.library",
-    "ui.properties.scene",
-    "ui.properties.shelf",
-    "scene.results",
-    "scene.posed_frames",
-    "open_take",
-    "save_take",
-    "load_footage",
-    "use_clip",
-    "relocate_clip",
-    "keep_lens",
-    "add_performer",
-    "remove_take",
-    "import_library",
-    "export_library",
-    "install_library",
-    "discard_library",
-    "refresh_shelf",
-    "open_dropped",
-    "drop_files",
-    "new_library",
-    "edit_library",
-    "gather_library",
-    "keep_library",
-    "remove_library",
-    "add_posture",
-    "edit_postures",
-    "add_motion",
-    "edit_motions",
-    "mirror_library",
-    "apply_posture",
-    "build_actor",
-    "measure_actor",
-    "apply_lengths",
-    "add_marker",
-    "remove_marker",
-    "check_markers",
-    "pick_marker_color",
-    "show_masks",
-    "propose_keyframes",
-    "jump_to_proposal",
-    "match_library",
-    "jump_to_match",
-    "replace_match",
-    "accept_match",
-    "remove_match",
-    "fit_pose",
-    "store_keyframe",
+STEPS = (
+    "footage",
+    "markers",
+    "actor",
+    "keyframes",
+    "matching",
     "reconstruct",
-    "show_action",
-    "bake_motion",
-    "mark_asset",
-    "export_motion",
-    "learn_library",
-    "set_up_turntable",
-    "remove_turntable",
-    "show_view",
-    "jump_to_weak_frame",
-    "pose_from_motion",
-    "ui.panels.main",
-    "ui.panels.footage",
-    "ui.panels.markers",
-    "ui.panels.actor",
-    "ui.panels.keyframes",
-    "ui.panels.matches",
-    "ui.panels.reconstruct",
-    "ui.panels.review",
-    "ui.panels.overlays",
-    "ui.panels.turntable",
-    "ui.panels.finish",
-    "ui.panels.library",
-    "ui.overlays.mask",
-    "ui.overlays.registry",
-    "command",
-    "scene.upgrade",
+    "review",
+    "overlays",
+    "turntable",
+    "finish",
+    "library",
 )
-"""What is registered, in this order: properties before the operators and panels that use them."""
+"""The steps of the work, in the order in which the sidebar shows their panels."""
+
+
+def modules() -> Iterator[str]:
+    """The modules to register, in this order: all properties, then the operators and panels that use them.
+
+    A topic names its own in its `__init__`: `PROPERTIES` and `MODULES`.
+    """
+    for topic in ("shell", *STEPS, "takes"):  # a take's properties hold those of the steps
+        yield from (f"{topic}.{name}" for name in _listed(topic, "PROPERTIES"))
+    for topic in ("shell", "takes", *STEPS, "cli"):  # the main panel comes before the panels inside it
+        yield from (f"{topic}.{name}" for name in _listed(topic, "MODULES"))
 
 
 def register() -> None:
     """Register every module in order; if one fails, take back those before it and raise."""
     done: list[ModuleType] = []
     try:
-        for name in MODULES:
+        for name in modules():
             module = import_module(f".{name}", __package__)
             module.register()
             done.append(module)
@@ -113,5 +50,9 @@ def register() -> None:
 
 def unregister() -> None:
     """Unregister every module, in the reverse order."""
-    for name in reversed(MODULES):
+    for name in reversed(list(modules())):
         import_module(f".{name}", __package__).unregister()
+
+
+def _listed(topic: str, names: str) -> tuple[str, ...]:
+    return getattr(import_module(f".{topic}", __package__), names, ())

@@ -45,9 +45,9 @@ def main() -> int:
     """Run, or die."""
     when, folder, *words = sys.argv[1:]
     import bpy  # noqa: F401
-    import keymark.operators.bridge.scene_file  # noqa: F401
-    from keymark.operators.cli import main as run
-    from keymark.operators.command_line import convert  # noqa: F401
+    import keymark.operators.bridge.result_files  # noqa: F401
+    from keymark.operators.cli import convert  # noqa: F401
+    from keymark.operators.cli.main import main as run
 
     touches = Touches(folder, int(when) if when.isdigit() else None)
     sys.addaudithook(touches)

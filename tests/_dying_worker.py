@@ -14,10 +14,10 @@ from _boot import load_package
 
 load_package()
 
-from keymark.operators.cli import main  # noqa: E402
-from keymark.operators.command_line.conversion import unit  # noqa: E402
+from keymark.operators.cli.conversion import convert_take  # noqa: E402
+from keymark.operators.cli.main import main  # noqa: E402
 
-write = unit._write_scene
+write = convert_take._write_scene
 
 
 def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
@@ -29,5 +29,5 @@ def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
     write(take, motion, place, *rest)
 
 
-unit._write_scene = write_or_die
+convert_take._write_scene = write_or_die
 sys.exit(main(["worker"]))

@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from keymark.core.conversion_record import ConversionRecord
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.take.conversion_record import ConversionRecord
 
 FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
 RECORD = ConversionRecord(

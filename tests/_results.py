@@ -5,11 +5,11 @@ from pathlib import Path
 
 import bpy
 from _faults import tree
-from keymark.core.conversion_record import read_record
 from keymark.core.files.digest import content_digest
 from keymark.core.files.output_folder import real_path
+from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.curve_digest import curve_digest
-from keymark.operators.command_line.conversion.changed_files import AS_MADE
+from keymark.operators.cli.conversion.changed_files import AS_MADE
 
 VARYING = ("motion.blend", AS_MADE)
 """Blender leaves memory addresses in its files; the record has the digest of their curves."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 from keymark.core.body.human import HUMAN
-from keymark.core.review import Reason, Review, WeakFrame
+from keymark.core.review.review import Reason, Review, WeakFrame
 
 
 def made_up_review(frames: int = 13, first: float = 1.0) -> Review:

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run, within
-from keymark.core.take import read_take
+from keymark.core.take.take import read_take
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

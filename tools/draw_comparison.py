@@ -10,14 +10,14 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from keymark.core.estimate.reconstruct import METHODS, reconstruct
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.motion import Motion
 from keymark.core.progress import run
-from keymark.core.reconstruct import METHODS, reconstruct
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure
-from keymark.core.take import read_take
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import read_take
 
 TAKE = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
 FRAMES = (19, 36, 60, 75, 88, 100)

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from keymark.core.body.kinematics import Body
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.shelf import SHIPPED, shelved
+from keymark.core.library.registry import SHIPPED, shelved
 from keymark.core.report.canvas import GREY, INK, Canvas
 from keymark.core.report.posture_picture import posture_picture
 

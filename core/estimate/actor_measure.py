@@ -17,9 +17,9 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..body.standing import ARMS_LOWERED_RAD, facing_rad, standing_height_m, standing_posture
+from ..body.standing_posture import ARMS_LOWERED_RAD, facing_rad, standing_height_m, standing_posture
 from ..footage.camera import Camera
-from ..footage.tracks import RegionTracks
+from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from .calibration import (
     LARGEST,
@@ -30,7 +30,7 @@ from .calibration import (
     placement_values,
     placements_from,
 )
-from .placing import ground_place
+from .performer_placement import ground_place
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import student_weight
 

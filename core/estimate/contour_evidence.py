@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..chunks import chunks
 from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
 from ..footage.clips.album import Album

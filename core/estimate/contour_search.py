@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Pose
 from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
-from ..observation.cover import HIDDEN_DEPTH_M, Covers, outline_depth
+from ..observation.occlusion import HIDDEN_DEPTH_M, Covers, outline_depth
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -17,7 +17,7 @@ from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..footage.camera import Camera
-from ..footage.tracks import RegionTracks
+from ..footage.region_tracks import RegionTracks
 from ..observation import depths
 from ..observation.line_ends import (
     ANGLE,

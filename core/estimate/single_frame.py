@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.tracks import ExpectedRegions
+from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
-from ..prior.belief import Belief
+from ..prior.frame_prior import Belief
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated

@@ -16,17 +16,17 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
-from ..footage.tracks import RegionTracks
+from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, scaled
+from .ankle_height import lower_ankle_m
 from .contour_evidence import ContourEvidence, learn_contours
-from .footing import lower_ankle_m
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_trust
 from .match_error import depth_std_m
-from .revision import changed_frames, held, revised_share, revised_windows, same_setting
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
+from .warm_start import changed_frames, held, revised_share, revised_windows, same_setting
 from .window_problem import ClipProblem
 from .windows import Window, windows
 

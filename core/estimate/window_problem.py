@@ -12,9 +12,9 @@ from ..footage.camera import Camera
 from ..observation import depths
 from ..prior.variability import REFERENCE_STEP_S
 from ..progress import Part, Preview, scaled
+from .ankle_height import FOOTING_STD_M
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
-from .footing import FOOTING_STD_M
 from .keyframe_evidence import KeyframeEvidence
 from .terms.depths import DepthTerm
 from .terms.ground import GroundTerm

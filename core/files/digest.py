@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from .ordinary import ordinary_size
+from .regular_file import ordinary_size
 
 LENGTH = 32
 """Hexadecimal digits: 128 bits."""

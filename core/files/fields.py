@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Any
 
 from ..errors import InputError
-from .inherited import Inherited, child_place
+from .inherited_fields import Inherited, child_place
 from .json_file import shown
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from ..errors import ConversionError, InputError
 from .folder_lock import LOCK, folder_lock, hidden_name
-from .ordinary import ordinary_size
-from .to_disk import to_disk
+from .fsync import to_disk
+from .regular_file import ordinary_size
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video handed in by mistake does not."""

@@ -8,9 +8,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .arrival import Arrival, announce, clear, files_below, found_arrival, move_in, undo
+from .commit import Arrival, announce, clear, files_below, found_arrival, move_in, undo
 from .folder_lock import LOCK, folder_lock, hidden_name
-from .to_disk import LOSSES
+from .fsync import LOSSES
 
 NOTHING_ASIDE: Mapping[str, str] = {}
 

@@ -15,9 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from .region_tracks import ExpectedRegions
 from .segmentation.moments import MOMENT_POWERS
 from .segmentation.regions import Regions
-from .tracks import ExpectedRegions
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

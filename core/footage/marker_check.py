@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from .association import Candidates, candidates
 from .clips.clip_samples import ClipSamples
-from .colours.clip_colours import ClipColours
-from .colours.colour_model import ColourModel
-from .colours.colour_overlap import colour_claims
+from .colors.clip_colors import ClipColours
+from .colors.color_model import ColourModel
+from .colors.color_overlap import colour_claims
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
-from .own_regions import DEAREST_PIECE, own_regions
+from .region_assignment import DEAREST_PIECE, own_regions
+from .region_tracks import ExpectedRegions
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
-from .tracks import ExpectedRegions
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

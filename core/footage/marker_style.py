@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from .colours.colour_learning import sample_distribution
+from .colors.color_learning import sample_distribution
 
 _ALIKE_DISTANCE: Final = 2.5
 """Squared distance of two samples, in what one sample leaves open, below which light may make them equal."""

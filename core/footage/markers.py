@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from .association import candidates, main_path
 from .clips.clip import Clip
-from .colours.clip_colours import ClipColours
+from .colors.clip_colors import ClipColours
+from .detections import Sightings
 from .marker_style import MarkerStyle, colour_groups
-from .own_regions import own_regions
 from .pieces import region_quality
+from .region_assignment import own_regions
+from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import NO_REGIONS, Regions, find_regions
 from .segmentation.working_image import halvings, measuring_image
-from .sightings import Sightings
-from .tracks import ExpectedRegions, RegionTracks
 
 FloatArray = NDArray[np.float64]
 

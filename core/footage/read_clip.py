@@ -8,13 +8,13 @@ from dataclasses import replace
 from ..errors import InputError
 from .clips.album import Album
 from .clips.clip import Clip
-from .clips.frame_watch import FrameWatch
-from .clips.watched import watched
+from .clips.frame_checks import FrameWatch
+from .clips.watched_clip import watched
 from .marker_style import MarkerStyle
 from .markers import sight_markers, still_hold, tell_markers
 from .reading import Reading
 from .reading_key import of_same_footage, reading_key
-from .tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions
 
 
 def read_clip(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .clips.album import Album
-from .clips.frame_watch import NOTHING_NOTICED, Noticed
-from .sightings import Sightings
-from .tracks import RegionTracks
+from .clips.frame_checks import NOTHING_NOTICED, Noticed
+from .detections import Sightings
+from .region_tracks import RegionTracks
 
 
 @dataclass(frozen=True, eq=False)

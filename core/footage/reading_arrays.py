@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clips.album import Album
-from .clips.frame_watch import Noticed
+from .clips.frame_checks import Noticed
+from .detections import Lesson, Sightings
 from .reading import Reading
+from .region_tracks import RegionTracks
 from .segmentation.regions import Regions
-from .sightings import Lesson, Sightings
-from .tracks import RegionTracks
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..files.digest import digest, file_digest
 from .clips.image_sequence import find_images
 from .marker_style import MarkerStyle
-from .tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions
 
 _FORMAT: Final = 2
 """Raised whenever a clip is read in another way, or kept in another form."""

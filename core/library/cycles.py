@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body.course import straight_course
 from ..body.heading import about_up
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.posture_spline import straight_course
 from .library import Travel
-from .shapes import headings_rad, moved, shapes
+from .posture_shape import headings_rad, moved, shapes
 
 Array = NDArray[np.float64]
 

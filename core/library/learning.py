@@ -11,7 +11,7 @@ from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .shapes import ankle_heights, headings_rad, moved, shapes
+from .posture_shape import ankle_heights, headings_rad, moved, shapes
 from .texts import LONGEST_NAME, identifier_from
 
 Array = NDArray[np.float64]

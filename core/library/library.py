@@ -6,7 +6,7 @@ from functools import cached_property
 
 from ..body.actor import Actor
 from ..body.posture import Posture
-from ..counted import counted
+from ..text import counted
 
 Travel = tuple[float, float, float]
 

@@ -12,10 +12,10 @@ from ..body.kinematics import Body
 from ..errors import InputError
 from ..files.fields import listed
 from ..files.json_file import shown
-from .applying import applied
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .library_file import library_to_json
 from .texts import checked_identifier, name_key, told_apart
+from .transfer import applied
 
 
 class Choice(Enum):

@@ -9,9 +9,9 @@ from ..body.mirror import mirrored, mirrored_actor
 from ..body.posture import Posture
 from ..errors import InputError
 from ..files.json_file import shown
-from .applying import SAME_M
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, told_apart
+from .transfer import SAME_M
 
 MIRRORED = "mirrored"
 _SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")

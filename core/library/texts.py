@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from ..errors import InputError
+from ..files.control_characters import is_hidden
 from ..files.json_file import shown
-from ..files.letters import is_hidden
 
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60

@@ -15,7 +15,7 @@ from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..body.shapes import PieceStack, body_pieces
 from ..footage.camera import Camera
-from .cover import Covers, covers
+from .occlusion import Covers, covers
 from .outline import View, view_pieces
 
 Array = NDArray[np.float64]

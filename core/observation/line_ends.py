@@ -17,8 +17,8 @@ from ..body.rotations import cross_matrix
 from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
 from ..errors import InputError
 from ..footage.camera import Camera
+from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import axis_angle_difference, characteristics
-from ..footage.tracks import RegionTracks
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from .cover import Covers
+from .occlusion import Covers
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
-from .cover import covers, visible_share
+from .occlusion import covers, visible_share
 from .outline import TINY, Outline, outline, view_pieces
 
 Array = NDArray[np.float64]

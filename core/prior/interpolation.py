@@ -6,8 +6,8 @@ Before the first and after the last keyframe the posture is held.
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body.course import smooth_course, straight_course
 from ..body.posture import Posture
+from ..body.posture_spline import smooth_course, straight_course
 from .keyframes import Keyframe
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion
-from ..take import Take
+from ..take.motion import Motion
+from ..take.take import Take
 from .canvas import Canvas, Image
 from .overlay_sheet import paler
 from .stick_figure import draw_figure, stick_figure

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..body.posture import Posture
 from ..prior.keyframes import Keyframe, Matched
-from ..take import Take
+from ..take.take import Take
 from .canvas import ACCENT, GREY, INK, PALE, WHITE, Canvas, Image
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .overlay_sheet import paler

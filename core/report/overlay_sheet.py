@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.ellipse import ellipse_outline
-from ..footage.tracks import RegionTracks
-from ..motion import Motion
-from ..take import Take
+from ..take.motion import Motion
+from ..take.take import Take
 from .canvas import INK, WHITE, Canvas, Color, Image
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..footage.clips.clip import Clip
-from ..footage.tracks import RegionTracks
-from ..motion import Motion
-from ..take import Take
+from ..footage.region_tracks import RegionTracks
+from ..take.motion import Motion
+from ..take.take import Take
 from .canvas import SCALE, Image, write_jpg, write_png
 from .contact_sheet import chosen_frames
 from .film_strip import PICTURES as STRIP_FRAMES

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.shapes import HEAD_OVERSHOOT
-from ..body.standing import facing_rad
+from ..body.standing_posture import facing_rad
 from .canvas import Image
 from .mannequin import View, draw_mannequin, view_axes
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..motion import Motion
+from ..take.motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
 
 Array = NDArray[np.float64]

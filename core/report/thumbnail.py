@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion
+from ..take.motion import Motion
 from .canvas import GREY, Canvas, Image
 from .stick_figure import draw_figure, stick_figure
 

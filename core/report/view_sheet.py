@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..footage.camera import Camera
-from ..motion import Motion
+from ..take.motion import Motion
 from .canvas import GREY, PALE, Canvas, Image
 from .contact_sheet import LABEL, MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .conversion_settings import NOTHING_CHOSEN, ConversionSettings
-from .description import Description, chosen_settings, describe
+from ..take.conversion_settings import NOTHING_CHOSEN, ConversionSettings
+from ..take.description import Description, chosen_settings, describe
 
 
 @dataclass(frozen=True, eq=False)

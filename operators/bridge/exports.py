@@ -8,7 +8,7 @@ import bpy
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_whole
-from .scene_file import write_bvh
+from .result_files import write_bvh
 from .scene_frames import showing_action
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
-from ...core.motion import Motion
+from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .bone_channels import BoneChannels, bone_channels

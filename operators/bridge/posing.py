@@ -13,24 +13,24 @@ from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
 from ...core.estimate.keyframe_evidence import uncalibrated
-from ...core.estimate.placing import place_standing
+from ...core.estimate.performer_placement import place_standing
 from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame
 from ...core.estimate.terms.regions import ObservedRegions
 from ...core.footage.marker_style import MarkerStyle
-from ...core.footage.one_frame import regions_of_frame
 from ...core.footage.reading import Reading
 from ...core.footage.reading_key import of_same_footage, reading_key
-from ...core.footage.tracks import ExpectedRegions, RegionTracks
+from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
+from ...core.footage.single_frame_regions import regions_of_frame
 from ...core.observation.depths import DEPTH_STD_M
 from ...core.observation.regions import MarkerPlacement, RegionModel
-from ...core.prior.belief import Belief, belief_from_keyframes, belief_from_pose, belief_from_standing
+from ...core.prior.frame_prior import Belief, belief_from_keyframes, belief_from_pose, belief_from_standing
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
+from .camera_from_scene import read_camera
 from .footage import Footage
 from .frame_times import scene_frames
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
-from .scene_camera import read_camera
 
 Array = NDArray[np.float64]
 

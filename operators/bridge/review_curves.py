@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.review import Review
+from ...core.review.review import Review
 from .actions import channelbag_for
 from .keys import add_generated_keys, remove_generated_keys
 

@@ -15,10 +15,10 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.shapes import body_pieces
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.marker_style import MarkerStyle
-from keymark.core.motion import Motion
 from keymark.core.observation.regions import MarkerPlacement
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.take import Take, write_take
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take, write_take
 
 FRAMES = 13
 SIZE = (160, 120)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.body.shapes import marker_segments
-from keymark.core.motion import Motion
-from keymark.core.take import Take, read_take
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take, read_take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.scene.takes import active_take
-from keymark.operators.ui.properties.marker import SEGMENTS
+from keymark.operators.markers.properties import SEGMENTS
+from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

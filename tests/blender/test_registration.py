@@ -35,12 +35,12 @@ def test_everything_is_there_and_gone_again_twice() -> None:
         assert "reconstruct" in there
         assert "KEYMARK_PT_main" in there
         assert "Scene.keymark" in there
-        assert "keymark.operators.open_take" in there
+        assert "keymark.operators.takes.open_take" in there
         keymark.unregister()
         assert traces() == []
 
 
-@pytest.mark.parametrize("place", [1, 7, len(operators.MODULES)])
+@pytest.mark.parametrize("place", [1, 7, len(list(operators.modules()))])
 def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, place: int) -> None:
     """The error comes through, and Blender is as before."""
     broken = ModuleType("keymark.operators.broken")
@@ -50,8 +50,9 @@ def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.Monk
 
     broken.register = register
     monkeypatch.setitem(sys.modules, "keymark.operators.broken", broken)
-    modules = [*operators.MODULES[:place], "broken", *operators.MODULES[place:]]
-    monkeypatch.setattr(operators, "MODULES", tuple(modules))
+    names = list(operators.modules())
+    names.insert(place, "broken")
+    monkeypatch.setattr(operators, "modules", lambda: names)
     with pytest.raises(RuntimeError, match="broken on purpose"):
         keymark.register()
     assert traces() == []
@@ -98,9 +99,9 @@ def test_every_operator_has_a_tooltip_and_the_usual_options() -> None:
 
 def test_the_command_comes_and_goes() -> None:
     """Blender keeps the command as long as the extension is there."""
-    from keymark.operators import command
+    from keymark.operators.cli import blender_command
 
     keymark.register()
-    assert len(command._registered) == 1
+    assert len(blender_command._registered) == 1
     keymark.unregister()
-    assert command._registered == []
+    assert blender_command._registered == []

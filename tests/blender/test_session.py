@@ -8,7 +8,7 @@ from types import ModuleType
 import bpy
 import numpy as np
 import pytest
-from keymark.core.score import read_truth
+from keymark.core.review.score import read_truth
 from keymark.operators.bridge.keys import animator_frames
 
 pytestmark = [pytest.mark.usefixtures("registered"), pytest.mark.slow]

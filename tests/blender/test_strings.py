@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.running.say import counted, label, say
+from keymark.operators.shell.messages import counted, label, say
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
@@ -119,7 +119,7 @@ def test_a_sentence_is_filled_in_after_translation(monkeypatch: pytest.MonkeyPat
     say(operator, "INFO", "Opened {name}", name="walk")
     assert operator.said == ({"INFO"}, "Opened walk")
     monkeypatch.setattr(
-        "keymark.operators.running.say.bpy", SimpleNamespace(app=SimpleNamespace(translations=german))
+        "keymark.operators.shell.messages.bpy", SimpleNamespace(app=SimpleNamespace(translations=german))
     )
     say(operator, "INFO", "Opened {name}", name="walk")
     assert operator.said == ({"INFO"}, "walk geöffnet")

@@ -7,10 +7,10 @@ import bpy
 import numpy as np
 import pytest
 from _scene_state import differences, scene_state
-from keymark.core.motion import Motion
-from keymark.core.take import Take
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.scene.takes import active_take
+from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

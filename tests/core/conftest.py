@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from keymark.operators.command_line.conversion import unit
+from keymark.operators.cli.conversion import convert_take
 
 
 @pytest.fixture
@@ -11,9 +11,9 @@ def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two files with no content in place of what Blender writes; tests/blender has the real ones."""
 
     def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> str:
-        for name in (unit.BLEND, unit.BVH):
+        for name in (convert_take.BLEND, convert_take.BVH):
             (place / name).touch()
         return "0" * 64
 
-    monkeypatch.setattr(unit, "require_blender", lambda what: None)
-    monkeypatch.setattr(unit, "_write_scene", write)
+    monkeypatch.setattr(convert_take, "require_blender", lambda what: None)
+    monkeypatch.setattr(convert_take, "_write_scene", write)

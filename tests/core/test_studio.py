@@ -9,7 +9,7 @@ import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.score import read_truth
+from keymark.core.review.score import read_truth
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))

@@ -7,7 +7,7 @@ import numpy as np
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryMotion
-from keymark.core.library.motion_course import course
+from keymark.core.library.motion_playback import course
 from numpy.typing import NDArray
 
 from .solving import BALL, HEEL

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...footage.tracks import RegionTracks
+from ...footage.region_tracks import RegionTracks
 from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
 from .term import NormalEquations, student_weight

@@ -12,7 +12,7 @@ from typing import Final
 
 from ... import MOST_PIXELS
 from ...errors import InputError
-from ...files.ordinary import ordinary_size
+from ...files.regular_file import ordinary_size
 
 _LOOKED_AT: Final = 4096
 _VALID: Final = "a video that OpenCV can read"

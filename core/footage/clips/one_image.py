@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ... import MOST_PIXELS
 from ...errors import InputError
-from ...files.ordinary import ordinary_size
+from ...files.regular_file import ordinary_size
 from .opencv_silence import opencv_silence
 
 Image = NDArray[np.uint8]

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from .container import check_container, check_pixels
-from .last_rows import fill_last_rows
 from .opencv_silence import opencv_silence
+from .opencv_workarounds import fill_last_rows
 from .video_notes import video_notes
 
 Image = NDArray[np.uint8]

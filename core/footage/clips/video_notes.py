@@ -7,7 +7,7 @@ from typing import Final
 
 import cv2
 
-from .video_colour import dynamic_range
+from .video_color import dynamic_range
 
 _NOTICEABLE_SHAPE: Final = 0.01
 

@@ -10,11 +10,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..colours.colour_model import ColourModel
+from ..colors.color_model import ColourModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
-from .search import MARGIN, Box, boxes_to_measure, coloured_boxes
-from .sheet import Sheet, Window, lay_out
+from .search_windows import MARGIN, Box, boxes_to_measure, coloured_boxes
+from .window_sheet import Sheet, Window, lay_out
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 FloatArray = NDArray[np.float64]

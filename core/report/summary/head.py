@@ -3,9 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ...counted import counted
 from ...shoot.outcomes.outcome import Outcome, Status
-from .text import duration, isolated, percent
+from ...text import counted
+from .html_text import duration, isolated, percent
 from .verdict import Verdict, result
 
 NAMED = 3

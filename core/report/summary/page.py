@@ -9,13 +9,13 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ...counted import counted
 from ...shoot.outcomes.outcome import Outcome, Status
+from ...text import counted
 from .head import counts, first_things
+from .html_text import escaped, isolated, percent
 from .row import COLUMNS, SIGNS, kind, row
 from .script import SCRIPT
 from .style import STYLE
-from .text import escaped, isolated, percent
 from .verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
 MOST_ROWS = 5000

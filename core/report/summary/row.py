@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from ...conversion_record import ConversionRecord
-from ...counted import counted
 from ...shoot.outcomes.outcome import Outcome, Status
+from ...take.conversion_record import ConversionRecord
+from ...text import counted
 from ..film_strip import PICTURES as STRIP_FRAMES
 from ..film_strip import SIZE as STRIP_SIZE
 from ..pictures import STRIP
-from .text import address, duration, escaped, isolated, percent, way_to
+from .html_text import address, duration, escaped, isolated, percent, way_to
 from .verdict import Verdict, result, verdict
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from enum import StrEnum
 
-from ...conversion_record import ConversionRecord
-from ...estimate.weak_frames import WEAK_CONFIDENCE
+from ...review.weak_frames import WEAK_CONFIDENCE
 from ...shoot.outcomes.outcome import Outcome, Status
+from ...take.conversion_record import ConversionRecord
 
 GOOD = WEAK_CONFIDENCE
 """Mean confidence from which a take is good: frames believed as far need no keyframe."""

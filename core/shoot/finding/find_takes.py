@@ -4,12 +4,12 @@ import os
 from collections import Counter
 from pathlib import Path
 
-from ...conversion_record import NAME as RECORD
 from ...errors import InputError
 from ...footage.clips.image_sequence import is_image, stem_of_number
-from ..description import OWN, clip_name
+from ...take.conversion_record import NAME as RECORD
+from ...take.description import OWN, clip_name
+from ...take.shoot_file import NAME, shoot_files
 from ..shoot import Shoot, ShootTake
-from ..shoot_file import NAME, shoot_files
 from .take_names import check_names, name_of_way
 
 VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv"})

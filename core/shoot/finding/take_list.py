@@ -6,13 +6,13 @@ from typing import Any
 
 from ...errors import InputError
 from ...files.fields import Fields
-from ...files.inherited import COMMENT
-from ...files.inside import check_links, inside_path
+from ...files.inherited_fields import COMMENT
 from ...files.json_file import parse_json, shown
-from ...files.ordinary import ordinary_size
-from ..description import clip_name
+from ...files.regular_file import ordinary_size
+from ...files.safe_path import check_links, inside_path
+from ...take.description import clip_name
+from ...take.shoot_file import SETTINGS, SHARED
 from ..shoot import Shoot, ShootTake
-from ..shoot_file import SETTINGS, SHARED
 from .find_takes import MOST_TAKES
 from .take_names import check_names, name_of_way
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...files.fields import Fields
 from ...files.json_file import read_json, write_json
-from ..description import clip_name
+from ...take.description import clip_name
 from ..finding.take_names import RESERVED, name_of_way
 from ..shoot import Shoot
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from ...conversion_record import ConversionRecord
+from ...take.conversion_record import ConversionRecord
 
 
 class Status(StrEnum):

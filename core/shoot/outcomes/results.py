@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...conversion_record import NAME, ConversionRecord, read_record
 from ...errors import InputError
+from ...take.conversion_record import NAME, ConversionRecord, read_record
+from ...take.shoot_file import whole_way
 from ..finding.take_names import name_of_way
-from ..shoot_file import whole_way
 
 
 @dataclass(frozen=True, eq=False)

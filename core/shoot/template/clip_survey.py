@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...footage.clips.clip import Clip
-from ...footage.clips.glance import glance
-from ...footage.colours.strong_colours import StrongColour, strong_colours
+from ...footage.clips.spread_frames import glance
+from ...footage.colors.strong_colors import StrongColour, strong_colours
 from ...progress import run
-from ..description import KEYFRAMES, OWN, beside
+from ...take.description import KEYFRAMES, OWN, beside
 from ..shoot import Shoot, ShootTake
 
 Image = NDArray[np.uint8]

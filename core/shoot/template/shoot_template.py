@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from ...counted import counted
 from ...files.fields import listed
 from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
-from ..shoot_file import SCHEMA_VERSION
+from ...take.shoot_file import SCHEMA_VERSION
+from ...text import counted
 from .clip_survey import ClipSurvey
 
 MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")

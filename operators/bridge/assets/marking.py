@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 
 from ....core.body.human import HUMAN
-from ....core.motion import Motion
 from ....core.progress import run, within
 from ....core.report.canvas import Image
 from ....core.report.thumbnail import thumbnail
+from ....core.take.motion import Motion
 from ..actor_lengths import read_body
 from ..final_motion import motion_frames, read_values, shown_postures
 from ..rig import read_rig

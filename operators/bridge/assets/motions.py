@@ -11,8 +11,8 @@ from pathlib import Path
 
 import bpy
 
-from ....core.motion import Motion
 from ....core.report.thumbnail import thumbnail
+from ....core.take.motion import Motion
 from ..actions import assign_action, new_channelbag
 from ..armature import build_armature
 from ..bone_channels import channels_at_rest
@@ -21,8 +21,8 @@ from ..fcurves import channel_columns
 from ..frame_times import scene_frames
 from ..keys import add_generated_keys
 from ..object_space import AT_ORIGIN
-from ..scene_file import own_scene
-from .blend import write_asset_blend
+from ..result_files import own_scene
+from .asset_blend import write_asset_blend
 from .marking import AssetDetails, mark_asset
 
 MOTIONS, ACTORS = "Keymark", "Keymark Actors"

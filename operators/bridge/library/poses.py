@@ -11,9 +11,9 @@ from ....core.body.mirror import mirrored
 from ....core.body.posture import Posture
 from ....core.body.soles import lower_sole_m
 from ....core.errors import InputError
-from ....core.library.applying import applied
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.shapes import headings_rad, moved
+from ....core.library.posture_shape import headings_rad, moved
+from ....core.library.transfer import applied
 
 Array = NDArray[np.float64]
 

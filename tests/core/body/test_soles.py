@@ -7,7 +7,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m, sole_places
-from keymark.core.body.standing import standing_posture
+from keymark.core.body.standing_posture import standing_posture
 
 BODY = Body(Actor.from_stature(1.8))
 

@@ -8,7 +8,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation.line_ends import LineEnds
 
 

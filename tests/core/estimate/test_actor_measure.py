@@ -6,7 +6,7 @@ from _scene import CAMERA, SEGMENTS, film
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing import standing_height_m, standing_posture
+from keymark.core.body.standing_posture import standing_height_m, standing_posture
 from keymark.core.estimate.actor_measure import MEASURED, MeasuredActor, measure_standing
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 

@@ -15,7 +15,7 @@ from keymark.core.estimate.filter_options import FilterOptions
 from keymark.core.estimate.fuzzy import Memberships
 from keymark.core.estimate.kalman import FilterResult, FuzzyKalmanFilter, State, filter_clip
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation import depths
 from keymark.core.observation.line_ends import (
     ANGLE,

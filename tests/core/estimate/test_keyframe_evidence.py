@@ -9,7 +9,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, read_keyframes
 from keymark.core.estimate.posing_error import posing_covariance, velocities
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 from keymark.core.progress import run
 

@@ -7,8 +7,8 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m
+from keymark.core.estimate.ankle_height import SHOE_M, lower_ankle_m
 from keymark.core.estimate.calibration import placement_values
-from keymark.core.estimate.footing import SHOE_M, lower_ankle_m
 from keymark.core.estimate.keyframe_trust import read_trust
 from keymark.core.estimate.match_error import (
     PLACE_DEPTH_STD_M,

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing import standing_posture
+from keymark.core.body.standing_posture import standing_posture
 from keymark.core.estimate.keyframe_evidence import uncalibrated
-from keymark.core.estimate.placing import place_standing
+from keymark.core.estimate.performer_placement import place_standing
 from keymark.core.estimate.single_frame import FrameFit, fit_frame
 from keymark.core.estimate.terms.regions import ObservedRegions
-from keymark.core.footage.tracks import RegionTracks
-from keymark.core.prior.belief import (
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.prior.frame_prior import (
     Belief,
     belief_from_keyframes,
     belief_from_pose,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from _faults import GROWING, Killed, disk_full, faulty_calls, killed, tree
 from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
-from keymark.core.files.arrival import free_name
+from keymark.core.files.commit import free_name
 from keymark.core.files.output_folder import output_folder
 
 SEAL = "seal.json"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.frame_watch import FrameWatch
-from keymark.core.footage.clips.watched import watched
+from keymark.core.footage.clips.frame_checks import FrameWatch
+from keymark.core.footage.clips.watched_clip import watched
 
 FRAMES = 4
 

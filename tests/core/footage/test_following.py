@@ -9,11 +9,11 @@ from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
+from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.matting import coverage
-from keymark.core.footage.segmentation.search import boxes_to_measure
-from keymark.core.footage.segmentation.sheet import NO_COLOUR, Window, lay_out
+from keymark.core.footage.segmentation.search_windows import boxes_to_measure
+from keymark.core.footage.segmentation.window_sheet import NO_COLOUR, Window, lay_out
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
-from keymark.core.footage.tracks import ExpectedRegions
 
 STRETCH = 9
 

@@ -14,9 +14,9 @@ from keymark.core.footage.marker_check import MarkerCheck, check_markers
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
+from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.mask_outlines import mask_outlines
 from keymark.core.footage.segmentation.regions import colour_masks
-from keymark.core.footage.tracks import ExpectedRegions
 
 Result = TypeVar("Result")
 GREEN = (40, 220, 60)

@@ -11,10 +11,10 @@ import pytest
 from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving, path
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.colours.colour_learning import learn_colours
+from keymark.core.footage.colors.color_learning import learn_colours
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.tracks import ExpectedRegions, RegionTracks
+from keymark.core.footage.region_tracks import ExpectedRegions, RegionTracks
 
 
 def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:

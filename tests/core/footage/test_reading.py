@@ -12,10 +12,10 @@ from keymark.core.files.digest import digest, file_digest
 from keymark.core.footage.clips import clip as clip_module
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arrays
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
-from keymark.core.reconstruct import read_footage
-from keymark.core.take import Take, read_take
+from keymark.core.take.read_footage import read_footage
+from keymark.core.take.take import Take, read_take
 
 FRAMES = 24
 

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
-from keymark.core.body.course import straight_course
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.body.posture_spline import straight_course
 from keymark.core.body.skeleton import SIDES
-from keymark.core.body.standing import standing_posture
+from keymark.core.body.standing_posture import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, find_period_s
 from keymark.core.library.learning import About, learn_library
 from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.shapes import ankle_heights, headings_rad, moved, shapes
+from keymark.core.library.posture_shape import ankle_heights, headings_rad, moved, shapes
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

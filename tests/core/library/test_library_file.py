@@ -9,12 +9,7 @@ from _any_library import libraries
 from _libraries import small_library
 from hypothesis import HealthCheck, given, settings
 from keymark.core.library.library import Library
-from keymark.core.library.library_file import (
-    library_from_json,
-    library_to_json,
-    read_library,
-    write_library,
-)
+from keymark.core.library.library_file import library_from_json, library_to_json, read_library, write_library
 
 
 @pytest.fixture

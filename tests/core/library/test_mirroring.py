@@ -10,12 +10,12 @@ from hypothesis import HealthCheck, given, settings
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import MIRROR, mirrored
-from keymark.core.body.standing import standing_posture
+from keymark.core.body.standing_posture import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import library_from_json, library_to_json
 from keymark.core.library.mirroring import mirrored_library, mirrored_name, with_mirrored
-from keymark.core.library.motion_course import course
+from keymark.core.library.motion_playback import course
 
 LIBRARY = small_library()
 

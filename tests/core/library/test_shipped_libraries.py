@@ -11,7 +11,7 @@ from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.motion_course import course
+from keymark.core.library.motion_playback import course
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 

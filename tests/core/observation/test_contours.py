@@ -5,7 +5,7 @@ import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
 from keymark.core.observation.contours import SHAPE, SIDES, ContourModel
-from keymark.core.observation.cover import outline_depth
+from keymark.core.observation.occlusion import outline_depth
 from keymark.core.observation.part_map import part_map
 
 MODEL = ContourModel.average(BODY, CAMERA)

@@ -9,7 +9,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.shapes import marker_segments
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.tracks import RegionTracks
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation.line_ends import (
     ANGLE,
     LOG_RATIO,

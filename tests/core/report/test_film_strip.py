@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
-from keymark.core.motion import Motion
 from keymark.core.report import film_strip as strip
 from keymark.core.report.canvas import LEFT, RIGHT, Image
 from keymark.core.report.film_strip import film_strip
-from keymark.core.take import Take, read_take
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take, read_take
 
 FRAMES = 12
 

@@ -12,12 +12,12 @@ from _outcomes import RECORD, converted, failed, waiting
 from _page import Page
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from keymark.core.conversion_record import ConversionRecord
+from keymark.core.report.summary.html_text import LONGEST, duration, percent, visible
 from keymark.core.report.summary.page import summary_page
 from keymark.core.report.summary.style import DARK, LIGHT
-from keymark.core.report.summary.text import LONGEST, duration, percent, visible
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.take.conversion_record import ConversionRecord
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 from _shoot import write_shoot
-from keymark.core.shoot.conversion_digest import conversion_digest
-from keymark.core.shoot.conversion_settings import ConversionSettings
-from keymark.core.shoot.description import chosen_settings, describe
+from keymark.core.take.conversion_digest import conversion_digest
+from keymark.core.take.conversion_settings import ConversionSettings
+from keymark.core.take.description import chosen_settings, describe
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,10 @@ import pytest
 from _shoot import write_shoot
 from _synthetic_take import write_json
 from keymark.core.errors import InputError
-from keymark.core.shoot.conversion_settings import ConversionSettings
-from keymark.core.shoot.description import Description, chosen_settings, describe
-from keymark.core.shoot.shoot_file import shoot_fields, shoot_files
-from keymark.core.take import read_take
+from keymark.core.take.conversion_settings import ConversionSettings
+from keymark.core.take.description import Description, chosen_settings, describe
+from keymark.core.take.shoot_file import shoot_fields, shoot_files
+from keymark.core.take.take import read_take
 
 FRAMES = 5
 

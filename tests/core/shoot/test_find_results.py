@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 from _outcomes import RECORD
-from keymark.core.conversion_record import write_record
 from keymark.core.errors import InputError
 from keymark.core.shoot.outcomes import results
 from keymark.core.shoot.outcomes.results import find_results
+from keymark.core.take.conversion_record import write_record
 
 
 def add(folder: Path) -> Path:

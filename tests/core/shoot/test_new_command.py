@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from _shoot import shoot_fields, write_frames, write_shoot
 from _synthetic_take import drawn_frames, true_postures
-from keymark.core.motion_file import read_motion
-from keymark.operators.cli import main
+from keymark.core.take.motion_file import read_motion
+from keymark.operators.cli.main import main
 
 FRAMES = 8
 

@@ -24,7 +24,7 @@ class Person:
     """An animator in front of Blender."""
 
     def __init__(self, take_folder: Path, folder: Path, camera: Camera) -> None:
-        self.known = keymark("core.take").read_take(take_folder)
+        self.known = keymark("core.take.take").read_take(take_folder)
         self.folder = folder
         self.camera = camera
         self.hands = Hands()
@@ -37,13 +37,13 @@ class Person:
     @property
     def take(self) -> bpy.types.PropertyGroup:
         """The active take."""
-        return keymark("operators.scene.takes").active_take(self.scene)
+        return keymark("operators.shell.takes").active_take(self.scene)
 
     def look(self, name: str) -> Steps[None]:
         """Let everything be drawn, and take a picture."""
         yield from turns(4)
         self.camera.shoot(name)
-        failed = keymark("operators.ui.overlays.registry").failures()
+        failed = keymark("operators.overlays.registry").failures()
         expect(not failed, f"overlays failed: {failed}")
 
     def step_done(self, message: str) -> None:

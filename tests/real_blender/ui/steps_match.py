@@ -18,7 +18,7 @@ def match(person: Person, library: str) -> Steps[None]:
     yield from person.undoable("matching", lambda: job(person, name))
     matches = person.take.matching.matches
     expect(len(matches) >= 2, f"{library} gave {len(matches)} matches")
-    frames = keymark("operators.scene.posed_frames")
+    frames = keymark("operators.shell.keyed_frames")
     expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
     yield from person.look("matched")
     person.take.matching.active_match = REPLACED

@@ -137,7 +137,7 @@ def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     """The eyedropper's button, then a click on a pixel of the footage."""
     yield from person.hands.click_button("keymark.pick_marker_color")
     area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
-    view = keymark("operators.ui.footage_view").footage_view(person.scene, person.take, area, region)
+    view = keymark("operators.shell.footage_view").footage_view(person.scene, person.take, area, region)
     expect(view is not None, "the viewport does not show the footage")
     x, y = view.to_region(pixel)
     yield from person.hands.click(region.x + x, region.y + y)

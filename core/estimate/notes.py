@@ -1,0 +1,107 @@
+"""What a person should know of a take and its result, one sentence each."""
+
+from ..files.fields import listed
+from ..footage.region_tracks import RegionTracks
+from ..take.take import Take
+from .keyframe_evidence import KeyframeEvidence
+
+DOUBTED_LENS = 0.03
+"""Share by which the lens found must differ from the one stated for a person to be told."""
+DOUBTED_TIMING_FRAMES = 1.0
+DOUBTED_POSING = 2.0
+"""In usual errors of posing."""
+DOUBTED_MARKER = 3.0
+"""In usual errors of regions."""
+DOUBTED_MATCH = 0.6
+"""Confidence of a matched keyframe below which a person had better pose it."""
+MOST_NAMED = 3
+"""So many frames are named at once."""
+
+
+def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
+    """Sentences on what may have gone wrong with the markers."""
+    notes = list(tracks.notes)
+    for marker, name in enumerate(tracks.names):
+        seen = int(tracks.visible[:, marker].sum())
+        if seen < 0.5 * tracks.frame_count:
+            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+    if tracks.variable_frame_rate:
+        notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
+    return tuple(notes)
+
+
+def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
+    """Sentences on what the footage at the keyframes says against the take."""
+    notes = []
+    lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
+    if abs(lens / stated - 1.0) > DOUBTED_LENS:
+        notes.append(
+            f"the keyframes fit the footage through a lens of {lens:.1f} mm, not the {stated:.1f} mm stated; "
+            "the estimate used the former"
+        )
+    if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
+        notes.append(
+            f"keyframes seem to be set about {evidence.timing_frames:.0f} frames early or late; "
+            "look at them again"
+        )
+    if evidence.posing_scale > DOUBTED_POSING:
+        notes.append(
+            "the keyframes lie far from what the footage shows, much farther than a person usually poses; "
+            "check the camera, the actor's lengths and the markers' segments"
+        )
+    for marker, doubt in zip(take.markers, evidence.distrust, strict=True):
+        if doubt > DOUBTED_MARKER:
+            notes.append(
+                f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
+                "something else may have its colour"
+            )
+    return tuple(notes)
+
+
+def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
+    """A sentence on matched keyframes that tell less than the posed ones around them."""
+    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
+    if count == 0:
+        return ()
+    were = "was" if count == 1 else "were"
+    which = "the library was" if count == matched else f"{count} of {matched} matched keyframes {were}"
+    return (f"{which} left out: the posed keyframes tell more where they enclose what was matched",)
+
+
+def match_notes(take: Take) -> tuple[str, ...]:
+    """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
+    matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
+    if not matched:
+        return ()
+    libraries = " and ".join(sorted({said.library for _, said in matched}))
+    posed = len(take.keyframes) - len(matched)
+    if posed == 0:
+        notes = [
+            f"no keyframe was posed: the motion rests on {len(matched)} postures of the library {libraries}, "
+            "another performer's; what the markers do not show, depth above all, is like that performer's"
+        ]
+    else:
+        notes = [
+            f"{posed} of {len(take.keyframes)} keyframes are posed; the others are postures of the library "
+            f"{libraries}, changed the way the posed ones differ from it"
+        ]
+    doubted = [(keyframe, said) for keyframe, said in matched if said.confidence < DOUBTED_MATCH]
+    if doubted:
+        worst = sorted(doubted, key=lambda one: one[1].confidence)[:MOST_NAMED]
+        frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
+        named = listed([str(frame) for frame in frames], MOST_NAMED)
+        which, them = f"{len(doubted)} of {len(matched)} matched postures", "them"
+        if len(matched) == 1:
+            which, them = "the matched posture", "it"
+        notes.append(f"{which} may be wrong; pose frame {named} to set {them} right")
+    return tuple(notes)
+
+
+def filter_notes(take: Take) -> tuple[str, ...]:
+    """A sentence on what the paper's filter does not know of matched keyframes."""
+    if all(keyframe.matched is None for keyframe in take.keyframes):
+        return ()
+    return (
+        "method ekf holds on to matched keyframes as if they had been posed; method map knows how far they "
+        "may be off",
+    )

@@ -1,0 +1,199 @@
+"""Where a performer stands before the camera, before any keyframe is posed.
+
+One region fixes a line of sight and, by its size, a distance good to about a tenth; a camera whose pose is
+known in a room with a floor at z = 0 says more, where it looks down on the performer. Both are weighed
+against each other. Without any region the body is placed so that the picture holds it well.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..body.standing_posture import facing_rad, hip_height_m, standing_posture
+from ..errors import InputError
+from ..footage.camera import Camera
+from ..footage.region_tracks import RegionTracks
+from ..observation.regions import MarkerPlacement, RegionModel
+
+Array = NDArray[np.float64]
+
+FILLED_SHARE = 0.7
+"""Share of the picture's height that a body fills of which nothing is seen."""
+SIZE_STD = 0.08
+"""The distance read off sizes in the picture errs by this share."""
+TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
+"""By a region's area (bodies turn, sleeves differ), by how high the trunk is over the shins (knees bend)."""
+AGREEING = 1.5
+"""Sizes that differ by more than so many standard deviations are not of the same distance."""
+TRUNK = ("trunk", "chest", "pelvis")
+FLOOR_STD_M = 0.05
+"""Height of the soles above a floor that is stood upon [m]."""
+FLOOR_DOUBTED = 3.0
+"""Standard deviations beyond which the ground is somewhere else than at z = 0."""
+ROUNDS = 6
+LEAST_DEPTH_M = 0.3
+LEAST_HEIGHT_PX = 20.0
+
+
+def place_standing(
+    body: Body,
+    camera: Camera,
+    frame: int = 0,
+    regions: RegionTracks | None = None,
+    segments: tuple[str, ...] = (),
+) -> Posture:
+    """A body that stands upright where the performer is, facing the camera.
+
+    Args:
+        body: The actor's body.
+        camera: The camera.
+        frame: The frame's place in the clip, for a moving camera.
+        regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
+            goes to the picture's middle.
+        segments: The segment each marker is bound to.
+
+    Returns:
+        A single posture.
+    """
+    rotation, location = camera.pose(frame)
+    heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
+    standing = standing_posture(body, heading_rad=heading)
+    known = _usable(regions, segments)
+    if regions is None or not known.any():
+        return _in_the_middle(body, camera, frame, standing)
+    model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
+    centroid = _centre(regions.centroid[0], known)
+    _, direction = camera.rays(centroid, frame)
+    distance = _usual_distance(body, camera)
+    offset = np.zeros(3)
+    for _ in range(ROUNDS):
+        there = _at(standing, location + distance * direction)
+        shown = model.evaluate(body.pose(Posture.stack([there])), np.array([frame]))
+        # The regions' centre lies off the hips; what it is off by now, it is off by there as well.
+        _, ray = camera.rays(_centre(shown.centroid[0], known), frame)
+        offset = (ray - direction) * distance
+        ratio = _relative_size(
+            segments, known, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
+        )
+        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
+    by_size = location + distance * direction - offset
+    along = _floor_step(float(by_size[2]) - hip_height_m(body), float(direction[2]), distance)
+    return _at(standing, by_size + along * direction)
+
+
+def ground_place(
+    camera: Camera, frame: int, stature_m: float, crown_px: ArrayLike, ground_px: ArrayLike
+) -> Array:
+    """The ground, (3,) in the world [m], between the feet of someone who stands there upright.
+
+    Args:
+        camera: The camera.
+        frame: The frame's place in the clip, for a moving camera.
+        stature_m: Body height [m].
+        crown_px: (2,) top of the head in the picture [px].
+        ground_px: (2,) the ground between the feet [px].
+
+    Raises:
+        InputError: The two places in the picture cannot be a person's.
+    """
+    crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
+    if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
+        raise InputError(
+            f"top of the head and ground are {np.linalg.norm(crown - ground):.0f} pixels apart in the "
+            f"picture; at least {LEAST_HEIGHT_PX:.0f} are needed to measure by"
+        )
+    location, up = camera.rays(crown, frame)
+    _, down = camera.rays(ground, frame)
+    # Both lines of sight meet a vertical of the body's height: a down + (0, 0, height) = b up.
+    vertical = np.array([0.0, 0.0, stature_m])
+    far, *_ = np.linalg.lstsq(np.stack([-down, up], axis=1), vertical, rcond=None)
+    if not (np.isfinite(far).all() and far.min() > 0.0):
+        raise InputError(
+            "the top of the head lies below the ground in the picture; "
+            "pick the top of the head first, then the ground between the feet"
+        )
+    return np.asarray(location + far[0] * down)
+
+
+def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> NDArray[np.bool_]:
+    """(M,) the markers to be placed by: the trunk and the shins, else whatever is seen."""
+    if regions is None:
+        return np.zeros(len(segments), dtype=bool)
+    seen = regions.visible[0] & ~regions.clipped[0]
+    trunk = seen & _bound(segments, *TRUNK)
+    return np.asarray(trunk if trunk.any() else seen)
+
+
+def _bound(segments: tuple[str, ...], *parts: str) -> NDArray[np.bool_]:
+    return np.array([segment.split(".")[0] in parts for segment in segments])
+
+
+def _centre(centroid: Array, known: NDArray[np.bool_]) -> Array:
+    return np.asarray(centroid[known].mean(axis=0))
+
+
+def _relative_size(
+    segments: tuple[str, ...],
+    known: NDArray[np.bool_],
+    shown: Array,
+    shown_area: Array,
+    seen: Array,
+    seen_area: Array,
+) -> float:
+    """How much larger the body is shown than it is seen.
+
+    A region's area tells, and better, where they are seen, how far the shins are below the trunk: sleeves
+    and clothes do not change that. Whatever hides, bends or turns a limb away makes all of these smaller and
+    never larger than in one who stands. So what falls short of the largest by more than both err is left out.
+    """
+    shins = np.isfinite(seen_area) & _bound(segments, "shin")
+    told = known | shins
+    logarithms = 0.5 * np.log(shown_area[told] / seen_area[told])
+    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[told]
+    trunk = known & _bound(segments, *TRUNK)
+    if trunk.any() and shins.sum() == 2:
+        apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
+        logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
+        errors = np.append(errors, LEGS_STD)
+    nearest = int(np.argmin(logarithms))
+    fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
+    return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
+
+
+def _floor_step(above_m: float, down: float, distance: float) -> float:
+    """How far to go on along the line of sight for the soles to come to the floor [m].
+
+    Args:
+        above_m: Height of the soles by the region's size [m].
+        down: Vertical share of the line of sight.
+        distance: By the region's size [m].
+    """
+    variance = (SIZE_STD * distance) ** 2
+    spread = FLOOR_STD_M**2 + variance * down**2
+    if above_m**2 > FLOOR_DOUBTED**2 * spread:
+        return 0.0
+    return -above_m * down * variance / spread
+
+
+def _usual_distance(body: Body, camera: Camera) -> float:
+    """Distance at which the body fills the usual share of the picture's height [m]."""
+    return body.actor.stature_m * camera.focal_px / (FILLED_SHARE * camera.resolution[1])
+
+
+def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) -> Posture:
+    """Upright in the middle of the picture; on the floor where that leaves the body in the picture."""
+    _, direction = camera.rays(np.array(camera.resolution) / 2.0, frame)
+    _, location = camera.pose(frame)
+    middle = location + _usual_distance(body, camera) * direction
+    stature = body.actor.stature_m
+    hips = middle + np.array([0.0, 0.0, hip_height_m(body) - 0.5 * stature])
+    soles = float(hips[2]) - hip_height_m(body)
+    off_the_picture = 0.5 * (1.0 / FILLED_SHARE - 1.0) * stature
+    if abs(soles) <= off_the_picture:
+        hips[2] -= soles
+    return _at(standing, hips)
+
+
+def _at(posture: Posture, hips: Array) -> Posture:
+    return Posture(posture.skeleton, hips, posture.rotations, posture.angles)

@@ -1,0 +1,256 @@
+"""The whole way from a take to a motion: one generator that the operator, command line and tests share."""
+
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from ..arrays import chunks
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..errors import InputError
+from ..footage.reading import Reading
+from ..footage.reading_key import of_same_footage
+from ..footage.region_tracks import RegionTracks
+from ..observation.regions import RegionModel
+from ..prior.interpolation import interpolate
+from ..prior.marker_speed import marker_speed
+from ..prior.performer_offset import with_style
+from ..progress import Job, Progress, stretch, within
+from ..take.methods import METHODS
+from ..take.motion import Motion
+from ..take.read_footage import average_model, read_footage
+from ..take.take import Take, check_frame_count, check_in_front
+from .fuzzy import Memberships, keyframe_distance
+from .kalman import filter_clip
+from .keyframe_selection import worthwhile
+from .match_error import undecided_covariance
+from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
+from .unobserved_variance import unseen_variance
+from .whole_clip import WholeClipResult, estimate_whole_clip
+
+Array = NDArray[np.float64]
+
+CHUNK_FRAMES = 500
+EXTRACTION_SHARE = 0.6
+"""Share of the work that reading the footage usually is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """A motion and what it came from."""
+
+    motion: Motion
+    interpolation: Motion
+    """The keyframes interpolated without the footage, for comparison."""
+    reading: Reading
+    """What was read of the clip, for another reconstruction of it."""
+    speed: Array
+    """(F,) V_sum of paper eq. 8 [px per frame]."""
+    notes: tuple[str, ...]
+    """What a person should know of the result, one sentence each."""
+    model: RegionModel
+    """What the motion predicts of the markers: calibrated on the keyframes, or average placements."""
+    solution: WholeClipResult | None = None
+    """What method `map` found, for another to start from."""
+
+    @property
+    def tracks(self) -> RegionTracks:
+        """The markers' regions in every frame."""
+        return self.reading.tracks
+
+
+def reconstruct(
+    take: Take,
+    method: str = "map",
+    reading: Reading | None = None,
+    earlier: Reconstruction | None = None,
+) -> Job[Reconstruction]:
+    """Reconstruct a take's motion.
+
+    Args:
+        take: A validated take with at least two keyframes.
+        method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
+        reading: What `read_footage` or an earlier reconstruction has read of the same clip, which is then not
+            opened again.
+        earlier: A reconstruction to start from; what no longer holds of it is found out and not used.
+
+    Yields:
+        Progress; closing the generator cancels the job, which has no effects of its own.
+
+    Returns:
+        The motion of every frame of the clip.
+
+    Raises:
+        InputError: The clip cannot be used, a colour matches nothing in it, or the method is unknown.
+        ConversionError: No motion could be computed.
+        ValueError: The reading is one of other markers.
+    """
+    check_reconstructible(take, method)
+    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return (yield from _reconstruct(take, method, reading, earlier))
+
+
+def check_reconstructible(take: Take, method: str) -> None:
+    """Refuse at once what no reading of the clip could mend.
+
+    Raises:
+        InputError: The method is unknown, or there are too few keyframes.
+    """
+    if method not in METHODS:
+        raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
+    if len(take.keyframes) < 2:
+        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
+
+
+def _reconstruct(
+    take: Take, method: str, reading: Reading | None, earlier: Reconstruction | None
+) -> Job[Reconstruction]:
+    notes, begun = take.notes, 0.0
+    if reading is None:
+        reading = yield from stretch(read_footage(take), 0.0, EXTRACTION_SHARE)
+        begun = EXTRACTION_SHARE
+    else:
+        _check_tracks(take, reading.tracks)
+    tracks = reading.tracks
+    worth = worthwhile(take.keyframes, average_model(take), tracks, take.fps)
+    notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
+    take = replace(take, keyframes=worth)
+    notes += match_notes(take)
+    keyframes, doubt = with_style(take.keyframes, take.fps)
+    prior = interpolate(keyframes, tracks.frame_count)
+    baseline = _motion(take, tracks, prior, None, "interpolation")
+    motion, model, solution = baseline, average_model(take), None
+    if method == "map":
+        solution = yield from _whole_clip(take, reading, prior, doubt, begun, _usable(earlier, reading))
+        motion, model = _solved(take, tracks, solution, doubt), solution.evidence.model
+        notes += evidence_notes(take, solution.evidence)
+    elif method == "ekf":
+        motion = yield from _filtered(take, tracks, prior, begun)
+        notes += filter_notes(take)
+    yield Progress("Done", 1.0)
+    notes += marker_notes(tracks)
+    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model, solution)
+
+
+def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
+    """The estimate that an earlier reconstruction made of the same pictures, if it did."""
+    if earlier is None or (earlier.reading.album is None) != (reading.album is None):
+        return None
+    known = earlier.reading is reading or of_same_footage(earlier.reading.key, reading.key)
+    return earlier.solution if known else None
+
+
+def _check_tracks(take: Take, tracks: RegionTracks) -> None:
+    """Hold tracks that were found earlier against the take."""
+    names = tuple(style.name for style in take.markers)
+    if tracks.names != names:
+        raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
+    check_frame_count(take, tracks.frame_count)
+    check_in_front(take)
+
+
+def _whole_clip(
+    take: Take,
+    reading: Reading,
+    prior: Posture,
+    doubt: Array,
+    begun: float,
+    earlier: WholeClipResult | None,
+) -> Job[WholeClipResult]:
+    estimate = estimate_whole_clip(
+        take.body,
+        take.camera,
+        reading.tracks,
+        take.marker_segments,
+        prior,
+        take.keyframe_indices,
+        album=reading.album,
+        earlier=earlier,
+        doubt=doubt,
+    )
+    return (yield from within("Estimating the motion", estimate, begun, 1.0))
+
+
+def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Array) -> Motion:
+    diagnostics = {
+        "residual_px": result.residual_px,
+        "quality": tracks.quality,
+        "posing_scale": np.array(result.evidence.posing_scale),
+        "timing_frames": np.array(result.evidence.timing_frames),
+        "lens_mm": np.array(result.evidence.model.camera.lens_mm),
+        "distrust": result.evidence.distrust,
+    }
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    unseen = unseen_variance(take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s)
+    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
+    if not doubt.any():
+        return motion
+    undecided = undecided_covariance(motion.points, take.camera, index, doubt)
+    return replace(motion, point_covariance=motion.point_covariance + undecided)
+
+
+def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
+    estimate = filter_clip(take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices)
+    result = yield from within("Filtering the motion", estimate, begun, 1.0)
+    diagnostics = {
+        "normalized_innovation_squared": result.normalized_innovation_squared,
+        "row_count": result.row_count.astype(np.float64),
+        "gated": result.gated.astype(np.float64),
+        "quality": tracks.quality,
+    }
+    return _motion(take, tracks, result.posture, result.covariance, "ekf", diagnostics)
+
+
+def _motion(
+    take: Take,
+    tracks: RegionTracks,
+    posture: Posture,
+    covariance: Array | None,
+    method: str,
+    diagnostics: dict[str, Array] | None = None,
+    unseen: Array | None = None,
+) -> Motion:
+    pose = take.body.pose(posture)
+    points = take.body.points(pose)
+    distance = keyframe_distance(tracks.frame_count, take.keyframe_indices)
+    said = {"nearness": Memberships().near(distance), **(diagnostics or {})}
+    if covariance is None:
+        spread = np.full((*points.shape, 3), np.nan)
+    else:
+        spread = point_covariance(take.body, posture, covariance, unseen)
+    return Motion(
+        take.body,
+        take.fps,
+        take.frame_start,
+        tracks.time_s,
+        posture,
+        points,
+        spread,
+        take.keyframe_indices,
+        method,
+        MappingProxyType(said),
+    )
+
+
+def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
+    """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
+
+    Args:
+        body: The actor's body.
+        posture: F postures.
+        covariance: Theirs.
+        more: (F, D) variances beside it.
+    """
+    points = len(body.skeleton.points)
+    spread = np.empty((len(covariance), points, 3, 3))
+    for frame in chunks(np.arange(len(covariance)), CHUNK_FRAMES):
+        jacobian = body.points_jacobian(body.pose(posture[frame]))  # (F, P, 3, D)
+        across = np.swapaxes(jacobian, -1, -2)
+        spread[frame] = jacobian @ covariance[frame, None] @ across
+        if more is not None:
+            spread[frame] += (jacobian * more[frame, None, None]) @ across
+    return spread

@@ -1,0 +1,191 @@
+"""The markers' colours, learned from a clip while it is being read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError
+from ...files.digest import digest
+from ..detections import Lesson, Sightings
+from ..marker_style import MarkerStyle, colour_groups
+from ..region_tracks import ExpectedRegions
+from ..segmentation.working_image import halvings, learning_image, measuring_image
+from .color_learning import LearnedColours, learn_colours
+from .color_model import ColourModel
+from .color_names import nearest_colours, share_of_colour
+
+Image = NDArray[np.uint8]
+
+_SAMPLES: Final = 12
+"""Frames that are learned from first; up to three times as many are kept."""
+_MOST_SAMPLES: Final = 48
+"""Frames that are looked at where a marker is in none of the first."""
+_WIDEST_SPACING: Final = 96
+"""Frames between samples at most: light changes in seconds."""
+_FEWEST_LEARNED: Final = 12
+_FAR: Final = 10000
+"""Pixels beyond which no circle that is drawn begins or ends."""
+_COMMON_COLOUR: Final = 0.02
+"""Share of the picture with which a colour is a wall's or a floor's."""
+
+
+class ClipColours:
+    """The colours of a clip's markers: learned from its first stretch, and anew as more of it is seen.
+
+    Attributes:
+        groups: of each colour, the markers that bear it; more than one where samples are alike.
+        lessons: how the colours were learned so far.
+        samples: the images that were learned from, by their frames.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        size: tuple[int, int],
+        styles: Sequence[MarkerStyle],
+        expected: ExpectedRegions | None = None,
+    ) -> None:
+        """Prepare for a clip.
+
+        Args:
+            path: the clip, for messages.
+            size: width and height of its images in px.
+            styles: the markers, M of them.
+            expected: where they may be, to learn from the marker rather than from clutter of its colour.
+        """
+        self.groups = colour_groups(styles)
+        self._path, self._styles, self._expected = path, styles, expected
+        self._size, self._times = size, halvings(size)
+        self._samples: list[tuple[int, Image]] = []
+        self._spacing = 1
+        self._learned: LearnedColours | None = None
+        self._most_found = np.zeros(len(self.groups), dtype=np.int64)
+        self.lessons: list[Lesson] = []
+        self.samples: dict[int, Image] = {}
+
+    @property
+    def model(self) -> ColourModel:
+        """What has been learned so far."""
+        if self._learned is None:
+            raise ValueError("nothing has been learned yet")
+        return self._learned.model
+
+    def learn(self, images: Sequence[Image]) -> None:
+        """Learn from the clip's first images, (rows, columns, 3) on the measuring grid."""
+        for count in (_SAMPLES, _MOST_SAMPLES):
+            # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
+            middles = (np.arange(count) + 0.5) * len(images) / count
+            indices = sorted({int(middle) for middle in middles})
+            self._samples = [(index, learning_image(images[index])) for index in indices]
+            self._learn()
+            if not self._missing.size:
+                break
+        self._spacing = min(max(len(images) // len(self._samples), 1), _WIDEST_SPACING)
+
+    def watch(self, index: int, image: Image) -> None:
+        """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
+
+        Colours are learned anew with three times as many samples as at first; every third one then stays.
+        """
+        if index - self._samples[-1][0] < self._spacing:
+            return
+        self._samples.append((index, learning_image(measuring_image(image, self._times))))
+        if len(self._samples) >= 3 * _SAMPLES:
+            self._samples = self._samples[2::3]
+            self._spacing = min(3 * self._spacing, _WIDEST_SPACING)
+            self._learn()
+
+    def learn_again(self, earlier: Sightings) -> bool:
+        """Learn from what was learned from before; tell whether it teaches exactly the same."""
+        for lesson in earlier.lessons:
+            self._samples = [(index, earlier.samples[index]) for index in lesson.frames]
+            self._learn()
+            if self.lessons[-1] != lesson:
+                return False
+        return bool(earlier.lessons)
+
+    def check_found(self) -> None:
+        """Refuse colours that were found nowhere.
+
+        Raises:
+            InputError: a marker's colour matches nothing in the clip; the sentence names colours that are
+                there, or says that the surroundings have it too.
+        """
+        for sentence in self.complaints().values():
+            raise InputError(f"{self._path}: marker {sentence}")
+
+    def complaints(self) -> dict[int, str]:
+        """Return of each marker that was found nowhere, by index, a sentence that begins with its name."""
+        if self._learned is None:
+            return {}
+        counts = self._learned.background_counts
+        return {
+            marker: _complaint(self._styles[marker], counts)
+            for colour in self._missing.tolist()
+            for marker in self.groups[colour]
+        }
+
+    @property
+    def _missing(self) -> NDArray[np.intp]:
+        return np.flatnonzero(self._most_found < _FEWEST_LEARNED)
+
+    def _learn(self) -> None:
+        """Learn from the samples at hand."""
+        samples = [_mean_colour([self._styles[marker] for marker in group]) for group in self.groups]
+        allowed = None
+        if self._expected is not None:
+            allowed = [
+                self._allowed(index, image.shape[:2], self._expected) for index, image in self._samples
+            ]
+        self._learned = learn_colours([image for _, image in self._samples], samples, allowed)
+        self._most_found = np.maximum(self._most_found, self._learned.found)
+        model = self._learned.model
+        taught = digest(model.label, model.probability, self._learned.found)
+        self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
+        self.samples.update(self._samples)
+
+    def _allowed(
+        self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions
+    ) -> NDArray[np.uint8] | None:
+        """Return where each colour may be looked for on the learning grid, (C, rows, columns)."""
+        if frame >= len(expected.centre):
+            return None
+        places = np.zeros((len(self.groups), *shape), dtype=np.uint8)
+        step = self._size[0] / shape[1]
+        for place, group in zip(places, self.groups, strict=True):
+            for marker in group:
+                # The radius bounds the centroid; the region itself reaches beyond it.
+                circle = (*expected.centre[frame, marker] / step, 1.5 * expected.radius[frame, marker] / step)
+                if not np.isfinite(circle).all():
+                    place[:] = 1
+                    continue
+                x, y, radius = np.clip(circle, -_FAR, _FAR).round().astype(int).tolist()
+                cv2.circle(place, (x, y), radius, (1.0,), -1)
+        return places
+
+
+def _mean_colour(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
+    red, green, blue = np.round(np.mean([style.color_srgb for style in styles], axis=0)).astype(int).tolist()
+    return red, green, blue
+
+
+def _complaint(style: MarkerStyle, counts: NDArray[np.float64]) -> str:
+    """Say why a colour cannot be found among the background's, (CELL_COUNT,) pixels of each colour cell."""
+    colour = list(style.color_srgb)
+    share = share_of_colour(counts, style.color_srgb)
+    if share > _COMMON_COLOUR:
+        return (
+            f"{style.name} has the colour {colour}, which {100.0 * share:.0f} % of the picture around the "
+            "markers have too, so nothing tells it from them; wear a colour that the surroundings do not have"
+        )
+    nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
+    return (
+        f"{style.name} has the colour {colour}, which matches nothing in the clip; "
+        f"pick it on the marker in a frame (the nearest colours found are {nearest})"
+    )

@@ -1,0 +1,158 @@
+"""Learning the markers' colours over a clip, from one sample each and a few of the clip's own frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .color_model import ColourDistribution, ColourModel, colour_model
+from .color_space import chromaticity
+from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColours
+
+FloatArray = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+# What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
+_SATURATION_DEVIATION: Final = 0.15
+_HUE_DEVIATION: Final = 0.10
+_LOG_LUMA_DEVIATION: Final = 0.45
+_LEAST_SATURATION: Final = 0.04
+"""A grey has no hue to be off by: below this the deviations shrink no further."""
+
+_FARTHEST: Final = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
+_NEAR: Final = 2.4  # half of it
+_LEARNED_SHARE: Final = 0.7
+"""Share of a marker's pixels, those nearest its sample, that its distribution is fitted to."""
+_ROUNDS: Final = 3
+_FEWEST_PIXELS: Final = 40
+_SMALLEST_LOG_LUMA_DEVIATION: Final = 0.3
+_UNSEEN_SHARE: Final = 0.2
+"""Share of the sample's own uncertainty that remains after learning."""
+_STEEPEST_SLOPE: Final = 0.25
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedColours:
+    """What the sampled frames teach.
+
+    Attributes:
+        model: the colour cells' labels, with the background weighed in.
+        found: (M,) pixels found of each marker over the sampled frames; 0 where its colour matches nothing.
+        background_counts: (CELL_COUNT,) background pixels per colour cell.
+    """
+
+    model: ColourModel
+    found: NDArray[np.int64]
+    background_counts: FloatArray
+
+
+def learn_colours(
+    images: Sequence[Image],
+    samples_srgb: Sequence[tuple[int, int, int]],
+    allowed: Sequence[NDArray[np.uint8] | None] | None = None,
+) -> LearnedColours:
+    """Learn each marker's distribution of colour and the background's colours.
+
+    Regions near each sample's colour are found, the distribution is fitted to what they hold, and all that
+    lies clear of them is counted as background; the next round finds the regions again by weighing the two,
+    and so on.
+
+    Args:
+        images: sampled frames, (rows, columns, 3) uint8, on the searching grid.
+        samples_srgb: one (red, green, blue) in 0..255 per marker.
+        allowed: per image, (M, rows, columns) 1 where each marker may be looked for, or None for everywhere.
+    """
+    sampled = SampledColours(images)
+    initial = [sample_distribution(sample) for sample in samples_srgb]
+    distributions = list(initial)
+    core = labels = sampled.near(initial)
+    found, background = np.zeros(len(initial), dtype=np.int64), np.zeros(0)
+    for turn in range(_ROUNDS):
+        if turn:
+            labels = sampled.weighed(distributions, np.maximum(found, 1), background)
+        masks = sampled.regions(labels, core, len(initial))
+        # Clutter of a marker's very colour is kept out of the background too, or it would cost us the marker.
+        background = sampled.background_counts(masks)
+        if allowed is not None:
+            masks = [_allowed(own, places) for own, places in zip(masks, allowed, strict=True)]
+        found = np.array([sum(own[marker].area for own in masks) for marker in range(len(initial))])
+        for marker, start in enumerate(initial):
+            chroma, luma = sampled.colours([own[marker] for own in masks])
+            own = _near_sample(chroma, luma, start)
+            if np.count_nonzero(own) >= _FEWEST_PIXELS:
+                distributions[marker] = fit_distribution(chroma[own], luma[own], start)
+    return LearnedColours(colour_model(distributions, np.maximum(found, 1), background), found, background)
+
+
+def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution:
+    """Return what one sample (red, green, blue) tells of a surface's colour before looking at the clip."""
+    chroma, luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
+    saturation = float(np.linalg.norm(chroma))
+    radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
+    tangential = np.array([-radial[1], radial[0]])
+    extent = max(saturation, _LEAST_SATURATION)
+    covariance = (_SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
+    covariance += (_HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
+    return ColourDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
+
+
+def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> ColourDistribution:
+    """Fit a distribution to a surface's pixels, robustly, and never narrower than pixel noise.
+
+    Args:
+        chroma: (N, 2) chromaticity.
+        luma: (N,) offset luma in levels.
+        start: the sample's own distribution; the fit's centre stays within its reach.
+    """
+    log_luma = np.log(luma)
+    low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
+    deviation = max(float(high - low) / 2.563, _SMALLEST_LOG_LUMA_DEVIATION)
+    light = log_luma - middle
+    centre = np.median(chroma, axis=0)
+    keep = np.sum((chroma - centre) ** 2, axis=1) <= np.quantile(np.sum((chroma - centre) ** 2, axis=1), 0.9)
+    spread = float(light[keep] @ light[keep]) + len(luma) * 0.01  # ridge: even light has no slope to tell
+    slope = np.clip(light[keep] @ (chroma[keep] - centre) / spread, -_STEEPEST_SLOPE, _STEEPEST_SLOPE)
+    residual = (chroma - centre - np.outer(light, slope))[keep]
+    # Of a normal distribution's variance in the plane the trimmed tenth takes a third.
+    # Pixel noise is not added here but where distances are taken.
+    covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
+    # The frames between the sampled ones show other light, folds and blur; the background limits what this
+    # admits.
+    covariance += _UNSEEN_SHARE * start.covariance
+    fitted = replace(
+        start,
+        log_luma=float(middle),
+        log_luma_deviation=deviation,
+        mean=centre,
+        slope=slope,
+        covariance=covariance,
+    )
+    return fitted if _within_reach(fitted, start) else start
+
+
+def _within_reach(fitted: ColourDistribution, start: ColourDistribution) -> bool:
+    offset = fitted.mean - start.mean
+    return float(offset @ np.linalg.solve(start.covariance, offset)) <= _FARTHEST
+
+
+def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> NDArray[np.bool_]:
+    """Mark the pixels (N,) to learn from.
+
+    What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it
+    would widen and move the distribution round by round.
+    """
+    distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
+    if not len(distance):
+        return np.zeros(0, dtype=np.bool_)
+    return distance <= np.clip(np.quantile(distance, _LEARNED_SHARE), _NEAR, _FARTHEST)
+
+
+def _allowed(masks: Sequence[PlacedMask], places: NDArray[np.uint8] | None) -> list[PlacedMask]:
+    """Return masks, one a marker, without what lies where the marker may not be looked for."""
+    if places is None:
+        return list(masks)
+    return [mask.within(place) for mask, place in zip(masks, places, strict=True)]

@@ -1,0 +1,189 @@
+"""How a marker's colour is distributed over a clip, and which colour belongs to which marker or to none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .color_space import (
+    CELL_COUNT,
+    CELL_WIDTH,
+    CELLS_PER_CHANNEL,
+    cell_chromaticity,
+    cell_index,
+    cell_volume,
+    chromaticity,
+)
+
+FloatArray = NDArray[np.float64]
+ColourArray = NDArray[np.float64] | NDArray[np.float32]
+
+NOISE_LEVELS: Final = 5.0
+"""Standard deviation of a decoded, lightly smoothed colour difference in levels: sensor and compression."""
+OUTLIER_DISTANCE: Final = 16.0
+"""Squared distance past which no colour is a marker's, even one the background never shows: 99.9 % of χ²."""
+_GROUP_MARGIN: Final = 2.0
+"""How much farther than a group's middle one of its cells may seem."""
+BACKGROUND: Final = 255
+"""Label of pixels that are no marker's."""
+
+
+@dataclass(frozen=True, eq=False)
+class ColourDistribution:
+    """Colour of one surface under changing light: log luma is normal, and so is chromaticity given it.
+
+    Chromaticity may drift with luma (tone mapping takes colour from bright pixels), so its mean is a line in
+    it.
+
+    Attributes:
+        log_luma: mean logarithm of offset luma.
+        log_luma_deviation: its standard deviation.
+        mean: (2,) chromaticity at the mean luma.
+        slope: (2,) change of chromaticity per unit of log luma.
+        covariance: (2, 2) of the chromaticity, without the pixel noise of dark colours.
+    """
+
+    log_luma: float
+    log_luma_deviation: float
+    mean: FloatArray
+    slope: FloatArray
+    covariance: FloatArray
+
+    def distance(
+        self, chroma: ColourArray, luma: ColourArray, noise_levels: float = NOISE_LEVELS
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the squared Mahalanobis distance and the log density of colours.
+
+        Args:
+            chroma: (..., 2) chromaticity.
+            luma: (...) offset luma in levels, as `chromaticity` gives it.
+            noise_levels: standard deviation of a pixel's colour difference in levels.
+
+        Returns:
+            Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
+        """
+        light = np.log(luma) - self.log_luma
+        noise = (noise_levels / luma) ** 2
+        first = float(self.covariance[0, 0]) + noise
+        second = float(self.covariance[1, 1]) + noise
+        cross = float(self.covariance[0, 1])
+        determinant = first * second - cross**2
+        x = chroma[..., 0] - float(self.mean[0]) - float(self.slope[0]) * light
+        y = chroma[..., 1] - float(self.mean[1]) - float(self.slope[1]) * light
+        squared = (second * x * x - 2.0 * cross * x * y + first * y * y) / determinant
+        squared += (light / self.log_luma_deviation) ** 2
+        normaliser = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
+        return squared, -0.5 * (squared + normaliser)
+
+    def within_reach(self, chroma: ColourArray, luma: ColourArray) -> NDArray[np.intp]:
+        """Return the indices of all N colours nearer than OUTLIER_DISTANCE, and of some beyond.
+
+        No part of a distance is more than the whole of it, and a part is quickly had.
+        """
+        light = np.log(luma) - self.log_luma
+        widest = OUTLIER_DISTANCE * (float(self.covariance[0, 0]) + (NOISE_LEVELS / luma) ** 2)
+        offset = chroma[..., 0] - float(self.mean[0]) - float(self.slope[0]) * light
+        limit = float(np.sqrt(OUTLIER_DISTANCE)) * self.log_luma_deviation
+        return np.flatnonzero((offset * offset <= widest) & (np.abs(light) <= limit))
+
+
+@dataclass(frozen=True, eq=False)
+class ColourModel:
+    """Which colours belong to which marker, learned for one clip.
+
+    Attributes:
+        distributions: one a marker.
+        label: (CELL_COUNT,) uint8, index of the likeliest marker of each colour cell, BACKGROUND where it is
+            none's.
+        probability: (CELL_COUNT,) uint8, how surely in 1/255.
+    """
+
+    distributions: tuple[ColourDistribution, ...]
+    label: NDArray[np.uint8]
+    probability: NDArray[np.uint8]
+
+    def classify(self, image: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+        """Return label and probability in 1/255, (rows, columns), of every pixel of an image."""
+        cells = cell_index(image)
+        return np.take(self.label, cells), np.take(self.probability, cells)
+
+    def labels(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """Return the label, (rows, columns), of every pixel of an image."""
+        return np.take(self.label, cell_index(image))
+
+
+def colour_model(
+    distributions: Sequence[ColourDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
+) -> ColourModel:
+    """Weigh every colour cell between the markers, the background and the unknown.
+
+    Args:
+        distributions: the markers' colours.
+        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
+        background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighbouring cells.
+    """
+    near = _cells_near(distributions)
+    chroma, luma = cell_chromaticity(near)
+    counts = np.asarray(background_counts, dtype=np.float64)[near]
+    likeliest, sureness = weigh(distributions, pixel_counts, counts, chroma, luma)
+    label = np.full(CELL_COUNT, BACKGROUND, dtype=np.uint8)
+    probability = np.zeros(CELL_COUNT, dtype=np.uint8)
+    label[near] = np.where(sureness >= 0.5, likeliest, BACKGROUND)
+    probability[near] = np.round(255.0 * sureness)
+    return ColourModel(tuple(distributions), label, probability)
+
+
+def _cells_near(distributions: Sequence[ColourDistribution]) -> NDArray[np.int32]:
+    """Return the cells, ascending, that any of the distributions could claim: those not too far from it.
+
+    Groups of cells are looked at first: colours change little within one of two by two by two.
+    """
+    side = CELLS_PER_CHANNEL // 2
+    group = np.arange(side**3, dtype=np.int32)
+    levels = np.stack([group % side, group // side % side, group // side**2], axis=-1)
+    chroma, luma = chromaticity(levels * (2.0 * CELL_WIDTH) + (2 * CELL_WIDTH - 1) / 2.0)
+    chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
+    near = np.zeros((side, side, side), dtype=np.bool_)
+    for distribution in distributions:
+        near |= (distribution.distance(chroma, luma)[0] < _GROUP_MARGIN * OUTLIER_DISTANCE).reshape(
+            near.shape
+        )
+    cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
+    return np.flatnonzero(cells).astype(np.int32)
+
+
+def weigh(
+    distributions: Sequence[ColourDistribution],
+    pixel_counts: ArrayLike,
+    background_counts: ArrayLike,
+    chroma: ColourArray,
+    luma: ColourArray,
+) -> tuple[NDArray[np.intp], FloatArray]:
+    """Return the likeliest marker of each of N colour cells, (N,), and its posterior probability, (N,).
+
+    Args:
+        distributions: the markers' colours.
+        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
+        background_counts: (N,) background pixels in each cell.
+        chroma: (N, 2) chromaticity of the cells' middles.
+        luma: (N,) their offset luma in levels.
+    """
+    counts = np.asarray(pixel_counts, dtype=np.float64)
+    best, total = np.zeros(len(luma)), np.asarray(background_counts, dtype=np.float64).copy()
+    label, distance = np.zeros(len(luma), dtype=np.intp), np.full(len(luma), np.inf)
+    for marker, distribution in enumerate(distributions):
+        near = distribution.within_reach(chroma, luma)
+        squared, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
+        evidence = counts[marker] * np.exp(log_density) * cell_volume(luma[near])
+        total[near] += evidence
+        better = evidence > best[near]
+        where = near[better]
+        best[where], label[where], distance[where] = evidence[better], marker, squared[better]
+    # The unknown: as likely as the marker itself at the outlier distance, everywhere.
+    with np.errstate(over="ignore", invalid="ignore"):
+        unknown = best * np.exp(0.5 * (distance - OUTLIER_DISTANCE))
+        return label, np.nan_to_num(best / (total + unknown))

@@ -1,0 +1,158 @@
+"""The sampled frames of a clip that colours are learned from: what lies where, and how often it occurs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple, TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..segmentation.working_image import smooth
+from .color_model import ColourDistribution, weigh
+from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
+
+FloatArray = NDArray[np.float64]
+Image = NDArray[np.uint8]
+Labels = NDArray[np.uint8]
+_Number = TypeVar("_Number", bound=np.generic)
+
+_CORE_DISTANCE: Final = 7.8
+"""Squared distance of a sample's near colours: 95 % of a chi-squared with 3 degrees of freedom."""
+LEARNING_NOISE_LEVELS: Final = 2.5
+"""Noise of what is learned from: pixels that only noise could have made so teach nothing."""
+_NO_MARKER: Final = 255
+_LARGEST_SHARE: Final = 0.25
+"""A region over a quarter of the image is a wall or a floor."""
+_BACKGROUND_MARGIN: Final = 3
+_KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+# A normal distribution of one cell's deviation, cut off after two.
+_SPREAD: Final = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
+
+
+class PlacedMask(NamedTuple):
+    """Some pixels of an image, as a mask of the part of it that holds them.
+
+    Attributes:
+        left: first column of the part.
+        top: its first row.
+        mask: (rows, columns) uint8, 0 or 1.
+        area: pixels that are 1.
+    """
+
+    left: int
+    top: int
+    mask: NDArray[np.uint8]
+    area: int
+
+    def within(self, place: NDArray[np.uint8]) -> PlacedMask:
+        """Return what of it lies in a mask of the whole image."""
+        return _placed(self.left, self.top, self.mask & self.cut(place))
+
+    def interior(self) -> NDArray[np.uint8]:
+        """Return the mask without its mixed border where that leaves enough of it."""
+        inner = cv2.erode(self.mask, _KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
+        return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
+
+    def cut(self, image: NDArray[_Number]) -> NDArray[_Number]:
+        """Return the part of an image that the mask is of."""
+        rows, columns = self.mask.shape
+        return image[self.top : self.top + rows, self.left : self.left + columns]
+
+
+class SampledColours:
+    """The sampled frames as indices into the table of the colours that occur in them."""
+
+    def __init__(self, images: Sequence[Image]) -> None:
+        """Count the colours of images (rows, columns, 3) uint8."""
+        cells = [cell_index(smooth(image)) for image in images]
+        present = np.zeros(CELL_COUNT, dtype=np.bool_)
+        for cell in cells:
+            present[cell] = True
+        self._table = np.flatnonzero(present).astype(np.int32)
+        self._chroma, self._luma = cell_chromaticity(self._table)
+        rank = np.zeros(CELL_COUNT, dtype=np.intp)
+        rank[self._table] = np.arange(len(self._table))
+        self._images = [rank.take(cell) for cell in cells]
+
+    def near(self, distributions: Sequence[ColourDistribution]) -> Labels:
+        """Label each colour of the table by the distribution in whose core it lies; 255 for none."""
+        pairs = [
+            distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
+            for distribution in distributions
+        ]
+        nearest = np.argmax([density for _, density in pairs], axis=0)
+        distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
+        return np.where(distance < _CORE_DISTANCE, nearest, _NO_MARKER).astype(np.uint8)
+
+    def weighed(
+        self, distributions: Sequence[ColourDistribution], pixels: NDArray[np.int64], background: FloatArray
+    ) -> Labels:
+        """Label each colour of the table by its likeliest marker; 255 where the background is likelier."""
+        label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
+        return np.where(probability >= 0.5, label, _NO_MARKER).astype(np.uint8)
+
+    def regions(self, labels: Labels, core: Labels, markers: int) -> list[list[PlacedMask]]:
+        """Return for each frame and marker its connected regions with enough of its core colour."""
+        result = []
+        for image in self._images:
+            label = labels.take(image)
+            result.append([_with_core(label, image, core, marker) for marker in range(markers)])
+        return result
+
+    def colours(self, masks: Sequence[PlacedMask]) -> tuple[FloatArray, FloatArray]:
+        """Return chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
+        inside = [
+            mask.cut(image)[mask.interior().view(np.bool_)]
+            for image, mask in zip(self._images, masks, strict=True)
+            if mask.area
+        ]
+        index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
+        return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
+
+    def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> FloatArray:
+        """Count the colours clear of all masks by cells, (CELL_COUNT,), spread over neighbouring cells."""
+        total = np.zeros(len(self._table))
+        for image, placed in zip(self._images, masks, strict=True):
+            covered = np.zeros(image.shape, dtype=np.uint8)
+            for mask in placed:
+                mask.cut(covered)[:] |= mask.mask
+            near = cv2.dilate(covered, _KERNEL, iterations=_BACKGROUND_MARGIN)
+            total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
+        counts = np.zeros(CELL_COUNT)
+        counts[self._table] = total
+        return _spread(counts)
+
+
+def _spread(counts: FloatArray) -> FloatArray:
+    """Spread counts of cells (CELL_COUNT,) over the neighbouring ones."""
+    side = CELLS_PER_CHANNEL
+    # Two channels are rows and columns of an image with as many channels as cells in the third.
+    cube = cv2.sepFilter2D(
+        counts.reshape(side, side, side), -1, _SPREAD, _SPREAD, borderType=cv2.BORDER_REPLICATE
+    )
+    one = np.ones(1)
+    lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, _SPREAD, one, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(lines.ravel(), dtype=np.float64)
+
+
+def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int) -> PlacedMask:
+    """Keep regions of which enough is of the core colour and which are not most of the image."""
+    mask = np.equal(label, marker).view(np.uint8)
+    left, top, columns, rows = cv2.boundingRect(mask)
+    part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
+    if not columns:
+        return PlacedMask(0, 0, part, 0)
+    count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
+    pixel = np.flatnonzero(part)
+    colour = image[top : top + rows, left : left + columns].take(pixel)
+    strong = np.bincount(np.asarray(number).take(pixel[core.take(colour) == marker]), minlength=count)
+    area = stats[:, cv2.CC_STAT_AREA]
+    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * label.size)
+    good[0] = False
+    return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
+
+
+def _placed(left: int, top: int, mask: NDArray[np.uint8]) -> PlacedMask:
+    return PlacedMask(left, top, mask, cv2.countNonZero(mask))

@@ -1,0 +1,65 @@
+"""Which of the regions of its colour are each marker's: what extraction and a look at samples share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
+from .pieces import OwnRegion, join_pieces
+from .region_tracks import ExpectedRegions
+from .segmentation.moments import centroid_and_second_moment
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+DEAREST_PIECE: Final = 10.0
+"""Highest cost of what is taken for a piece of a marker."""
+
+
+def own_regions(
+    found: Sequence[Candidates],
+    groups: Sequence[Sequence[int]],
+    expected: ExpectedRegions | None,
+    choose: Callable[[Candidates, FloatArray, float], IntArray],
+) -> dict[int, OwnRegion]:
+    """Return what is each marker's in every frame, by the marker's index.
+
+    Args:
+        found: of each colour, its regions.
+        groups: of each colour, the markers that bear it.
+        expected: where the markers are expected.
+        choose: from a colour's regions, their costs (N,) and the marker's length in px, the index of its main
+            region in each frame, (F,); -1 where it is hidden.
+    """
+    alone = [len(group) == 1 for group in groups]
+    clutter = [
+        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        for one, single in zip(found, alone, strict=True)
+    ]
+    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
+    reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
+    own = {}
+    for colour, group in enumerate(groups):
+        one = found[colour]
+        length = _length(one, clutter[colour], usual[colour])
+        taken = np.zeros(len(one.frame), dtype=np.bool_)
+        for marker in group:
+            cost = region_costs(one, clutter[colour], usual[colour], expected, marker)
+            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            path = choose(one, cost, length)
+            own[marker] = join_pieces(one, path, cost, reach, DEAREST_PIECE)
+            taken[path[path >= 0]] = True
+    return own
+
+
+def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
+    """Return the marker's length in px: the long axis of regions of the usual size."""
+    full = ~clutter & (found.area >= 0.7 * usual_area)
+    if not full.any():
+        return 1.0
+    _, second = centroid_and_second_moment(found.moments[full])
+    return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))

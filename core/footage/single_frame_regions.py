@@ -1,0 +1,48 @@
+"""The markers' regions in a single frame, where the clip as a whole has not been gone through."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..errors import InputError
+from .clips.clip import Clip
+from .clips.frame_reader import FrameReader
+from .colors.clip_colors import ClipColours
+from .detections import Sightings
+from .marker_style import MarkerStyle
+from .markers import tell_markers
+from .region_tracks import ExpectedRegions, RegionTracks
+from .segmentation.regions import find_regions
+from .segmentation.working_image import halvings, measuring_image
+
+_SAMPLED_FRAMES = 12
+
+
+def regions_of_frame(
+    clip: Clip, time_s: float, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+) -> RegionTracks:
+    """Find the markers in one frame, by colours learned from frames spread over the clip.
+
+    Args:
+        clip: the footage.
+        time_s: time of the frame in seconds from the first.
+        styles: the markers, M of them, in the order of the result.
+        expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its colour.
+
+    Returns:
+        Tracks of one frame.
+
+    Raises:
+        InputError: a marker's colour matches nothing in the clip, or there is no such frame.
+    """
+    image = FrameReader(clip).image_at(time_s)
+    if image is None:
+        raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
+    times = halvings(clip.size)
+    colours = ClipColours(clip.path, clip.size, styles)
+    colours.learn([measuring_image(sample, times) for _, sample in clip.sample(_SAMPLED_FRAMES)])
+    colours.check_found()
+    regions = find_regions([image], times, colours.model)
+    return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

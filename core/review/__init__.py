@@ -1,0 +1,1 @@
+"""How good a motion is: confidence, frames worth another keyframe, the review, the score against a truth."""

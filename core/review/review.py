@@ -1,0 +1,185 @@
+"""What a person judges a motion by: outlines, points, confidence, and frames worth another keyframe."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.kinematics import Pose
+from ..estimate.reconstruct import Reconstruction
+from ..estimate.terms.regions import RegionNoise, limb_widths
+from ..footage.segmentation.ellipse import CORNERS, ellipse_outline
+from ..observation.regions import RegionModel
+from ..progress import Job, Part, within
+from ..take.take import Take
+from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
+from .weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
+
+Array = NDArray[np.float64]
+
+__all__ = ["Reason", "Review", "WeakFrame", "review"]
+
+STAGE = "Judging the motion"
+FRAMES_AT_ONCE = 100
+"""So few that whoever waits can stop within some hundredths of a second."""
+WRONG_SHARE = 0.1
+"""Of the performer's stature: a point expected further off is wrong, no matter how far."""
+COMPACT = ("observed", "predicted")
+"""Large rows that are only looked at: kept as single precision."""
+
+
+@dataclass(frozen=True, eq=False)
+class Review:
+    """What there is to see of a motion of F frames, M markers and 13 points; NaN where there is nothing."""
+
+    frames: Array
+    """(F,) scene frames, fractional for variable frame rate."""
+    size: tuple[int, int]
+    """Width and height of the picture [px]."""
+    marker_names: tuple[str, ...]
+    point_names: tuple[str, ...]
+    observed: Array
+    """(F, M, K, 2) closed outline of each region seen [px]: the even ellipse of equal moments."""
+    predicted: Array
+    """(F, M, K, 2) the same of what the motion predicts to be visible of each marker [px]."""
+    points: Array
+    """(F, 13, 3) principal points in the world [m]."""
+    image_points: Array
+    """(F, 13, 2) the same in the picture, through the lens that was found [px]."""
+    sigma_m: Array
+    """(F, 13) square root of the trace of each point's covariance [m]; NaN for a method without."""
+    reprojection_px: Array
+    """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
+    nearness: Array
+    """(F,) degree to which a keyframe is near, 0 to 1."""
+    speed: Array
+    """(F,) V_sum [px per frame]."""
+    confidence: Array
+    """(F,) from 0 to 1; NaN for a method without uncertainty."""
+    keyframe_indices: NDArray[np.intp]
+    """(K,) places in the clip that were given as keyframes."""
+    weak_frames: tuple[WeakFrame, ...]
+    """Frames worth another keyframe, the worst first."""
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything as plain arrays, which `from_arrays` reads back; none needs pickling."""
+        arrays: dict[str, NDArray[Any]] = {}
+        for field in fields(self):
+            if field.name == "weak_frames":
+                continue
+            kind = np.float32 if field.name in COMPACT else None
+            arrays[field.name] = np.asarray(getattr(self, field.name), dtype=kind)
+        weak = self.weak_frames
+        arrays["weak_index"] = np.array([frame.index for frame in weak], dtype=np.int64)
+        arrays["weak_reason"] = np.array([str(frame.reason) for frame in weak], dtype=np.str_)
+        arrays["weak_strength"] = np.array([frame.strength for frame in weak], dtype=np.float64)
+        markers = [-1 if frame.marker is None else frame.marker for frame in weak]
+        arrays["weak_marker"] = np.array(markers, dtype=np.int64)
+        return arrays
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
+        """Read what `to_arrays` gave.
+
+        Raises:
+            KeyError: An array is missing.
+            ValueError: A reason is unknown.
+        """
+        columns = zip(
+            arrays["weak_index"].tolist(),
+            arrays["weak_reason"].tolist(),
+            arrays["weak_strength"].tolist(),
+            arrays["weak_marker"].tolist(),
+            strict=True,
+        )
+        weak = tuple(
+            WeakFrame(index, Reason(reason), strength, None if marker < 0 else marker)
+            for index, reason, strength, marker in columns
+        )
+        names = ("marker_names", "point_names")
+        plain = {
+            field.name: np.asarray(arrays[field.name], dtype=np.float64)
+            for field in fields(cls)
+            if field.name not in (*names, "size", "keyframe_indices", "weak_frames")
+        }
+        width, height = arrays["size"].tolist()
+        return cls(
+            size=(int(width), int(height)),
+            marker_names=tuple(arrays["marker_names"].tolist()),
+            point_names=tuple(arrays["point_names"].tolist()),
+            keyframe_indices=np.asarray(arrays["keyframe_indices"], dtype=np.intp),
+            weak_frames=weak,
+            **plain,
+        )
+
+
+def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
+    """Gather what there is to see of a reconstruction.
+
+    Args:
+        take: The take.
+        reconstruction: What `reconstruct` made of it.
+        scene_frames: (F,) scene frame of each frame of the clip.
+
+    Yields:
+        Progress.
+
+    Returns:
+        The review.
+    """
+    motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
+    frame = np.arange(tracks.frame_count)
+    pose = take.body.pose(motion.posture)
+    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 1.0)
+    noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
+    variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
+    misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
+    moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
+    expected = expected_covariance(motion.point_covariance, moved, misfit)
+    believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
+    wrong = WRONG_SHARE * take.body.actor.stature_m
+    squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
+    index = np.array(motion.keyframe_indices, dtype=np.intp)
+    evidence = FrameEvidence(
+        np.where(np.isfinite(squared), squared, 1.0),
+        believed,
+        np.where(tracks.visible, tracks.quality, 0.0),
+        misfit,
+        reconstruction.speed,
+    )
+    return Review(
+        frames=np.asarray(scene_frames, dtype=np.float64),
+        size=tracks.size,
+        marker_names=tracks.names,
+        point_names=take.body.skeleton.point_names,
+        observed=ellipse_outline(tracks.centroid, tracks.second_moment),
+        predicted=predicted,
+        points=motion.points,
+        image_points=model.camera.project(motion.points, frame[:, None])[0],
+        sigma_m=motion.sigma_m,
+        reprojection_px=offset,
+        nearness=motion.diagnostics["nearness"],
+        speed=reconstruction.speed,
+        confidence=believed,
+        keyframe_indices=index,
+        weak_frames=find_weak_frames(evidence, index),
+    )
+
+
+def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:
+    """Outlines (F, M, K, 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
+    outlines = np.full((*centroid.shape[:2], CORNERS, 2), np.nan)
+    distance = np.full(centroid.shape[:2], np.nan)
+    for first in range(0, len(centroid), FRAMES_AT_ONCE):
+        yield first / len(centroid)
+        chunk = slice(first, first + FRAMES_AT_ONCE)
+        frame = np.arange(len(centroid))[chunk]
+        predicted = model.evaluate(pose[chunk], frame)
+        seen = predicted.visible > RegionNoise().least_visible
+        shape = ellipse_outline(predicted.centroid, predicted.second_moment)
+        outlines[chunk] = np.where(seen[..., None, None], shape, np.nan)
+        apart = np.linalg.norm(predicted.centroid - centroid[chunk], axis=-1)
+        distance[chunk] = np.where(seen, apart, np.nan)
+    return outlines, distance

@@ -1,0 +1,150 @@
+"""How far a motion is from the truth, in the measures of the field.
+
+MPJPE, the mean per joint position error: Ionescu et al. (2014), *Human3.6M*, eq. 8. The split along and
+across the line of sight is what a single camera makes interesting: across it the image helps, along it not.
+"""
+
+from collections.abc import Collection
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.human import HUMAN
+from ..body.posture_fields import FARTHEST_M
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.json_file import read_json, shown
+from ..files.number_lists import number_array
+from ..footage.camera import Camera
+
+Array = NDArray[np.float64]
+
+STANDING_M = 0.004
+"""An ankle that truly moves less than this in a frame stands."""
+NORMAL_95 = 1.96
+"""Half-width of a normal distribution's 95 % interval, in standard deviations."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of a motion in millimetres; those over free frames leave the keyframes out."""
+
+    frames: int
+    keyframes: int
+    mpjpe: float
+    """Mean over free frames and 13 points of the distance to the true point."""
+    mpjpe_all: float
+    """The same over all frames."""
+    rooted: float
+    """Like `mpjpe`, after both are moved so that the hips' midpoints coincide."""
+    depth: float
+    """Mean absolute error along the line from the camera to the true point, free frames."""
+    image: float
+    """Mean error across that line, free frames."""
+    worst_p95: float
+    """95th percentile of the points' errors, free frames."""
+    jitter: float
+    """Mean length of the error's second difference, per frame²."""
+    skate: float | None
+    """Mean horizontal travel per frame of ankles that truly stand; None where none ever stands."""
+    coverage95: float | None
+    """Share of points within 1.96 sigma of the truth, 0.90 to 0.99 where sigma is honest; None without."""
+
+    def to_dict(self) -> dict[str, float | None]:
+        """The measures by name."""
+        return asdict(self)
+
+
+def score_points(
+    points: Array,
+    truth: Array,
+    keyframe_indices: Collection[int],
+    camera: Camera,
+    sigma_m: Array | None = None,
+) -> Score:
+    """Score points against the truth.
+
+    Args:
+        points: (F, 13, 3) estimated points in the world [m].
+        truth: (F, 13, 3) true points [m].
+        keyframe_indices: Frames, from 0, that were given as keyframes.
+        camera: The camera whose lines of sight split the error.
+        sigma_m: (F, 13) square root of the trace of each point's covariance [m].
+
+    Raises:
+        InputError: The motion and the truth have different frames, or every frame is a keyframe.
+    """
+    if points.shape != truth.shape:
+        raise InputError(f"the motion has {len(points)} frames; the truth has {len(truth)}")
+    free = np.ones(len(truth), dtype=bool)
+    free[list(keyframe_indices)] = False
+    if not free.any():
+        raise InputError("every frame is a keyframe; at least one other is needed to score what lies between")
+    error = points - truth  # (F, P, 3)
+    distance = np.linalg.norm(error, axis=-1)  # (F, P)
+    along, across = _along_and_across(error, truth, camera)
+    hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
+    rooted = np.linalg.norm(error - error[:, hips].mean(axis=1, keepdims=True), axis=-1)
+    bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
+    covered = None if sigma_m is None else float(np.mean(distance <= NORMAL_95 * sigma_m))
+    return Score(
+        frames=len(truth),
+        keyframes=int(np.sum(~free)),
+        mpjpe=1e3 * float(distance[free].mean()),
+        mpjpe_all=1e3 * float(distance.mean()),
+        rooted=1e3 * float(rooted[free].mean()),
+        depth=1e3 * float(along[free].mean()),
+        image=1e3 * float(across[free].mean()),
+        worst_p95=1e3 * float(np.percentile(distance[free], 95)),
+        jitter=1e3 * float(bend.mean()) if len(bend) else 0.0,
+        skate=_skate(points, truth),
+        coverage95=covered,
+    )
+
+
+def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
+    """Read a take's `truth.json` for the clip's frames.
+
+    Args:
+        path: The file: `frames`, and `points` by name with one [x, y, z] a frame.
+        frame_start: Scene frame of the clip's first frame.
+        frame_count: Frames of the clip, F.
+
+    Returns:
+        (F, 13, 3) true points [m].
+
+    Raises:
+        InputError: The file is unusable or lacks a frame of the clip.
+    """
+    fields = Fields(read_json(path), str(path))
+    frames = fields.required("frames", "a list of frames")
+    wanted = list(range(frame_start, frame_start + frame_count))
+    if frames != wanted:
+        raise InputError(
+            f"{path}: frames is {shown(frames)}; it must list {wanted[0]} to {wanted[-1]} in order"
+        )
+    points = fields.child("points", "an object of 13 points")
+    places = [points.required(name, "a list of [x, y, z]") for name in HUMAN.point_names]
+    truth = number_array(places)
+    usable = truth is not None and truth.shape == (len(places), frame_count, 3)
+    if truth is None or not usable or np.abs(truth).max(initial=0.0) > FARTHEST_M:
+        raise InputError(
+            f"{points.where}: each point needs {frame_count} [x, y, z] in m, within {FARTHEST_M:g} m"
+        )
+    return np.swapaxes(truth, 0, 1)
+
+
+def _along_and_across(error: Array, truth: Array, camera: Camera) -> tuple[Array, Array]:
+    """Sizes (F, P) of the error along and across the line from the camera to each true point."""
+    sight = camera.sight(truth, np.arange(len(truth))[:, None])
+    along = np.sum(error * sight, axis=-1)
+    return np.abs(along), np.linalg.norm(error - along[..., None] * sight, axis=-1)
+
+
+def _skate(points: Array, truth: Array) -> float | None:
+    ankles = [HUMAN.point_names.index(name) for name in ("ankle.L", "ankle.R")]
+    stands = np.linalg.norm(np.diff(truth[:, ankles], axis=0), axis=-1) < STANDING_M
+    travel = np.linalg.norm(np.diff(points[:, ankles, :2], axis=0), axis=-1)
+    return 1e3 * float(travel[stands].mean()) if stands.any() else None

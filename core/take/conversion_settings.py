@@ -1,0 +1,87 @@
+"""How a take is converted, as far as a person can choose."""
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from ..errors import InputError
+from ..files.control_characters import is_hidden
+from ..files.fields import Fields, listed
+from ..files.json_file import shown
+from ..files.safe_path import inside_path
+from .methods import METHODS
+
+HIGHEST_FLOOR_M = 1000.0
+LONGEST_NAME = 200
+KEYFRAMES_VALID = "a path inside the take's folder, as in keyframes.json"
+LIBRARY_VALID = "a library's name, auto, or the path of a library file inside the folder, as in walking.json"
+
+
+@dataclass(frozen=True)
+class ConversionSettings:
+    """Choices; what is None is left to the take and to Keymark."""
+
+    keyframes: Path | None = None
+    """The keyframe file; by default the take's own where it has one."""
+    library: str | None = None
+    """Name or file of the library to match with, or `auto`; None where all is posed."""
+    floor_m: float | None = None
+    """Height of the floor where it is known [m]; for matching."""
+    method: str | None = None
+    """`map` (the default), `ekf` or `interpolation`."""
+    pictures: bool | None = None
+    """Whether to draw the report; the default is to."""
+
+    def over(self, farther: "ConversionSettings") -> "ConversionSettings":
+        """These choices, and where they say nothing those of another."""
+        merged = {}
+        for field in fields(self):
+            own = getattr(self, field.name)
+            merged[field.name] = getattr(farther, field.name) if own is None else own
+        return ConversionSettings(**merged)
+
+
+NOTHING_CHOSEN = ConversionSettings()
+
+
+def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:
+    """The choices that a description makes.
+
+    Args:
+        description: Its fields.
+        folders: For each place that may say a field, the folder that paths in it are relative to.
+
+    Raises:
+        InputError: A field is not what it must be, or a path leaves its folder.
+    """
+    method = description.text("method", listed(METHODS)) if description.has("method") else None
+    if method not in (None, *METHODS):
+        raise InputError(
+            f"{description.at('method')}: method is {shown(method)}; it must be one of {listed(METHODS)}"
+        )
+    pictures = description.values.get("pictures")
+    if pictures is not None and not isinstance(pictures, bool):
+        raise InputError(
+            f"{description.at('pictures')}: pictures is {shown(pictures)}; it must be true or false"
+        )
+    floor_m = None
+    if description.has("floor_m"):
+        floor_m = description.number("floor_m", -HIGHEST_FLOOR_M, HIGHEST_FLOOR_M, "m")
+    keyframes = None
+    if description.has("keyframes"):
+        keyframes = inside_path(
+            description, "keyframes", folders[description.at("keyframes")], KEYFRAMES_VALID
+        )
+    return ConversionSettings(keyframes, _library(description, folders), floor_m, method, pictures)
+
+
+def _library(description: Fields, folders: dict[str, Path]) -> str | None:
+    if not description.has("library"):
+        return None
+    name = description.text("library", LIBRARY_VALID)
+    if not name.lower().endswith(".json"):  # a name; whatever holds a slash would be taken for a file
+        if len(name) > LONGEST_NAME or any(letter in "/\\" or is_hidden(letter) for letter in name):
+            raise InputError(
+                f"{description.at('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
+            )
+        return name
+    return str(inside_path(description, "library", folders[description.at("library")], LIBRARY_VALID))

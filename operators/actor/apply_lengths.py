@@ -1,0 +1,40 @@
+"""Give the actor the lengths of the panel."""
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.messages import say
+from ..shell.requirements import actor, all_met, bones_editable, idle
+from ..shell.takes import active_take
+
+
+class KEYMARK_OT_apply_lengths(bpy.types.Operator):
+    """Give the actor's bones these lengths; its pose, its keyframes and the place of its hips stay"""
+
+    bl_idname = "keymark.apply_lengths"
+    bl_label = "Apply Lengths"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor whose bones can be changed."""
+        return all_met(cls, context, actor, bones_editable, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change the bones."""
+        with reported(self):
+            from ...core.body.actor import Actor
+            from ...core.body.kinematics import Body
+            from ..bridge.resize import set_lengths
+            from .properties import length_names, length_property
+
+            take = active_take(context.scene)
+            lengths = {name: getattr(take.lengths, length_property(name)) for name in length_names()}
+            body = Body(Actor(lengths))
+            set_lengths(take.armature, body)
+            say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_apply_lengths,))

@@ -1,0 +1,145 @@
+"""Measure the performer in a frame in which they stand."""
+
+import bpy
+
+from ..markers.marker_styles import marker_styles
+from ..shell.error_reports import reported
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.messages import label, say
+from ..shell.redraw import redraw_footage
+from ..shell.requirements import all_met, bones_editable, camera, footage, idle
+from ..shell.takes import active_take, footage_of
+
+NOT_STANDING = (
+    "The markers are not where those of someone who stands upright would be; the lengths are little better "
+    "than average ones. Go to a frame in which the performer stands, and check the height"
+)
+
+
+class KEYMARK_OT_measure_actor(bpy.types.Operator):
+    """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
+
+    bl_idname = "keymark.measure_actor"
+    bl_label = "Measure Actor"
+    bl_options = {"REGISTER", "UNDO"}
+
+    stature: bpy.props.FloatProperty(
+        name="Height",
+        description="The performer's body height",
+        subtype="DISTANCE",
+        precision=3,
+        default=1.75,
+        min=0.5,
+        max=3.0,
+    )
+    head_pixel: bpy.props.FloatVectorProperty(
+        name="Top of Head",
+        description="In pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+    floor_pixel: bpy.props.FloatVectorProperty(
+        name="Floor",
+        description="The floor between the feet, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+    arms_stretched: bpy.props.BoolProperty(
+        name="Arms Stretched Sideways",
+        description="The performer holds both arms out sideways, so that their lengths can be told as well",
+        default=False,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be footage and the camera that took it."""
+        return all_met(cls, context, footage, camera, bones_editable, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for two clicks on the footage."""
+        take = active_take(context.scene)
+        self.stature = take.stature
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        from ..overlays.measuring import Clicks, show
+
+        self._clicks = Clicks()
+        show(self._clicks)
+        context.window.cursor_modal_set("CROSSHAIR")
+        self._ask(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Take the clicks, or stop; the view can be moved and zoomed meanwhile."""
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            self.cancel(context)
+            return {"CANCELLED"}
+        if event.type == "MOUSEMOVE":
+            self._clicks.mouse = event.mouse_x, event.mouse_y
+            redraw_footage(context)
+        if event.type != "LEFTMOUSE" or event.value != "PRESS":
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        from ..shell.footage_view import pixel_under
+
+        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+        if pixel is None:
+            say(self, "WARNING", "That is not on the footage; click in the picture")
+            return {"RUNNING_MODAL"}
+        if self._clicks.head is None:
+            self._clicks.head = pixel
+            self._ask(context)
+            return {"RUNNING_MODAL"}
+        self.head_pixel, self.floor_pixel = self._clicks.head, pixel
+        self.cancel(context)
+        return self.execute(context)
+
+    def _ask(self, context: bpy.types.Context) -> None:
+        if self._clicks.head is None:
+            wanted = label("Click on the top of the head   |   Esc: Cancel")
+        else:
+            wanted = label("Now click on the floor between the feet   |   Esc: Cancel")
+        context.workspace.status_text_set(wanted)
+        redraw_footage(context)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Give the cursor back; Blender calls this as well."""
+        from ..overlays.measuring import show
+
+        show(None)
+        if context.window is not None:  # else Blender is closing it, or opens another file
+            redraw_footage(context)
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Measure, give the actor what was measured, and stand it there unless it has keyframes."""
+        with reported(self):
+            from ..bridge.pose import write_posture
+            from ..bridge.posing import frame_in_footage, measured_in_frame
+            from ..shell.results import reading_of
+            from .place_actor import is_posed, size_actor
+
+            take = active_take(context.scene)
+            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+            measured = measured_in_frame(
+                frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+            )
+            size_actor(context, take, measured.body)
+            take.stature = self.stature
+            if not is_posed(take):
+                write_posture(take.armature, measured.posture)
+            if not measured.stands:
+                say(self, "WARNING", NOT_STANDING)
+            else:
+                say(
+                    self,
+                    "INFO",
+                    "The performer stands {distance:.2f} m from the camera; what was not seen is average",
+                    distance=measured.distance_m,
+                )
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

@@ -1,0 +1,57 @@
+"""Who performs."""
+
+import bpy
+
+from ..shell.panel import TakePanel
+from ..shell.takes import active_take
+from .properties import MIDDLE, SIDED, length_property
+
+
+class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
+    """The armature, and how to build or measure one."""
+
+    bl_label = "Actor"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw height, what builds and measures, and the armature."""
+        take, column = active_take(context.scene), self.column()
+        column.prop(take, "stature")
+        row = column.row(align=True)
+        row.scale_y = 1.2
+        text = "Build Actor" if take.armature is None else "Use Average Proportions"
+        row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE")
+        column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
+        column.separator()
+        column.prop(take, "armature")
+
+
+class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):
+    """The lengths of the actor's segments."""
+
+    bl_label = "Lengths"
+    bl_parent_id = "KEYMARK_PT_actor"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is an actor."""
+        return super().poll(context) and active_take(context.scene).armature is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the lengths: of the middle, and of one side or both."""
+        lengths, column = active_take(context.scene).lengths, self.column()
+        column.prop(lengths, "symmetric")
+        for name in MIDDLE:
+            column.prop(lengths, length_property(name))
+        for part in SIDED:
+            group = column.column(align=True)
+            if lengths.symmetric:
+                group.prop(lengths, length_property(f"{part}.L"), text=part.replace("_", " ").title())
+                continue
+            group.prop(lengths, length_property(f"{part}.L"))
+            group.prop(lengths, length_property(f"{part}.R"))
+        column.separator()
+        column.operator("keymark.apply_lengths", icon="CHECKMARK")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_actor, KEYMARK_PT_actor_lengths))

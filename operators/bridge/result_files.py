@@ -1,0 +1,152 @@
+"""A result as files for other programs: a .blend with everything in it, and a BVH.
+
+Both are made from a scene of their own, which exists only meanwhile: what the running Blender has open,
+its undo history and its window are not touched.
+"""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ...core.errors import ConversionError
+from ...core.take.motion import Motion
+from ...core.take.take import Take
+from .armature import build_armature
+from .blend_writer import write_blend
+from .body_mesh import build_body_mesh
+from .curve_digest import curve_digest
+from .fcurves import write_motion
+from .footage import clip_rate
+from .footage_to_scene import load_footage, show_footage
+from .frame_times import scene_frames
+
+VIEW_TRANSFORM = "Standard"
+"""Shows colours as they are given, so that markers look as in the footage; the default, AgX, does not."""
+
+BVH_ORDER = "ZXY"
+"""One order of rotation channels for all joints: some readers take the first joint's for all."""
+
+
+def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
+    """Write a motion as a .blend and, if asked for, as a BVH.
+
+    The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
+    colours, and the camera with the clip behind it; the clip's path is relative where the drives allow.
+    Each file is written beside its place and moved there when complete.
+
+    Args:
+        take: Clip, camera, body and markers.
+        motion: What to write.
+        blend_path: The .blend's place; its folder exists.
+        bvh_path: The BVH's place, or None for none.
+
+    Returns:
+        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
+
+    Raises:
+        InputError: Blender cannot read the clip.
+        ConversionError: Blender could not write a file.
+    """
+    with own_scene(f"{take.name} Motion") as scene:
+        armature_object = fill_scene(scene, take, motion)
+        with _moved_into_place(blend_path) as path:
+            write_blend(path, {scene}, path_remap="RELATIVE_ALL", fake_user=False)
+        if bvh_path is not None:
+            with _moved_into_place(bvh_path) as path:
+                write_bvh(armature_object, path)
+        return curve_digest(armature_object)
+
+
+def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.Object:
+    """Put footage, camera, actor with motion, and body into a scene; returns the armature object."""
+    clip = load_footage(take.clip)
+    rate = clip_rate(clip, motion.fps)
+    frames = scene_frames(motion.time_s, motion.frame_start, rate)
+    count = len(motion.time_s)
+    show_footage(scene, take.camera, take.clip, rate, motion.frame_start, count, frames)
+    scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))
+    _set_look(scene)
+    armature_object = build_armature(scene, take.body, "Actor")
+    write_motion(armature_object, motion, frames=frames)
+    build_body_mesh(armature_object, take.body, take.markers)
+    scene.frame_set(scene.frame_start)
+    return armature_object
+
+
+def _set_look(scene: bpy.types.Scene) -> None:
+    """Workbench in material colours, which every Blender has, and light for the other engines."""
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.display.shading.color_type = "MATERIAL"
+    scene.view_settings.view_transform = VIEW_TRANSFORM
+    scene.world = bpy.data.worlds.new("Soft Light")
+    scene.world.color = (0.8, 0.8, 0.8)
+
+
+def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
+    """Export an armature's motion over its scene's frames with Blender's own BVH exporter.
+
+    Raises:
+        ConversionError: The exporter failed.
+    """
+    scene = armature_object.users_scene[0]
+    layer = scene.view_layers[0]
+    layer.objects.active = armature_object
+    with bpy.context.temp_override(
+        scene=scene, view_layer=layer, object=armature_object, active_object=armature_object
+    ):
+        try:
+            bpy.ops.export_anim.bvh(
+                filepath=str(path),
+                frame_start=scene.frame_start,
+                frame_end=scene.frame_end,
+                rotate_mode=BVH_ORDER,
+                root_transform_only=True,
+            )
+        except (RuntimeError, AttributeError) as error:
+            raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
+
+
+@contextmanager
+def own_scene(name: str) -> Iterator[bpy.types.Scene]:
+    """A scene for the time being; it and everything made meanwhile is removed again."""
+    collections = [
+        getattr(bpy.data, kind)
+        for kind in (
+            "objects",
+            "meshes",
+            "armatures",
+            "cameras",
+            "materials",
+            "actions",
+            "movieclips",
+            "worlds",
+        )
+    ]
+    before = [{block.as_pointer() for block in blocks} for blocks in collections]
+    scene = bpy.data.scenes.new(name)
+    try:
+        yield scene
+    finally:
+        bpy.data.scenes.remove(scene)
+        made = [
+            block
+            for blocks, known in zip(collections, before, strict=True)
+            for block in blocks
+            if block.as_pointer() not in known
+        ]
+        bpy.data.batch_remove(made)
+
+
+@contextmanager
+def _moved_into_place(path: Path) -> Iterator[Path]:
+    """A path beside `path`; what is written there is moved to `path` at the end, or removed on failure."""
+    beside = path.with_name(f".{path.stem.lstrip('.')}-{os.getpid()}{path.suffix}")
+    try:
+        yield beside
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)

@@ -1,0 +1,90 @@
+"""A take as it stands in a scene: footage, camera, actor, markers and the animator's keyframes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
+from ...core.footage.marker_style import MarkerStyle
+from ...core.progress import Job, Progress
+from ...core.take.take import Take
+from .actor_lengths import read_body
+from .camera_from_scene import read_camera
+from .footage import Footage
+from .frame_times import scene_frames
+from .keyframes import NOT_MATCHED, Matches, read_keyframes
+
+Array = NDArray[np.float64]
+
+READING = "Reading the footage's times"
+
+
+def clip_frames(footage: Footage) -> Job[Array]:
+    """Find the scene frame that shows each frame of the clip.
+
+    Yields:
+        Progress; a video is gone through once for its time stamps, since its header may be wrong.
+
+    Returns:
+        (F,) scene frames, fractional for variable frame rates.
+
+    Raises:
+        InputError: The clip cannot be read.
+    """
+    source = footage.open()
+    stamps: list[float] = []
+    for stamp in source.source.time_stamps():
+        stamps.append(stamp)
+        yield Progress(READING, min(len(stamps) / source.frame_count, 1.0))
+    return scene_frames(np.array(stamps), footage.first_frame, footage.rate)
+
+
+def read_scene_take(
+    footage: Footage,
+    armature_object: bpy.types.Object,
+    keyframe_action: bpy.types.Action | None,
+    markers: Sequence[MarkerStyle],
+    matches: Matches = NOT_MATCHED,
+) -> Job[tuple[Take, tuple[str, ...]]]:
+    """What `core.reconstruct` needs, from a scene; the scene is as before afterwards.
+
+    Args:
+        footage: Clip and camera in their scene.
+        armature_object: The actor.
+        keyframe_action: Where the animator keyed; None for no keyframes.
+        markers: What the performer wears.
+        matches: Which keyframes nobody posed, and what they were matched with.
+
+    Yields:
+        Progress.
+
+    Returns:
+        The take, and sentences the animator should read.
+
+    Raises:
+        InputError: Something is missing or unusable; the sentence says what to do.
+    """
+    path = footage.path
+    if not markers:
+        raise InputError("there are no markers; add one for each coloured sleeve the performer wears")
+    frames = yield from clip_frames(footage)
+    body = read_body(armature_object, HUMAN)
+    take = Take(
+        folder=path.parent,
+        clip=path,
+        fps=footage.rate,
+        frame_start=footage.first_frame,
+        frame_count=len(frames),
+        camera=read_camera(footage, frames),
+        body=body,
+        markers=tuple(markers),
+        keyframes=(),
+    )
+    if keyframe_action is None:
+        return take, ()
+    posed = read_keyframes(footage.scene, armature_object, keyframe_action, body, frames, matches)
+    return replace(take, keyframes=posed.keyframes), posed.notes

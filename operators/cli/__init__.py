@@ -1,0 +1,3 @@
+"""The command line: `keymark ...`, `python -m keymark ...` and `blender --command keymark ...`."""
+
+MODULES = ("blender_command",)

@@ -1,0 +1,83 @@
+"""`keymark check`."""
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache, partial
+
+from ...core.errors import ConversionError, unexpected
+from ...core.progress import Job, Progress, run
+from ...core.shoot.check.odd_takes import with_odd_ones
+from ...core.shoot.check.take_check import TakeCheck, check_take
+from ...core.shoot.finding.open_shoot import open_shoot
+from ...core.shoot.shoot import Shoot, ShootTake
+from ...core.take.conversion_settings import ConversionSettings
+from ...core.text import counted
+from .check_text import check_summary, check_text
+from .console import arguments_console
+from .conversion.matched_keyframes import chosen_libraries
+from .line_parser import UsageError
+from .line_wrapping import terminal_columns
+
+MOST_JOBS = 64
+STAGE = "Looking at the takes"
+
+
+def check_command(arguments: argparse.Namespace) -> None:
+    """Look through the takes that the command line names, and say what is wrong with each.
+
+    Raises:
+        InputError: The shoot is unusable.
+        ConversionError: Some take would not convert.
+    """
+    jobs = 1 if arguments.jobs is None else arguments.jobs
+    if not 1 <= jobs <= MOST_JOBS:
+        raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
+    farther = ConversionSettings(library=arguments.library, method=arguments.method)
+    with arguments_console(arguments) as console:
+        shoot = open_shoot(arguments.shoot)
+        checks = run(_checks(shoot, farther, jobs, arguments.debug), console.progress)
+        console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
+    failing = sum(not check.converts for check in checks)
+    if failing:
+        raise ConversionError(f"{failing} of {counted(len(checks), 'take')} would not convert")
+
+
+def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
+    """Look at all takes, some at a time; decoders leave the interpreter to others meanwhile."""
+    find_libraries = cache(chosen_libraries)
+    looks = [partial(_look, take, find_libraries, farther, debug) for take in shoot.takes]
+    checks: dict[int, TakeCheck] = {}
+    yield Progress(STAGE, 0.0)
+    for index, check in _some_at_a_time(looks, jobs):
+        checks[index] = check
+        yield Progress(STAGE, len(checks) / len(looks))
+    return with_odd_ones([checks[index] for index in sorted(checks)])
+
+
+def _look(
+    take: ShootTake, find_libraries: Callable[[str], object], farther: ConversionSettings, debug: bool
+) -> TakeCheck:
+    """Look at a take; what nobody has thought of is said of this one, and stops no look at the others."""
+    try:
+        return check_take(take, find_libraries, farther)
+    except Exception as error:
+        if debug:
+            raise
+        what = unexpected(error)
+        said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        return TakeCheck(take.name, (said,), ())
+
+
+def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
+    if jobs == 1:
+        for index, look in enumerate(looks):
+            yield index, look()
+        return
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        running = {pool.submit(look): index for index, look in enumerate(looks)}
+        for done in as_completed(running):
+            yield running[done], done.result()
+    finally:
+        pool.shutdown(cancel_futures=True)

@@ -1,0 +1,178 @@
+"""What `keymark check` says: a line a take with what is wrong below it, or one object."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from ...core.files.fields import listed
+from ...core.shoot.check.take_check import TakeCheck
+from ...core.shoot.shoot import Shoot
+from ...core.take.shoot_file import whole_way
+from .line_wrapping import broken
+
+READY, LOOK, FAILS = "ready", "look", "fails"
+"""It would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before what stops a conversion, and before what is only likely to go wrong."""
+FEWEST_IN_COMMON = 3
+"""Takes that must share a sentence for it to be said once."""
+MOST_NAMED = 3
+BETWEEN = "  "
+"""Two columns."""
+NARROWEST_NAME = 12
+"""Columns that a name has at least beside its figures."""
+
+
+def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
+    """What was found, for `--json`."""
+    counts = Counter(map(_word, checks))
+    efforts = [check.effort for check in checks if check.effort is not None]
+    return {
+        "takes": [_take(check) for check in checks],
+        "counts": {word: counts[word] for word in (READY, LOOK, FAILS)},
+        "estimated_seconds": round(sum(effort.seconds for effort in efforts), 1),
+        "estimated_bytes": sum(effort.size_bytes for effort in efforts),
+    }
+
+
+def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
+    """What was found, for people.
+
+    Args:
+        shoot: What was looked at.
+        checks: Of every take.
+        columns: Width of the terminal, to which sentences are broken; None where nothing is to be broken.
+    """
+    shared = _shared(checks)
+    lines = _table(shoot, checks, shared, columns)
+    together: dict[tuple[str, ...], list[str]] = {}
+    for sentence, takes in shared.items():
+        together.setdefault(tuple(takes), []).append(sentence)
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
+        lines += [line for sentence in sentences for line in broken(sentence, 2, columns)]
+    return "\n".join([*lines, "", *broken(_last_line(checks), 0, columns)])
+
+
+def _table(
+    shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
+) -> list[str]:
+    """A line a take in columns, what is wrong with it alone below."""
+    names = [_name(shoot, check) for check in checks]
+    markers = _common_markers(checks)
+    titles = ("", "take", "frames", "size", "rate", "keyframes", *markers)
+    rows = [(_word(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)]
+    widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
+    if columns is not None:
+        figures = sum(width + len(BETWEEN) for width in (widths[0], *widths[2:]))
+        widths[1] = max(min(widths[1], columns - figures), NARROWEST_NAME)
+    said_once = set(shared)
+    lines = _aligned(titles, widths)
+    for check, row in zip(checks, rows, strict=True):
+        lines += _aligned(row, widths)
+        own = [sentence for sentence in _marked(check) if sentence not in said_once]
+        lines += [line for sentence in own for line in broken(sentence, widths[0] + 2, columns)]
+    return lines
+
+
+def _marked(check: TakeCheck) -> tuple[str, ...]:
+    """All sentences on a take, those marked that stop its conversion."""
+    return (
+        *(f"{STOPS} {sentence}" for sentence in check.problems),
+        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
+    )
+
+
+def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
+    size = "-" if check.size is None else f"{check.size[0]}x{check.size[1]}"
+    rate = "-" if check.fps is None else f"{check.fps:.4g}"
+    frames = "-" if check.frames is None else str(check.frames)
+    posed = str(check.keyframes) if check.library is None else f"{check.keyframes}+{check.library}"
+    seen = {readout.name: f"{100 * readout.found // readout.sampled}%" for readout in check.markers}
+    return (frames, size, rate, posed, *(seen.get(name, "-") for name in markers))
+
+
+def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
+    """Words to the left, numbers to the right; below a name that is too long for its column."""
+    first, name, *rest = cells
+    numbers = [f"{cell:>{width}}" for cell, width in zip(rest, widths[2:], strict=True)]
+    words = f"{first:{widths[0]}}"
+    if len(name) > widths[1]:
+        whole = BETWEEN.join([words, name])
+        return [whole, BETWEEN.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
+    return [BETWEEN.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
+
+
+def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
+    """The markers of all takes, each name once, in the order they are met."""
+    return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
+
+
+def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
+    """Sentences that several takes share, with these: a mistake in a shoot's description is one mistake."""
+    found: dict[str, list[str]] = {}
+    for check in checks:
+        for sentence in _marked(check):
+            found.setdefault(sentence, []).append(check.name)
+    return {sentence: takes for sentence, takes in found.items() if len(takes) >= FEWEST_IN_COMMON}
+
+
+def _last_line(checks: Sequence[TakeCheck]) -> str:
+    counts = Counter(map(_word, checks))
+    said = [
+        f"{counts[READY]} ready",
+        f"{counts[LOOK]} to look at",
+        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
+    ]
+    efforts = [check.effort for check in checks if check.effort is not None]
+    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(said)}."
+    if not efforts:
+        return line
+    seconds, size = sum(one.seconds for one in efforts), sum(one.size_bytes for one in efforts)
+    return f"{line} Roughly {_time(seconds)} of one processor and {_size(size)} for those that convert."
+
+
+def _time(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def _size(size_bytes: int) -> str:
+    return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
+
+
+def _name(shoot: Shoot, check: TakeCheck) -> str:
+    return whole_way(shoot.folder).name if check.name == "." else check.name
+
+
+def _word(check: TakeCheck) -> str:
+    if not check.converts:
+        return FAILS
+    return LOOK if check.warnings else READY
+
+
+def _take(check: TakeCheck) -> dict[str, Any]:
+    return {
+        "take": check.name,
+        "status": _word(check),
+        "problems": list(check.problems),
+        "warnings": list(check.warnings),
+        "size": None if check.size is None else list(check.size),
+        "fps": check.fps,
+        "frames": check.frames,
+        "keyframes": check.keyframes,
+        "library": check.library,
+        "markers": {
+            readout.name: {
+                "found": readout.found,
+                "sampled": readout.sampled,
+                "area_px": round(readout.area_px, 1),
+                "distinctness": round(readout.distinctness, 3),
+            }
+            for readout in check.markers
+        },
+        "estimated_seconds": None if check.effort is None else round(check.effort.seconds, 1),
+        "estimated_bytes": None if check.effort is None else check.effort.size_bytes,
+    }

@@ -1,0 +1,145 @@
+"""What a command says: text or JSON on standard output, and progress."""
+
+import argparse
+import json
+import os
+import sys
+import time
+from types import TracebackType
+from typing import Any
+
+from ...core.errors import ConversionError
+from ...core.progress import Progress
+from .line_parser import complain
+from .line_wrapping import broken, terminal_columns
+from .openjd_progress import FarmProgress, is_wanted
+
+JOB_SHARE = 0.9
+"""What the job is of all a command does; the rest is writing files."""
+
+
+class Console:
+    """Progress, text and results of one command, as its options ask for; also its stopwatch.
+
+    On a terminal progress is a bar on standard error, where tqdm is at hand; else a line of text for each
+    stage, or the lines that a render farm asks for. With `--json` standard output gets one object and nothing
+    else, with `--quiet` nothing at all.
+    """
+
+    def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
+        self.quiet, self.as_json = quiet, as_json
+        self.seconds: dict[str, float] = {}
+        """Time spent in each stage so far [s]."""
+        self._stage = "Starting"
+        self._overall = ""
+        self._since = time.perf_counter() if started is None else started
+        self._bar: Any = None if quiet else _bar()
+        if is_wanted() and not quiet and not as_json:
+            self._bar = FarmProgress(self._write)
+
+    def __enter__(self) -> "Console":
+        """Start the command."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Take the bar away, whatever happened."""
+        self._close_bar()
+
+    def progress(self, progress: Progress) -> None:
+        """Take note of how far the job is."""
+        if progress.stage != self._stage and progress.fraction < 1.0:
+            self.stage(progress.stage)
+        if self._bar is not None:
+            self._bar.update(max(0.0, 100.0 * JOB_SHARE * progress.fraction - self._bar.n))
+
+    def stage(self, name: str) -> None:
+        """Begin a stage; the time until the next one counts as its own."""
+        if name == self._stage:
+            return
+        self._stop()
+        self._stage = name
+        if self._bar is not None:
+            self._bar.set_description(name)
+        elif name and not self.quiet and not self.as_json:
+            self._write(f"{name} ...")
+
+    def overall(self, fraction: float, name: str) -> None:
+        """Show how far many jobs are together, 0 to 1, and in a few words what they are doing."""
+        if self._bar is not None:
+            self._bar.set_description(name, refresh=name != self._overall)
+            self._overall = name
+            self._bar.update(max(0.0, 100.0 * fraction - self._bar.n))
+
+    def take(self, text: str, error: str | None) -> None:
+        """Say in a line what became of one of many takes; with `--quiet` only if that is an error."""
+        if self.as_json or (self.quiet and error is None):
+            return
+        if self.quiet:
+            complain(error or "")
+            return
+        if self._bar is not None:
+            self._bar.clear()
+        self._write("\n".join(broken(" ".join(text.split("\n")), 0, terminal_columns())))
+        if self._bar is not None:
+            self._bar.refresh()
+
+    def finish(self, result: dict[str, Any], text: str) -> None:
+        """Say the result: the object with `--json`, else the text."""
+        self._stop()
+        self._close_bar()
+        if self.as_json:
+            seconds = {name: round(value, 3) for name, value in self.seconds.items()}
+            seconds["total"] = round(sum(self.seconds.values()), 3)
+            self._write(json.dumps({**result, "seconds": seconds}, allow_nan=False))
+        elif not self.quiet:
+            self._write(text)
+
+    def _stop(self) -> None:
+        now = time.perf_counter()
+        if self._stage:
+            self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
+        self._stage, self._since = "", now
+
+    def _close_bar(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def _write(self, text: str) -> None:
+        """Write a line; where that fails, nothing more is written, and the work goes on.
+
+        The reader has had enough, the disk of a log is full, or the terminal is gone.
+        """
+        encoding = sys.stdout.encoding or "utf-8"
+        try:
+            print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+        except OSError as error:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            if self.as_json and not isinstance(error, BrokenPipeError):
+                reason = error.strerror or error
+                raise ConversionError(
+                    f"standard output cannot be written ({reason}); the result is not told, the rest is done"
+                ) from error
+
+
+def arguments_console(arguments: argparse.Namespace) -> Console:
+    """The console that a command line asks for."""
+    return Console(quiet=arguments.quiet, as_json=arguments.json, started=arguments.started)
+
+
+def _bar() -> Any:
+    """A progress bar, or None where there is no terminal or no tqdm."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return None
+    try:
+        from tqdm import tqdm
+    except ImportError:  # not among the extension's wheels
+        return None
+    return tqdm(
+        total=100.0, leave=False, file=sys.stderr, bar_format="{desc}{percentage:3.0f}% |{bar}| {elapsed}"
+    )

@@ -1,0 +1,92 @@
+"""`keymark library learn`, `merge` and `mirror`: new libraries from what there is."""
+
+import argparse
+
+from ....core.errors import InputError
+from ....core.files.fields import listed
+from ....core.library.learning import About, learn_library
+from ....core.library.library import Library
+from ....core.library.library_file import write_library
+from ....core.library.merging import Choice, compare, joined, merged
+from ....core.library.mirroring import mirrored_library, with_mirrored
+from ....core.library.registry import find_library
+from ....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
+from ....core.take.motion_file import read_motion
+from ..console import Console, arguments_console
+from ..line_parser import UsageError
+from .folders import library_folders, refuse_existing
+from .inspect import described, library_summary
+
+
+def learn_command(arguments: argparse.Namespace) -> None:
+    """Make a library of a finished motion."""
+    refuse_existing(arguments.output, arguments.replace)
+    if arguments.identifier is not None:
+        checked_identifier(arguments.identifier, "--identifier")
+    with arguments_console(arguments) as console:
+        console.stage("Reading the motion")
+        motion = read_motion(arguments.motion)
+        about = About(
+            title=arguments.title,
+            author=arguments.author,
+            license=arguments.license,
+            identifier=arguments.identifier or "",
+        )
+        console.stage("Choosing postures")
+        library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
+        _keep(console, arguments, library)
+
+
+def merge_command(arguments: argparse.Namespace) -> None:
+    """Make one library of two."""
+    refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        folders = library_folders()
+        first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
+        if first.identifier == second.identifier:
+            choice = None if arguments.conflicts is None else Choice(arguments.conflicts)
+            library = _of_two_versions(first, second, choice)
+        else:
+            title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
+            identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
+            library = joined(first, second, identifier, title)
+        _keep(console, arguments, library)
+
+
+def _of_two_versions(first: Library, second: Library, choice: Choice | None) -> Library:
+    """Two versions of a library as one.
+
+    Raises:
+        UsageError: They differ in something, and no choice is made.
+    """
+    changed = compare(first, second).changed
+    if changed and choice is None:
+        names = listed(map(repr, changed), 5)
+        raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
+    return merged(first, second, choice)
+
+
+def mirror_command(arguments: argparse.Namespace) -> None:
+    """Exchange left and right.
+
+    Raises:
+        InputError: Both sides are wanted of an actor whose sides differ.
+    """
+    refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        library = find_library(arguments.library, library_folders())
+        if not arguments.both:
+            _keep(console, arguments, mirrored_library(library))
+            return
+        try:
+            both = with_mirrored(library)
+        except ValueError as error:
+            raise InputError(f"library {library.identifier!r}: {error}") from error
+        _keep(console, arguments, both)
+
+
+def _keep(console: Console, arguments: argparse.Namespace, library: Library) -> None:
+    """Write a library, and say so."""
+    write_library(arguments.output, library)
+    result = {**library_summary(library), "files": [str(arguments.output)]}
+    console.finish(result, "\n".join([*described(library), f"Written: {arguments.output}"]))

@@ -1,0 +1,104 @@
+"""The command line: `keymark ...`, `python -m keymark ...` and `blender --command keymark ...`.
+
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable, 130 interrupted.
+On all but 0, one line on standard error says why, and the output is as it was before.
+"""
+
+import os
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+
+from ...core.errors import InputError, KeymarkError, unexpected
+from .arguments import build_parser
+from .blender_silence import codec_silence
+from .line_parser import UsageError, complain
+
+AS_IN_BLENDER = ["--command", "keymark"]
+"""What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
+DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        argv: The words after the program's name; by default the process' own.
+
+    Returns:
+        The exit status.
+    """
+    _open_standard_streams()
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words[: len(AS_IN_BLENDER)] == AS_IN_BLENDER:
+        words = words[len(AS_IN_BLENDER) :]
+    debug = "--debug" in words
+    if "numpy" not in sys.modules:  # which reads these once, when it is loaded
+        for variable in ONE_THREAD:
+            os.environ.setdefault(variable, "1")
+    started = time.perf_counter()
+    try:
+        arguments = build_parser().parse_args(words)
+        arguments.started = started
+        with _terminable(), codec_silence(debug):
+            arguments.run(arguments)
+        return DONE
+    except SystemExit as stop:  # --help and --version
+        return stop.code if isinstance(stop.code, int) else DONE
+    except KeyboardInterrupt as stop:
+        return _say(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
+    except (UsageError, InputError) as error:
+        return _say(str(error), UNUSABLE, debug)
+    except KeymarkError as error:
+        return _say(str(error), FAILED, debug)
+    except ImportError as error:
+        lacking = f"the Python module {error.name}" if error.name else "a Python module"
+        return _say(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
+    except Exception as error:
+        return _say(f"failed unexpectedly ({unexpected(error)}); --debug shows where", FAILED, debug)
+
+
+def _open_standard_streams() -> None:
+    """Let nobody hear what a process says that was started with closed streams.
+
+    Else the next files to be opened got their numbers, and what Blender says would be written into these.
+    """
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))
+
+
+def _say(sentence: str, status: int, debug: bool) -> int:
+    """Write one line on standard error."""
+    if debug:
+        traceback.print_exc()
+    complain(sentence)
+    return status
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """Let a polite request to end, as render farms send it, clean up as Ctrl-C does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(_signal: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,75 @@
+"""`keymark new`."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...core.errors import InputError
+from ...core.files.json_layout import write_readable_json
+from ...core.progress import run, within
+from ...core.shoot.finding.find_takes import find_takes
+from ...core.shoot.template.clip_survey import ClipSurvey, survey_clips
+from ...core.shoot.template.shoot_template import clip_lines, shoot_template
+from ...core.take.shoot_file import NAME, shoot_files, whole_way
+from .console import arguments_console
+from .line_parser import program_name
+
+
+def new_command(arguments: argparse.Namespace) -> None:
+    """Write a shoot's description from its clips."""
+    folder: Path = arguments.shoot
+    output: Path = arguments.output or folder / NAME
+    with arguments_console(arguments) as console:
+        if output.exists():
+            raise InputError(
+                f"{output}: is there already, and is never replaced; take it away, or name another file with "
+                "--output"
+            )
+        shoot = find_takes(folder, undescribed=True)
+        survey = run(within("Looking at the clips", survey_clips(shoot), 0.0, 1.0), console.progress)
+        _check_clips(folder, survey)
+        above = [file for file in shoot_files(folder) if file != whole_way(folder) / NAME]
+        template = shoot_template(survey, bool(above))
+        write_readable_json(output, template)
+        todo = to_fill_in(template)
+        console.finish(_summary(survey, output, todo), _text(folder, survey, output, todo))
+
+
+def to_fill_in(template: object, way: str = "") -> list[str]:
+    """The fields that are null, each by its way from the outermost object."""
+    if template is None:
+        return [way]
+    if not isinstance(template, dict):
+        return []
+    found = []
+    for name, value in template.items():
+        found += to_fill_in(value, f"{way}.{name}" if way else name)
+    return found
+
+
+def _check_clips(folder: Path, survey: ClipSurvey) -> None:
+    if survey.clips:
+        return
+    if survey.unreadable:
+        raise InputError(f"{folder}: none of its clips can be read; the first: {survey.unreadable[0]}")
+    raise InputError(
+        f"{folder}: every take in it has a take.json of its own; there is nothing to describe but what they "
+        "say, see keymark check"
+    )
+
+
+def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str, object]:
+    return {
+        "file": str(output),
+        "clips": len(survey.clips),
+        "described": list(survey.described),
+        "unreadable": list(survey.unreadable),
+        "fill_in": list(todo),
+    }
+
+
+def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
+    lines = [*clip_lines(survey), "", f"{output} describes them. Now fill in"]
+    lines += [f"  {way}" for way in todo]
+    lines.append("and put right the lens, which is a guess; the comments beside each say how.")
+    return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])

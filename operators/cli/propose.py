@@ -1,0 +1,41 @@
+"""`keymark propose`."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.files.json_file import write_whole
+from ...core.footage.markers import track_markers
+from ...core.prior.marker_speed import marker_speed, propose_keyframes
+from ...core.progress import Job, run, within
+from ...core.report.canvas import write_png
+from ...core.report.speed_plot import speed_plot
+from ...core.take.take import Take, open_clip, read_take
+from .console import arguments_console
+
+
+def propose_command(arguments: argparse.Namespace) -> None:
+    """Say which frames of the take are worth posing."""
+    with arguments_console(arguments) as console:
+        take = read_take(arguments.take, keyframes_required=False)
+        speed = run(_speed(take), console.progress)
+        indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
+        frames = [int(index) + take.frame_start for index in indices]
+        if arguments.picture is not None:
+            _write_picture(arguments.picture, speed, indices, take.frame_start)
+        result = {"frames": frames, "speed_px_per_frame": [round(float(value), 3) for value in speed]}
+        console.finish(result, " ".join(str(frame) for frame in frames))
+
+
+def _speed(take: Take) -> Job[NDArray[np.float64]]:
+    tracks = yield from within(
+        "Following the markers", track_markers(open_clip(take), take.markers), 0.0, 1.0
+    )
+    return marker_speed(tracks)
+
+
+def _write_picture(path: Path, speed: NDArray[np.float64], indices: NDArray[np.intp], start: int) -> None:
+    picture = speed_plot(speed, [int(index) for index in indices], start)
+    write_whole(path, lambda beside: write_png(str(beside), picture))

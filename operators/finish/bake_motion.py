@@ -1,0 +1,94 @@
+"""Finish a reconstructed motion: feet planted, as few keys as the animator's tolerance allows."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..shell.job_operator import JobOperator
+from ..shell.messages import say
+from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.takes import active_take, actor_of, take_called
+
+if TYPE_CHECKING:
+    from ...core.progress import Job
+    from ..bridge.finishing import Finished
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the job hands over to the scene."""
+
+    take: str
+    """The take's identifier."""
+    finished: "Finished"
+
+
+class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
+    """Make the final Action, anew: your corrected motion with few keys, its resting feet standing still"""
+
+    bl_idname = "keymark.bake_motion"
+    bl_label = "Bake Final Action"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a motion."""
+        return all_met(cls, context, actor, motion, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+        """Read the motion and finish it; the settings are those of the moment it begins."""
+        from ..bridge.finishing import Wanted, finish_motion
+
+        take = active_take(scene)
+        settings, identifier = take.finish, take.identifier
+        wanted = Wanted(
+            tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
+            whole_pose=settings.shared == "WHOLE_POSE",
+            stray_m=settings.stray_mm / 1000.0 if settings.plant_feet else None,
+        )
+        frame_s = scene.render.fps_base / scene.render.fps
+        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, wanted, frame_s)
+        del take, settings  # Blender may move them while the job runs
+        return Outcome(identifier, (yield from job))
+
+    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+        """Write the final Action and let it animate the actor."""
+        from ...core.errors import InputError
+        from ..bridge.actions import assign_action
+        from ..bridge.final_motion import write_final
+
+        take, finished = take_called(scene, result.take), result.finished
+        settings, armature_object = take.finish, actor_of(take)
+        if take.motion_action is None:
+            raise InputError("the motion has been deleted meanwhile; nothing was changed")
+        if settings.action is None:
+            settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
+        settings.action.use_fake_user = True
+        settings.keys_after = write_final(
+            armature_object,
+            take.motion_action,
+            settings.action,
+            finished.body,
+            finished.rig,
+            finished.frames,
+            finished.motion,
+        )
+        settings.keys_before, settings.outdated = finished.keys_before, False
+        settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
+        assign_action(armature_object, settings.action)
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        for template, values in finished.notes:
+            say(self, "WARNING", template, **values)
+        say(
+            self,
+            "INFO",
+            "Baked {after} keys of {before} into '{action}', at most {distance:.1f} mm off",
+            after=settings.keys_after,
+            before=settings.keys_before,
+            action=settings.action.name,
+            distance=settings.furthest_mm,
+        )
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_bake_motion,))

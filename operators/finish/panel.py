@@ -1,0 +1,117 @@
+"""From the reconstructed motion to what the animator keeps."""
+
+import bpy
+
+from ..bridge.export_formats import FORMATS
+from ..shell.messages import label
+from ..shell.panel import TakePanel
+from ..shell.takes import active_take
+
+
+class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
+    """The final Action."""
+
+    bl_label = "Finish"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the button, how many keys there shall be, and what came of it."""
+        take, column = active_take(context.scene), self.column()
+        settings = take.finish
+        row = column.row()
+        row.scale_y = 1.4
+        row.operator("keymark.bake_motion", icon="ACTION")
+        column.prop(settings, "keys")
+        few = column.column()
+        few.active = settings.keys == "TOLERANCE"
+        few.prop(settings, "tolerance_mm")
+        few.prop(settings, "shared")
+        column.prop(settings, "plant_feet")
+        feet = column.column()
+        feet.active = settings.plant_feet
+        feet.prop(settings, "stray_mm")
+        if settings.action is not None and take.armature is not None:
+            _draw_result(column, take)
+
+
+def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """What the last bake made, and the switch between it and the motion."""
+    settings = take.finish
+    data = take.armature.animation_data
+    shown = data.action if data else None
+    column.separator()
+    row = column.row(align=True)
+    for which, action, text in (
+        ("MOTION", take.motion_action, "Motion"),
+        ("FINAL", settings.action, "Final"),
+    ):
+        depress = action is not None and action == shown
+        row.operator("keymark.show_action", text=text, depress=depress).which = which
+    lines = column.column(align=True)
+    lines.scale_y = 0.85
+    if settings.outdated:
+        lines.label(text="The motion is newer: bake again", icon="ERROR")
+    kept = label("{after} keys instead of {before}", after=settings.keys_after, before=settings.keys_before)
+    lines.label(text=kept, icon="KEYFRAME_HLT", translate=False)
+    if settings.furthest_mm > 0.0:
+        off = label("At most {distance:.1f} mm off", distance=settings.furthest_mm)
+        lines.label(text=off, icon="DRIVER_DISTANCE", translate=False)
+    if settings.rests:
+        rests = label("Feet planted: {count} rests", count=settings.rests)
+        lines.label(text=rests, icon="PINNED", translate=False)
+
+
+class FinishPart(TakePanel):
+    """A part of the last step, folded until it is wanted."""
+
+    bl_parent_id = "KEYMARK_PT_finish"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
+    """The motion as an asset."""
+
+    bl_label = "Asset"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw what is said of the asset, and the button."""
+        settings, column = active_take(context.scene).finish, self.column()
+        for name in ("catalog", "tags", "author", "license", "description"):
+            column.prop(settings, name)
+        column.operator("keymark.mark_asset", icon="ASSET_MANAGER")
+
+
+class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
+    """The motion for other programs."""
+
+    bl_label = "Export"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw a button for each format; one that this Blender lacks is grey and says why."""
+        column = self.column()
+        for kind, chosen in FORMATS.items():
+            missing = chosen.missing()
+            row = column.row()
+            row.enabled = not missing
+            row.operator("keymark.export_motion", text=chosen.name, icon="EXPORT").format = kind
+            if missing:
+                column.label(text=missing, icon="INFO")
+
+
+class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
+    """The motion as a keyframe library."""
+
+    bl_label = "Keyframe Library"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the button, and what it is for."""
+        column = self.column()
+        lines = column.column(align=True)
+        lines.scale_y = 0.85
+        lines.label(text="The next take of its kind")
+        lines.label(text="then needs fewer keyframes")
+        column.operator("keymark.learn_library", icon="ASSET_MANAGER")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PT_finish, KEYMARK_PT_asset, KEYMARK_PT_learn, KEYMARK_PT_export)
+)

@@ -1,0 +1,73 @@
+"""What was filmed."""
+
+import bpy
+
+from ..bridge.footage_camera import may_move, solver_constraint
+from ..shell.messages import label
+from ..shell.panel import TakePanel
+from ..shell.takes import active_take
+from .take_footage import lens_is_guess
+
+
+class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
+    """Clip, camera and the take's files."""
+
+    bl_label = "Footage"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw clip, camera and the take's files."""
+        take, column = active_take(context.scene), self.column()
+        column.prop(take, "clip")
+        if take.clip is not None:
+            _draw_clip(column, take)
+        column.separator()
+        column.prop(take, "camera")
+        if take.camera is not None:
+            _draw_camera(column, context.scene, take)
+        column.separator()
+        row = column.row(align=True)
+        text = "Load Footage" if take.clip is None else "Replace Clip"
+        row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE")
+        row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
+        row = column.row(align=True)
+        row.operator("keymark.open_take", icon="FILE_FOLDER")
+        row.operator("keymark.save_take", icon="FILE_TICK")
+
+
+def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """What the clip is, and whether it is there."""
+    clip, state = take.clip, take.clip_state
+    if state.missing:
+        box = column.box().column()
+        box.label(text="The clip's file is missing", icon="ERROR")
+        box.label(text=bpy.path.basename(clip.filepath), translate=False, icon="BLANK1")
+        box.operator("keymark.relocate_clip", text="Find Clip", icon="VIEWZOOM")
+        return  # Blender knows no size of what is not there
+    facts = column.column(align=True)
+    facts.active = False
+    size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])
+    extent = label("{count} frames at {rate:.5g} fps", count=clip.frame_duration, rate=state.rate)
+    facts.label(text=f"{size}, {extent}", translate=False, icon="INFO")
+    if state.variable_rate:
+        column.label(text="Variable rate: keys lie between frames", icon="ERROR")
+
+
+def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
+    """The lens, whether it is a guess, and whether the camera moves."""
+    camera = take.camera
+    column.prop(camera.data, "lens")
+    column.prop(camera.data, "sensor_width")
+    if camera.name not in scene.objects:
+        column.label(text="Camera is not in the scene", icon="ERROR")
+    if lens_is_guess(take):
+        row = column.row(align=True)
+        text = label("Lens is a guess: {lens:.1f} mm", lens=take.guessed_lens_mm)
+        row.label(text=text, translate=False, icon="QUESTION")
+        row.operator("keymark.keep_lens", text="", icon="CHECKMARK")
+    if take.clip is not None and solver_constraint(scene, camera, take.clip):
+        column.label(text="Camera moves as the clip was solved", icon="CON_CAMERASOLVER")
+    elif may_move(camera):
+        column.label(text="Camera moves, and is used as it does", icon="ANIM")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_footage,))

@@ -1,0 +1,84 @@
+"""Find a clip whose file is no longer where it was."""
+
+from pathlib import Path
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.messages import say
+from ..shell.requirements import all_met, footage, idle
+from ..shell.takes import active_take
+from .load_footage import PATTERNS
+
+
+class KEYMARK_OT_relocate_clip(bpy.types.Operator):
+    """Tell where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
+
+    bl_idname = "keymark.relocate_clip"
+    bl_label = "Find Clip"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="Where the clip is now: the video, or one image of the sequence",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a clip to find."""
+        return all_met(cls, context, footage, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file, starting from where it was."""
+        self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Check the file, and only then point the clip there."""
+        with reported(self):
+            from ...core.errors import InputError
+            from ...core.footage.clips.clip import Clip
+            from ..bridge.footage_to_scene import clip_file, stored_path
+            from .take_footage import note_clip
+
+            take = active_take(context.scene)
+            clip, path = take.clip, Path(bpy.path.abspath(self.filepath))
+            if clip.library is not None:
+                raise InputError(
+                    f"clip '{clip.name}' is linked from {clip.library.filepath}; "
+                    "find it in that file, or load it here"
+                )
+            found = Clip.open(path)
+            size, count = (clip.size[0], clip.size[1]), clip.frame_duration
+            clip.filepath = stored_path(clip_file(path))
+            context.view_layer.update()  # has Blender read the clip again
+            for scene in bpy.data.scenes:
+                for other in scene.keymark.takes:
+                    if other.clip == clip and scene.library is None:
+                        note_clip(other)
+            if all(size) and (found.size != size or clip.frame_duration != count):
+                say(
+                    self,
+                    "WARNING",
+                    "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
+                    "{old_width} x {old_height}; is it the right one?",
+                    file=path.name,
+                    count=clip.frame_duration,
+                    width=found.size[0],
+                    height=found.size[1],
+                    old_count=count,
+                    old_width=size[0],
+                    old_height=size[1],
+                )
+            else:
+                say(self, "INFO", "Found {name}", name=clip.name)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_relocate_clip,))

@@ -1,0 +1,103 @@
+"""Assisted posing: fit the actor's pose to the markers of the current frame."""
+
+import bpy
+import numpy as np
+
+from ..markers.marker_styles import marker_styles
+from ..matching.matches import known_matches
+from ..shell.error_reports import reported
+from ..shell.messages import say
+from ..shell.requirements import actor, all_met, camera, footage, idle, markers
+from ..shell.takes import active_take, footage_of
+
+
+class KEYMARK_OT_fit_pose(bpy.types.Operator):
+    """Pose the actor so that its markers lie where this frame shows them; nothing is keyed before you do"""
+
+    bl_idname = "keymark.fit_pose"
+    bl_label = "Fit Pose to Markers"
+    bl_options = {"REGISTER", "UNDO"}
+
+    start: bpy.props.EnumProperty(
+        name="Start From",
+        description="The pose that is changed as little as the markers allow",
+        items=[
+            (
+                "KEYFRAMES",
+                "Nearest Keyframes",
+                "The keyframes before and after this frame; standing where none is stored yet",
+            ),
+            (
+                "POSE",
+                "Current Pose",
+                "The pose as it is: set roughly by you, or applied from a pose library",
+            ),
+            ("STANDING", "Standing", "A body that stands where the performer is"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor, and markers to be seen through a camera."""
+        return all_met(cls, context, footage, camera, actor, markers, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Fit it, and let the animator turn bones at once."""
+        finished = self.execute(context)
+        if finished == {"FINISHED"}:
+            _to_pose_mode(context, active_take(context.scene).armature)
+        return finished
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Fit it, show it, and say how well it explains the markers."""
+        with reported(self):
+            from ..bridge.pose import write_posture
+            from ..bridge.posing import fit_to_frame, frame_in_footage
+            from ..shell.keyframe_action import show_keyframes
+            from ..shell.results import reading_of
+
+            take = active_take(context.scene)
+            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+            matches = known_matches(take)
+            fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
+            show_keyframes(take)
+            write_posture(take.armature, fit.posture)
+            if fit.misplaced:
+                names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
+                say(
+                    self,
+                    "WARNING",
+                    "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
+                    names=names,
+                )
+            elif not (np.isfinite(fit.before_px).any() and np.isfinite(fit.residual_px).any()):
+                say(
+                    self,
+                    "WARNING",
+                    "Seen from the camera, the body hides the markers that this frame shows; check the pose",
+                )
+            else:
+                say(
+                    self,
+                    "INFO",
+                    "Markers off by {before:.1f} pixels before, {after:.1f} now; "
+                    "look at it from the side too, where no marker tells the depth, then store it",
+                    before=float(np.nanmean(fit.before_px)),
+                    after=float(np.nanmean(fit.residual_px)),
+                )
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
+    """Make the actor the active object, in Pose Mode, where it can be seen and nothing else is being done."""
+    layer = context.view_layer
+    active = layer.objects.active
+    if armature_object.mode == "POSE" or (active is not None and active.mode != "OBJECT"):
+        return
+    if armature_object.visible_get(view_layer=layer):
+        layer.objects.active = armature_object
+        bpy.ops.object.mode_set(mode="POSE")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_fit_pose,))

@@ -1,0 +1,73 @@
+"""Go to the next or the previous proposed keyframe."""
+
+import bpy
+
+from ..shell.keyed_frames import forget, proposed_frames, unposed
+from ..shell.messages import say
+from ..shell.takes import find_take
+
+
+class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
+    """Go to the next or the previous proposed keyframe"""
+
+    bl_idname = "keymark.jump_to_proposal"
+    bl_label = "Jump to Proposed Keyframe"
+    bl_options = {"REGISTER", "UNDO"}
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Which way to go from the current frame",
+        items=[
+            ("NEXT", "Next", "Go to the next proposed keyframe"),
+            ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
+        ],
+    )
+    skip_posed: bpy.props.BoolProperty(
+        name="Skip Posed",
+        description="Go to a proposed keyframe that is not posed yet; from the last one on to the first",
+        default=False,
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The tooltip says which way."""
+        if properties.skip_posed:
+            return "Go to the next proposed keyframe that is not posed yet"
+        if properties.direction == "NEXT":
+            return "Go to the next proposed keyframe"
+        return "Go to the previous proposed keyframe"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be proposals."""
+        if proposed_frames(find_take(context.scene)):
+            return True
+        cls.poll_message_set("Propose keyframes first")
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Go there; where there is none, stay and say so."""
+        scene, take = context.scene, find_take(context.scene)
+        forget()
+        frames = unposed(take) if self.skip_posed else proposed_frames(take)
+        if not frames:
+            say(self, "INFO", "All proposed keyframes are posed")
+            return {"CANCELLED"}
+        ahead = [frame for frame in frames if frame > scene.frame_current]
+        behind = [frame for frame in frames if frame < scene.frame_current]
+        if self.skip_posed:  # around the ends
+            ahead, behind = ahead or frames, behind or frames
+        if self.direction == "NEXT" and ahead:
+            scene.frame_set(ahead[0])
+        elif self.direction == "PREVIOUS" and behind:
+            scene.frame_set(behind[-1])
+        elif self.direction == "NEXT":
+            say(self, "INFO", "There is no proposed keyframe after this frame")
+            return {"CANCELLED"}
+        else:
+            say(self, "INFO", "There is no proposed keyframe before this frame")
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

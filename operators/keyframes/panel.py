@@ -1,0 +1,103 @@
+"""Where to pose, and posing there."""
+
+import bpy
+
+from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed
+from ..shell.messages import label
+from ..shell.panel import TakePanel, draw_progress
+from ..shell.takes import active_take
+
+
+class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
+    """Going to where a keyframe is wanted, fitting a pose there, and storing it."""
+
+    bl_label = "Keyframes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw how far the posing is, and what poses and stores."""
+        take, column = active_take(context.scene), self.column()
+        if not len(take.proposals):
+            _draw_propose(column, context)
+        _draw_posed(column, take)
+        row = column.row(align=True)
+        row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
+        going = row.operator("keymark.jump_to_proposal", text="Next to Pose")
+        going.direction, going.skip_posed = "NEXT", True
+        row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
+        _draw_here(column, context.scene, take)
+        posing = column.column(align=True)
+        posing.scale_y = 1.2
+        if not draw_progress(posing, context, "keymark.fit_pose"):
+            posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
+        posing.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
+        posing.operator("keymark.store_keyframe", icon="KEY_HLT")
+
+
+def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The button that proposes frames, or how far that is."""
+    if not draw_progress(layout, context, "keymark.propose_keyframes"):
+        layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
+
+
+def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """How many of the proposed keyframes are posed, and how many others; how many are matched."""
+    proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
+    matched = len(matched_frames(take))
+    if matched:
+        text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)
+        layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+        return
+    if not proposed:
+        text = label("{posed} posed; none proposed yet", posed=posed)
+        layout.label(text=text, icon="INFO", translate=False)
+        return
+    done = proposed - left
+    text = label("{done} of {count} posed", done=done, count=proposed)
+    if posed > done:
+        text = label(
+            "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
+        )
+    layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+
+
+def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
+    """What this frame is: posed, proposed, or the motion's, which is no good to pose in."""
+    frame = scene.frame_current
+    data = take.armature.animation_data if take.armature is not None else None
+    shown = data.action if data is not None else None
+    if shown is not None and shown in (take.motion_action, take.finish.action):
+        row = layout.row(align=True)
+        row.label(text="Motion shown", icon="ERROR")
+        row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
+    elif any(round(posed) == frame for posed in posed_frames(take)):
+        layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
+    elif has_frame(matched_frames(take), frame):
+        text = label("Frame {frame} is matched, not posed", frame=frame)
+        layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
+    elif frame in proposed_frames(take):
+        text = label("Frame {frame} is proposed, not posed yet", frame=frame)
+        layout.label(text=text, icon="KEYFRAME", translate=False)
+    else:
+        layout.label(text=label("Frame {frame} is not posed", frame=frame), icon="DOT", translate=False)
+
+
+class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
+    """Which frames to pose, and where they are kept."""
+
+    bl_label = "Proposals"
+    bl_parent_id = "KEYMARK_PT_keyframes"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 1
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw what proposes frames, and the Action with the keyframes."""
+        take, column = active_take(context.scene), self.column()
+        column.prop(take, "keyframe_count")
+        _draw_propose(column, context)
+        column.separator()
+        column.prop(take, "keyframe_action", text="Action")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_proposals)
+)

@@ -1,0 +1,73 @@
+"""Propose frames worth posing, from how fast the markers move."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..markers.marker_styles import marker_styles
+from ..shell.job_operator import JobOperator
+from ..shell.messages import say
+from ..shell.requirements import all_colors, all_met, footage, idle, markers
+from ..shell.results import keep_reading, reading_of
+from ..shell.takes import active_take, footage_of, take_called
+
+if TYPE_CHECKING:
+    from ...core.footage.reading import Reading
+    from ...core.progress import Job
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the job hands over to the scene."""
+
+    take: str
+    """The take's identifier."""
+    reading: "Reading"
+    frames: tuple[int, ...]
+    """Scene frames worth posing."""
+
+
+class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
+    """Follow the markers through the footage and propose the frames that are best posed"""
+
+    bl_idname = "keymark.propose_keyframes"
+    bl_label = "Propose Keyframes"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """The markers are followed through the footage."""
+        return all_met(cls, context, footage, markers, all_colors, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+        """Find the frames; a clip that was read before for these markers is not read again."""
+        from ...core.footage.read_clip import read_clip
+        from ...core.footage.reading_key import of_same_footage, reading_key
+        from ...core.prior.marker_speed import marker_speed, propose_keyframes
+        from ...core.progress import within
+        from ..bridge.frame_times import scene_frames
+
+        take = active_take(scene)
+        identifier, count = take.identifier, take.keyframe_count or None
+        footage, styles, reading = footage_of(scene, take), marker_styles(take), reading_of(take)
+        clip, first, rate = footage.open(), footage.first_frame, footage.rate
+        if reading is None or not of_same_footage(
+            reading.key, reading_key(clip.path, clip.fps, styles, None)
+        ):
+            reading = yield from within("Following the markers", read_clip(clip, styles), 0.0, 1.0)
+        chosen = propose_keyframes(marker_speed(reading.tracks), count)
+        frames = scene_frames(reading.tracks.time_s, first, rate)[chosen]
+        return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames))
+
+    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+        """Keep them with the take, and what was read of the clip for the reconstruction."""
+        take = take_called(scene, result.take)
+        keep_reading(take, result.reading)
+        take.proposals.clear()
+        for frame in result.frames:
+            take.proposals.add().frame = frame
+        say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

@@ -1,0 +1,96 @@
+"""Pose the actor as a library's posture shows."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.messages import say
+from ..shell.requirements import actor, all_met, idle
+from ..shell.takes import active_take
+from .editing.scene_libraries import active_posture
+
+if TYPE_CHECKING:
+    from ...core.library.library import Library
+
+
+class KEYMARK_OT_apply_posture(bpy.types.Operator):
+    """Pose the actor as in a library, whatever its proportions; nothing is keyed before you do"""
+
+    bl_idname = "keymark.apply_posture"
+    bl_label = "Apply Posture"
+    bl_options = {"REGISTER", "UNDO"}
+
+    library: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of a library at hand; empty: the one that is made in this file",
+        options={"SKIP_SAVE"},
+    )
+    posture: bpy.props.StringProperty(
+        name="Posture",
+        description="Name of the posture; empty: the one chosen in the list",
+        options={"SKIP_SAVE"},
+    )
+    mirrored: bpy.props.BoolProperty(
+        name="Mirrored", description="Exchange left and right", options={"SKIP_SAVE"}
+    )
+    place: bpy.props.EnumProperty(
+        name="Place",
+        description="Where the actor is posed",
+        items=[
+            ("ACTOR", "Where the Actor Is", "At its place and heading, on the floor under its feet"),
+            ("WORLD", "As in the Library", "As it was posed, above the world's origin, the floor at z = 0"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be an actor."""
+        return all_met(cls, context, actor, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Fit the posture to the actor and show it, over the keyframes."""
+        with reported(self):
+            from ...core.body.human import HUMAN
+            from ..bridge.actor_lengths import read_body
+            from ..bridge.library.poses import named_posture, on_actor, standing_as
+            from ..bridge.pose import read_posture, write_posture
+            from ..shell.keyframe_action import show_keyframes
+
+            take = active_take(context.scene)
+            body = read_body(take.armature, HUMAN)
+            library, name = self._chosen(context)
+            found = named_posture(library, name)
+            posture = on_actor(found, library.actor, body, mirror=self.mirrored)
+            if self.place == "ACTOR":
+                posture = standing_as(posture, body, read_posture(take.armature, body).posture)
+            show_keyframes(take)
+            write_posture(take.armature, posture)
+            say(
+                self,
+                "INFO",
+                "Posed as '{name}'; Fit from Current Pose brings it to the markers, Store Keyframe keys it",
+                name=name,
+            )
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+    def _chosen(self, context: bpy.types.Context) -> "tuple[Library, str]":
+        """The library and the name of its posture."""
+        from ...core.errors import InputError
+        from .editing.scene_libraries import library_here
+        from .library_choice import chosen_library
+
+        if self.library:
+            if not self.posture:
+                raise InputError("no posture is chosen; choose one of the library's, or give posture")
+            return chosen_library(context, self.library), self.posture
+        group = library_here(context.scene)
+        entry = active_posture(group)
+        name = self.posture or (entry.name if entry is not None else "")
+        if not name:
+            raise InputError(f"library '{group.name}' has no postures yet; pose the actor and add one")
+        return chosen_library(context, ""), name
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_apply_posture,))

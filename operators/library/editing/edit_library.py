@@ -1,0 +1,55 @@
+"""Bring a library that is at hand into this file, to change it."""
+
+import bpy
+
+from ...shell.error_reports import reported
+from ...shell.messages import say
+from ...shell.redraw import refresh_asset_browsers
+from ...shell.requirements import a_shelved_library, all_met, idle
+from ..registry import chosen
+
+
+class KEYMARK_OT_edit_library(bpy.types.Operator):
+    """Bring a library into this file as pose assets: to apply, to blend, to change, and to share again"""
+
+    bl_idname = "keymark.edit_library"
+    bl_label = "Edit in This File"
+    bl_options = {"REGISTER", "UNDO"}
+
+    library: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of a library at hand; empty: the one chosen in the list",
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Not while a job runs."""
+        return all_met(cls, context, a_shelved_library, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Make its postures pose assets of this file."""
+        with reported(self):
+            from ....core.errors import InputError
+            from ..registry import library_called
+            from .scene_libraries import add_library
+
+            item = chosen(context)
+            library = library_called(self.library or (item.name if item is not None else ""))
+            if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):
+                raise InputError(f"library '{library.title}' is in this file already; remove it there first")
+            add_library(context.scene, library)
+            refresh_asset_browsers(context)
+            count = len(library.postures)
+            say(
+                self,
+                "INFO",
+                "'{title}' is in this file now: {count} pose assets",
+                title=library.title,
+                count=count,
+            )
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_edit_library,))

@@ -1,0 +1,65 @@
+"""Begin a keyframe library in this file."""
+
+import bpy
+
+from ...shell.error_reports import reported
+from ...shell.messages import say
+from ...shell.requirements import all_met, idle
+from ..licenses import suggest
+
+
+class KEYMARK_OT_new_library(bpy.types.Operator):
+    """Begin a keyframe library: pose the actor, add posture after posture, then share it as a file"""
+
+    bl_idname = "keymark.new_library"
+    bl_label = "New Library"
+    bl_options = {"REGISTER", "UNDO"}
+
+    title: bpy.props.StringProperty(
+        name="Title", description="What people call the library", default="My Library"
+    )
+    author: bpy.props.StringProperty(name="Author", description="Who makes it")
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Not while a job runs."""
+        return all_met(cls, context, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the title."""
+        return context.window_manager.invoke_props_dialog(self, confirm_text="Begin")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add it, without postures yet."""
+        with reported(self):
+            from ....core.errors import InputError
+            from ....core.library.library_fields import LONGEST_LINE
+            from ....core.library.texts import LONGEST_NAME, identifier_from, text_fault
+
+            settings = context.scene.keymark
+            fault = text_fault(self.title.strip(), LONGEST_NAME)
+            if fault:
+                raise InputError(f"the library's title is '{self.title}'; it {fault}")
+            fault = text_fault(self.author.strip(), LONGEST_LINE) if self.author.strip() else ""
+            if fault:
+                raise InputError(f"the library's author is '{self.author}'; it {fault}")
+            group = settings.libraries.add()
+            group.name, group.author = self.title.strip(), self.author.strip()
+            others = [other.identifier for other in settings.libraries]
+            group.license = self.license.strip()
+            group.identifier = identifier_from(group.name, others)
+            settings.active_library = len(settings.libraries) - 1
+            say(self, "INFO", "Began the library '{title}'; now add postures", title=group.name)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_new_library,))

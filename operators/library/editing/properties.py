@@ -1,0 +1,223 @@
+"""A keyframe library that is made in this file: what is said of it, its postures and its motions.
+
+Blender's numbers are of single precision. Times and ways are kept as text beside them, to the last digit, so
+that a library goes through a file unchanged.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+
+import bpy
+
+from ..licenses import suggest
+
+KEPT_DIGITS = 6
+"""Of a number that was typed in: single precision has no more."""
+
+
+def _get(exact: str) -> Callable[[bpy.types.PropertyGroup], float]:
+    def get(group: bpy.types.PropertyGroup) -> float:
+        return float(getattr(group, exact) or 0.0)
+
+    return get
+
+
+def _set(exact: str) -> Callable[[bpy.types.PropertyGroup, float], None]:
+    def put(group: bpy.types.PropertyGroup, value: float) -> None:
+        setattr(group, exact, repr(round(value, KEPT_DIGITS) + 0.0))
+        _details_changed(group, bpy.context)
+
+    return put
+
+
+def _exact() -> "bpy.types.AnyType":
+    return bpy.props.StringProperty(options={"HIDDEN"})
+
+
+def _details_changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Let the pose assets say what the library says now."""
+    from ....core.errors import InputError
+    from .scene_libraries import details_changed
+
+    with suppress(InputError, ModuleNotFoundError):  # half typed; whatever writes a library checks it
+        details_changed(group)
+
+
+def _posture_changed(posture: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ....core.errors import InputError
+    from .scene_libraries import posture_changed
+
+    with suppress(InputError, ModuleNotFoundError):
+        posture_changed(posture)
+
+
+class KEYMARK_PG_library_line(bpy.types.PropertyGroup):
+    """A line of text."""
+
+    text: bpy.props.StringProperty(
+        name="Source",
+        description="Literature, or whatever else the postures are drawn from",
+        update=_details_changed,
+    )
+
+
+class KEYMARK_PG_library_posture(bpy.types.PropertyGroup):
+    """A posture: its name, and the pose asset that holds it."""
+
+    name: bpy.props.StringProperty(
+        name="Name", description="The posture's name, unique in its library", update=_posture_changed
+    )
+    selected: bpy.props.BoolProperty(
+        name="Selected", description="Mark the posture, for what is done with marked ones only", default=False
+    )
+    named: bpy.props.StringProperty(
+        name="Named", description="The name that the motions know it by", options={"HIDDEN"}
+    )
+    tags: bpy.props.StringProperty(
+        name="Tags",
+        description="Words to find the posture by, with commas between them",
+        update=_posture_changed,
+    )
+    exact_tags: bpy.props.StringProperty(
+        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
+    )
+    action: bpy.props.PointerProperty(
+        name="Pose Asset", description="The Action that holds the posture", type=bpy.types.Action
+    )
+
+
+class KEYMARK_PG_library_step(bpy.types.PropertyGroup):
+    """A posture's place in a motion."""
+
+    posture: bpy.props.StringProperty(
+        name="Posture", description="Which posture is reached", update=_details_changed
+    )
+    time_exact: _exact()
+    time_s: bpy.props.FloatProperty(
+        name="Time (s)",
+        description="When, from the motion's beginning",
+        min=0.0,
+        max=3600.0,
+        precision=3,
+        step=1,
+        get=_get("time_exact"),
+        set=_set("time_exact"),
+    )
+
+
+class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
+    """A usual way through postures."""
+
+    name: bpy.props.StringProperty(name="Name", description="The motion's name", update=_details_changed)
+    cyclic: bpy.props.BoolProperty(
+        name="Cyclic",
+        description="After the last posture the first comes again, as in walking",
+        update=_details_changed,
+    )
+    duration_exact: _exact()
+    duration_s: bpy.props.FloatProperty(
+        name="Duration (s)",
+        description="How long the motion takes; of a cyclic one until the first posture comes again",
+        min=0.0,
+        max=3600.0,
+        precision=3,
+        step=1,
+        get=_get("duration_exact"),
+        set=_set("duration_exact"),
+    )
+    travel_x_exact: _exact()
+    travel_y_exact: _exact()
+    travel_turn_exact: _exact()
+    travel_x: bpy.props.FloatProperty(
+        name="Travel X",
+        description="How far a cycle leads to the performer's left",
+        subtype="DISTANCE",
+        precision=3,
+        get=_get("travel_x_exact"),
+        set=_set("travel_x_exact"),
+    )
+    travel_y: bpy.props.FloatProperty(
+        name="Y",
+        description="How far a cycle leads backwards; negative: straight ahead",
+        subtype="DISTANCE",
+        precision=3,
+        get=_get("travel_y_exact"),
+        set=_set("travel_y_exact"),
+    )
+    travel_turn: bpy.props.FloatProperty(
+        name="Turn",
+        description="How far a cycle turns the performer to the left",
+        subtype="ANGLE",
+        get=_get("travel_turn_exact"),
+        set=_set("travel_turn_exact"),
+    )
+    steps: bpy.props.CollectionProperty(type=KEYMARK_PG_library_step)
+    active_step: bpy.props.IntProperty(
+        name="Active Step", description="The step that is chosen in the list", default=0, min=0
+    )
+
+
+class KEYMARK_PG_library(bpy.types.PropertyGroup):
+    """A library that is made in this file."""
+
+    identifier: bpy.props.StringProperty(
+        name="Identifier",
+        description="What the library is known by wherever it is copied: letters a to z, digits, - and _",
+        update=_details_changed,
+    )
+    name: bpy.props.StringProperty(
+        name="Title", description="What people call the library", update=_details_changed
+    )
+    version: bpy.props.IntProperty(
+        name="Version",
+        description="Raise it with every change that you publish, so that others know which is newer",
+        default=1,
+        min=1,
+        update=_details_changed,
+    )
+    author: bpy.props.StringProperty(
+        name="Author", description="Who made the library", update=_details_changed
+    )
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+        update=_details_changed,
+    )
+    description: bpy.props.StringProperty(
+        name="Description", description="What the library is for", update=_details_changed
+    )
+    tags: bpy.props.StringProperty(
+        name="Tags",
+        description="Words to find the library by, with commas between them",
+        update=_details_changed,
+    )
+    exact_tags: bpy.props.StringProperty(
+        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
+    )
+    sources: bpy.props.CollectionProperty(type=KEYMARK_PG_library_line)
+    actor: bpy.props.StringProperty(
+        name="Actor", description="The proportions that the postures were posed on", options={"HIDDEN"}
+    )
+    postures: bpy.props.CollectionProperty(type=KEYMARK_PG_library_posture)
+    active_posture: bpy.props.IntProperty(
+        name="Active Posture", description="The posture that is chosen in the list", default=0, min=0
+    )
+    motions: bpy.props.CollectionProperty(type=KEYMARK_PG_library_motion)
+    active_motion: bpy.props.IntProperty(
+        name="Active Motion", description="The motion that is chosen in the list", default=0, min=0
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_PG_library_line,
+        KEYMARK_PG_library_posture,
+        KEYMARK_PG_library_step,
+        KEYMARK_PG_library_motion,
+        KEYMARK_PG_library,
+    )
+)

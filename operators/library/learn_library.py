@@ -1,0 +1,117 @@
+"""Turn a take's motion into a keyframe library."""
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.messages import say, warn_if_outdated
+from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.takes import active_take
+from .licenses import suggest
+
+DIALOG_WIDTH = 360
+ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
+A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
+
+
+class KEYMARK_OT_learn_library(bpy.types.Operator):
+    """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
+
+    bl_idname = "keymark.learn_library"
+    bl_label = "Library from Motion"
+    bl_options = {"REGISTER", "UNDO"}
+
+    title: bpy.props.StringProperty(name="Title", description="What people read; by default the take's name")
+    author: bpy.props.StringProperty(name="Author", description="Who made the library")
+    license: bpy.props.StringProperty(
+        name="License",
+        description="What others may do with it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default nothing",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
+    count: bpy.props.IntProperty(
+        name="Postures",
+        description="How many postures the library gets; 0 for 10 to 40, as many as differ",
+        default=0,
+        min=0,
+        max=1000,
+    )
+    for_matching: bpy.props.BoolProperty(
+        name="Use for Matching",
+        description="Put it among your own libraries at once, so that footage can be matched with it",
+        default=True,
+    )
+
+    learned_as: bpy.props.StringProperty(
+        name="Learned As",
+        description="Identifier that the library was given, so that doing it again replaces it",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a motion."""
+        return all_met(cls, context, actor, motion, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for title and author."""
+        take = active_take(context.scene)
+        if not self.title:
+            self.title = take.name
+        if not self.author:
+            self.author = take.finish.author
+        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the dialog."""
+        layout = self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        for name in ("title", "author", "license"):
+            layout.prop(self, name)
+        layout.prop(self, "count", text="Postures (0: Automatic)")
+        layout.prop(self, "for_matching")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Learn it, keep it in the scene as pose assets, and on the shelf where that is wanted."""
+        with reported(self):
+            from ...core.library.learning import About
+            from ...core.library.library_file import library_from_json, library_to_json, write_library
+            from ...core.library.registry import library_path, shelved
+            from ...core.library.texts import identifier_from
+            from ..bridge.library.learning import library_from_action
+            from .editing.scene_libraries import add_library
+            from .registry import fill, folders, own_folder
+
+            take, render = active_take(context.scene), context.scene.render
+            title = self.title.strip() or take.name
+            taken = {found.identifier for found in shelved(folders())}
+            taken |= {library.identifier for library in context.scene.keymark.libraries}
+            library = library_from_action(
+                take.armature,
+                take.finish.action or take.motion_action,
+                render.fps_base / render.fps,
+                About(
+                    title=title,
+                    author=self.author.strip() or "Unknown",
+                    license=self.license.strip(),
+                    identifier=self.learned_as or identifier_from(title, taken),
+                ),
+                self.count or None,
+            )
+            library_from_json(library_to_json(library), f"library '{title}'")  # checks what was typed
+            self.learned_as = library.identifier
+            if self.for_matching:
+                write_library(library_path(own_folder(), library.identifier), library)
+                fill(library.identifier)
+            add_library(context.scene, library)
+            warn_if_outdated(self, take)
+            (learned,) = library.motions
+            template = A_CYCLE if learned.cyclic else ONCE
+            count, seconds = len(library.postures), learned.duration_s
+            say(self, "INFO", template, title=title, count=count, seconds=seconds)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_learn_library,))

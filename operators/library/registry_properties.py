@@ -1,0 +1,70 @@
+"""The libraries that are at hand, as lists and menus show them; no file keeps it."""
+
+import bpy
+
+from . import registry
+
+
+class KEYMARK_PG_shelved_posture(bpy.types.PropertyGroup):
+    """A posture of a library on the shelf, by its name."""
+
+
+class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
+    """A library on the shelf; `name` is its identifier."""
+
+    title: bpy.props.StringProperty(name="Title")
+    version: bpy.props.IntProperty(name="Version")
+    author: bpy.props.StringProperty(name="Author")
+    license: bpy.props.StringProperty(name="License")
+    description: bpy.props.StringProperty(name="Description")
+    motions: bpy.props.IntProperty(name="Motions")
+    path: bpy.props.StringProperty(name="File")
+    is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
+    problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
+    postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
+
+
+def _chosen(shelf: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Let the posture to apply be one of the chosen library's."""
+    postures = shelf.libraries[shelf.active].postures if shelf.active < len(shelf.libraries) else ()
+    if shelf.posture not in [posture.name for posture in postures]:
+        shelf.posture = postures[0].name if len(postures) else ""
+
+
+class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
+    """The shelf."""
+
+    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
+    active: bpy.props.IntProperty(
+        name="Active Library",
+        description="The library that is chosen in the list",
+        default=0,
+        min=0,
+        update=_chosen,
+    )
+    posture: bpy.props.StringProperty(
+        name="Posture", description="The posture of the chosen library to apply to the actor"
+    )
+    mirrored: bpy.props.BoolProperty(
+        name="Mirrored", description="Apply the posture with left and right exchanged"
+    )
+
+
+CLASSES = (KEYMARK_PG_shelved_posture, KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+
+
+def register() -> None:
+    """Add the shelf to the window manager."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
+        type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
+    )
+
+
+def unregister() -> None:
+    """Take it away."""
+    registry.forget()
+    del bpy.types.WindowManager.keymark_shelf
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,126 @@
+"""What has the markers' colors in the frame that the scene shows, kept in memory for the overlay.
+
+Nothing of it is saved. It is found again by the footage and the colors it was made for, so that undo brings
+the matching preview back, and a preview of other colors is never shown.
+"""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bridge.footage import Footage
+from ..shell.takes import find_take, footage_of
+
+if TYPE_CHECKING:
+    from ...core.footage.clips.frame_reader import FrameReader
+    from ...core.footage.marker_check import MarkerCheck
+    from ...core.footage.marker_style import MarkerStyle
+
+Array = NDArray[np.float64]
+Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...]]
+
+MOST_PREVIEWS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ColorMask:
+    """What has one color in a frame."""
+
+    label: str
+    """Name of the marker, or names of all that bear the color."""
+    color: tuple[float, float, float]
+    """The marker's color in sRGB, 0 to 1."""
+    coverage: NDArray[np.float32]
+    """(rows, columns) share of each pixel of the measuring grid, 0 to 1."""
+    outlines: list[Array]
+    """Closed outlines (N, 2) in footage pixels, the longest first."""
+
+
+@dataclass(eq=False)
+class Preview:
+    """The learned colors of a take's markers, and the masks of the frame that was looked at last."""
+
+    check: "MarkerCheck"
+    labels: tuple[str, ...]
+    colors: tuple[tuple[float, float, float], ...]
+    reader: "FrameReader | None" = None
+    time_s: float | None = None
+    """Of that frame, from the clip's first [s]."""
+    masks: tuple[ColorMask, ...] = field(default=())
+
+
+_previews: dict[Key, Preview] = {}
+
+
+def keep_preview(
+    take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
+) -> None:
+    """Keep what was learned of a take's markers."""
+    groups = check.groups
+    labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
+    colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
+    _previews.pop(key := _key(take), None)
+    _previews[key] = Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
+    while len(_previews) > MOST_PREVIEWS:
+        del _previews[next(iter(_previews))]
+
+
+def preview_of(take: bpy.types.PropertyGroup) -> Preview | None:
+    """What was learned of a take's markers as they are now; None where they were not looked at."""
+    return _previews.get(_key(take)) if take.clip is not None else None
+
+
+def forget_previews() -> None:
+    """Let go of all previews and of the files they hold open."""
+    _previews.clear()
+
+
+def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
+    """Make the masks of the frame that the scene shows, where they are not there yet.
+
+    Raises:
+        InputError: The clip is gone or cannot be read.
+    """
+    take = find_take(scene)
+    preview = preview_of(take) if take is not None else None
+    if preview is None or is_of_frame(preview, scene):
+        return preview
+    footage = footage_of(scene, take)
+    preview.masks = _masks(preview, footage)
+    preview.time_s = footage.shown_s
+    return preview
+
+
+def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
+    """Whether a preview of the active take's markers is of the frame that the scene shows.
+
+    Another scene may show the same clip at other times, and a clip may be moved in time.
+    """
+    take = find_take(scene)
+    return take is not None and preview.time_s == footage_of(scene, take).shown_s
+
+
+def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
+    from ...core.footage.clips.frame_reader import FrameReader
+    from ...core.footage.segmentation.mask_outlines import mask_outlines
+    from ...core.footage.segmentation.regions import colour_masks
+
+    if preview.reader is None:
+        preview.reader = FrameReader(footage.open())
+    image = preview.reader.image_at(footage.shown_s)
+    if image is None:
+        return ()
+    coverages = colour_masks(image, preview.check.model)
+    return tuple(
+        ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
+        for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)
+    )
+
+
+def _key(take: bpy.types.PropertyGroup) -> Key:
+    """What the footage is known by, and the names and colors of the markers that have one."""
+    picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
+    return take.clip_state.contents, picked

@@ -1,0 +1,151 @@
+"""What the performer wears, in the 3D viewport's sidebar and in the Movie Clip editor's."""
+
+from textwrap import wrap
+
+import bpy
+
+from ..shell.messages import label
+from ..shell.panel import TakePanel, draw_progress
+from ..shell.takes import active_take, find_take
+
+CHARACTER_WIDTH = 6.2
+"""Pixels that a letter of a label takes on a plain screen, on the wide side of usual."""
+MARGIN = 75.0
+"""Pixels of a sidebar beside the words of a label with an icon."""
+LABEL_SHARE = 0.4
+"""Of the width that Blender gives to labels in its two columns."""
+
+
+class KEYMARK_UL_markers(bpy.types.UIList):
+    """Markers with their colors and in how many frames they are found."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.AnyType,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.AnyType,
+        active_property: str,
+    ) -> None:
+        """Draw one marker: color, name, status."""
+        row = layout.row(align=True)
+        swatch = row.row()
+        swatch.ui_units_x = 1.6
+        swatch.enabled = item.is_picked
+        swatch.prop(item, "color", text="")
+        row.prop(item, "name", text="", emboss=False)
+        status = row.row()
+        status.alignment = "RIGHT"
+        if not item.is_picked:
+            status.label(text="Not Picked", icon="EYEDROPPER")
+        elif not item.has_readout(data):
+            status.label(text="Not Checked", icon="QUESTION")
+        else:
+            status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")
+
+
+class KEYMARK_PT_markers(TakePanel, bpy.types.Panel):
+    """The list of markers, and the active one."""
+
+    bl_label = "Markers"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the list and the active marker."""
+        draw_markers(self.layout, context)
+
+
+class KEYMARK_PT_clip_markers(bpy.types.Panel):
+    """The same beside the clip."""
+
+    bl_label = "Markers"
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Keymark"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is a take."""
+        return find_take(context.scene) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the markers."""
+        take = active_take(context.scene)
+        if context.space_data.clip != take.clip:
+            self.layout.label(text="The editor shows another clip", icon="INFO")
+        draw_markers(self.layout, context)
+
+
+def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the list, the active marker, and what is done with them."""
+    take = active_take(context.scene)
+    if not len(take.markers):
+        layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
+        layout.operator("keymark.add_marker", icon="ADD")
+        return
+    row = layout.row()
+    row.template_list("KEYMARK_UL_markers", "", take, "markers", take, "active_marker", rows=5)
+    buttons = row.column(align=True)
+    buttons.operator("keymark.add_marker", text="", icon="ADD")
+    buttons.operator("keymark.remove_marker", text="", icon="REMOVE")
+    buttons.separator()
+    buttons.operator("keymark.pick_marker_color", text="", icon="EYEDROPPER").add = True
+    if take.active_marker < len(take.markers):
+        _draw_marker(layout, context, take, take.markers[take.active_marker])
+    row = layout.row(align=True)
+    if not draw_progress(row, context, "keymark.check_markers"):
+        row.operator("keymark.check_markers", icon="VIEWZOOM")
+    shown = context.window_manager.keymark_show_masks
+    row.operator("keymark.show_masks", icon="HIDE_OFF" if shown else "HIDE_ON", depress=shown)
+
+
+def _draw_marker(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    take: bpy.types.PropertyGroup,
+    marker: bpy.types.PropertyGroup,
+) -> None:
+    """Draw the active marker, how to pick its color, and what was found of it."""
+    pick = layout.row()
+    pick.scale_y = 1.3
+    if not draw_progress(pick, context, "keymark.pick_marker_color"):
+        pick.operator("keymark.pick_marker_color", text="Pick from Footage", icon="EYEDROPPER")
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(marker, "segment")
+    column.prop(marker, "color")
+    if not marker.has_readout(take):
+        return
+    readout = layout.column(align=True)
+    _row(
+        readout, "Found In", label("{found} of {sampled} frames", found=marker.found, sampled=marker.sampled)
+    )
+    _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
+    _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
+    for sentence in marker.warning.splitlines():
+        _draw_warning(layout, context, sentence)
+
+
+def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
+    """A name and a value in the two columns that properties have."""
+    row = layout.split(factor=LABEL_SHARE)
+    left = row.row()
+    left.alignment = "RIGHT"
+    left.label(text=name)
+    row.label(text=value, translate=False)
+
+
+def _draw_warning(layout: bpy.types.UILayout, context: bpy.types.Context, sentence: str) -> None:
+    """Draw a sentence on as many lines as the sidebar's width asks for."""
+    room = context.region.width / context.preferences.system.ui_scale - MARGIN
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for number, line in enumerate(wrap(sentence, max(int(room / CHARACTER_WIDTH), 20))):
+        column.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_UL_markers, KEYMARK_PT_markers, KEYMARK_PT_clip_markers)
+)

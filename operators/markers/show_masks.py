@@ -1,0 +1,52 @@
+"""Show or hide what has the markers' colours."""
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.redraw import redraw_footage
+from ..shell.requirements import a_color, all_met, footage, idle, markers
+from ..shell.takes import active_take
+from .mask_previews import look_at_frame, preview_of
+
+
+class KEYMARK_OT_show_masks(bpy.types.Operator):
+    """Draw over the footage what has the markers' colors, in the camera view and the Movie Clip editor"""
+
+    bl_idname = "keymark.show_masks"
+    bl_label = "Show Masks"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be footage, and a color to look for."""
+        return all_met(cls, context, footage, markers, a_color, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Switch over; colors that were not looked for in this session are looked for now."""
+        manager = context.window_manager
+        with reported(self):
+            if not manager.keymark_show_masks:
+                if preview_of(active_take(context.scene)) is None:
+                    _look_for_markers()
+                look_at_frame(context.scene)
+            manager.keymark_show_masks = not manager.keymark_show_masks
+            redraw_footage(context)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def _look_for_markers() -> None:
+    """Have them looked for, on a timer where there is one.
+
+    Raises:
+        InputError: They cannot be.
+    """
+    from ...core.errors import InputError
+
+    try:
+        bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        raise InputError(str(error).removeprefix("Error: ").strip()) from error
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_masks,))

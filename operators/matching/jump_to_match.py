@@ -1,0 +1,67 @@
+"""Go to the next or the previous match, or to one that is in doubt."""
+
+import bpy
+
+from ..shell.keyed_frames import forget
+from ..shell.messages import say
+from ..shell.requirements import all_met, matches
+from ..shell.takes import active_take
+from .matches import state_of
+
+
+class KEYMARK_OT_jump_to_match(bpy.types.Operator):
+    """Go to a frame that was matched with a library"""
+
+    bl_idname = "keymark.jump_to_match"
+    bl_label = "Jump to Match"
+    bl_options = {"REGISTER", "UNDO"}
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Which way to go from the current frame; from the last match on to the first",
+        items=[
+            ("NEXT", "Next", "Go to the next match"),
+            ("PREVIOUS", "Previous", "Go to the previous match"),
+        ],
+    )
+    only_doubtful: bpy.props.BoolProperty(
+        name="Only Doubtful", description="Go to matches that are in doubt", default=False
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The tooltip says where to."""
+        if properties.only_doubtful:
+            return "Go to the next match that is in doubt: replace it, or pose the actor there"
+        return "Go to the next match" if properties.direction == "NEXT" else "Go to the previous match"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be matches."""
+        return all_met(cls, context, matches)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Choose it in the list, which goes there."""
+        scene, take = context.scene, active_take(context.scene)
+        matching = take.matching
+        forget()
+        wanted = [
+            (match.frame, place)
+            for place, match in enumerate(matching.matches)
+            if not self.only_doubtful or (match.is_doubtful and state_of(take, match) == "MATCHED")
+        ]
+        if not wanted:
+            say(self, "INFO", "No match is in doubt")
+            return {"CANCELLED"}
+        now = scene.frame_current_final
+        if self.direction == "NEXT":
+            ahead = [each for each in wanted if each[0] > now + 1e-3]
+            chosen = min(ahead or wanted)
+        else:
+            behind = [each for each in wanted if each[0] < now - 1e-3]
+            chosen = max(behind or wanted)
+        matching.active_match = chosen[1]
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_match,))

@@ -1,0 +1,47 @@
+"""Take a matched keyframe away."""
+
+import bpy
+
+from ..shell.error_reports import reported
+from ..shell.keyed_frames import forget
+from ..shell.messages import say
+from ..shell.requirements import actor, all_met, idle, matches
+from ..shell.takes import active_take
+from .matches import chosen_match, state_of
+
+
+class KEYMARK_OT_remove_match(bpy.types.Operator):
+    """Remove the chosen match and its keys; a pose of your own at its frame stays"""
+
+    bl_idname = "keymark.remove_match"
+    bl_label = "Remove"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be a match."""
+        return all_met(cls, context, actor, matches, idle)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Remove it; the next in the list is chosen."""
+        with reported(self):
+            from ...core.body.human import HUMAN
+            from ..bridge.matched_keyframes import remove_keyframes
+
+            scene = context.scene
+            take = active_take(scene)
+            matching, match = take.matching, chosen_match(take)
+            forget()
+            frame = round(match.frame, 3)
+            if state_of(take, match) == "MATCHED":
+                remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
+                forget()
+            matching.matches.remove(matching.active_match)
+            matching.active_match = max(0, min(matching.active_match, len(matching.matches) - 1))
+            scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+            say(self, "INFO", "Removed the match at frame {frame:g}", frame=frame)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_match,))

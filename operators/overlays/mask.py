@@ -1,0 +1,162 @@
+"""What has the markers' colours, over the footage in the camera view and the Movie Clip editor.
+
+Everything else is darkened, so that a mask shows on a marker of its very colour; an outline and the marker's
+name say the same to eyes that see the colours alike.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import bpy
+import gpu
+import numpy as np
+from bpy.app.handlers import persistent
+from gpu_extras.batch import batch_for_shader
+from numpy.typing import NDArray
+
+from ...core.errors import KeymarkError
+from ..markers.mask_previews import (
+    ColorMask,
+    Preview,
+    forget_previews,
+    is_of_frame,
+    look_at_frame,
+    preview_of,
+)
+from ..shell.footage_view import FootageView, footage_view
+from ..shell.takes import find_take
+from . import drawing
+from .figures import segments
+
+Array = NDArray[np.float64]
+
+DARKENING: Final = 0.5
+TINT: Final = 0.65
+WIDTH: Final = 1.5
+HALO: Final = 0.8
+NAME_GAP: Final = 4.0
+"""Between an outline and the name above it [px of a plain screen]."""
+SHORTEST_NAMED: Final = 0.25
+"""Outlines shorter than this share of the longest have no name."""
+MESH: Final = 24
+"""Cells across the picture, to follow the lens."""
+
+_drawn: dict[int, tuple[tuple[ColorMask, ...], gpu.types.GPUTexture]] = {}
+"""The texture of the masks that were drawn last; at most one."""
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    take = find_take(context.scene)
+    if take is None or not context.window_manager.keymark_show_masks:
+        return
+    preview = preview_of(take)
+    if preview is None or not preview.masks or not is_of_frame(preview, context.scene):
+        return
+    view = footage_view(context.scene, take, context.area, context.region)
+    if view is not None:
+        draw_masks(preview, view)
+
+
+def draw_masks(preview: Preview, view: FootageView) -> None:
+    """Draw what has the markers' colours, in the region of a view."""
+    _picture(_texture(preview), view)
+    for mask in preview.masks:
+        _outlines(mask, view)
+    _names(preview.masks, view)
+
+
+def tinted(masks: Sequence[ColorMask]) -> NDArray[np.float32]:
+    """The masks as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
+    rows, columns = masks[0].coverage.shape
+    picture = np.zeros((rows, columns, 4), dtype=np.float32)
+    picture[..., 3] = DARKENING
+    for mask in masks:
+        share = mask.coverage[..., None]
+        picture = (1.0 - share) * picture + share * np.array([*mask.color, TINT], dtype=np.float32)
+    return picture.astype(np.float32)
+
+
+def _texture(preview: Preview) -> gpu.types.GPUTexture:
+    """The picture of the masks on the graphics card; anew only where they are others than before."""
+    if 0 not in _drawn or _drawn[0][0] is not preview.masks:
+        _drawn[0] = (preview.masks, drawing.texture(tinted(preview.masks)))
+    return _drawn[0][1]
+
+
+def _picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
+    """Draw a picture of the footage's extent, bent as the view shows the footage."""
+    cells = MESH if view.lens is not None else 1
+    steps = np.linspace(0.0, 1.0, cells + 1)
+    across, down = np.meshgrid(steps, steps)
+    shares = np.stack([across, down], axis=-1)
+    corners = np.stack([shares[:-1, :-1], shares[:-1, 1:], shares[1:, 1:], shares[1:, :-1]], axis=-2)
+    triangles = corners.reshape(-1, 4, 2)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2)
+    places = np.zeros((len(triangles), 3), dtype=np.float32)
+    places[:, :2] = view.to_region(triangles * view.size)
+    # Textures begin at the bottom.
+    ends = (triangles * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
+    shader = gpu.shader.from_builtin("IMAGE_COLOR")
+    batch = batch_for_shader(shader, "TRIS", {"pos": places, "texCoord": ends})
+    shader.uniform_sampler("image", texture)
+    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
+    batch.draw(shader)
+
+
+def _outlines(mask: ColorMask, view: FootageView) -> None:
+    """Draw a mask's outlines."""
+    for outline in mask.outlines:
+        drawing.lines(segments(view.to_region(outline), closed=True), drawing.INK, WIDTH, HALO)
+
+
+def _names(masks: Sequence[ColorMask], view: FootageView) -> None:
+    """Write each mask's name above its larger outlines, higher where there is one already."""
+    scale = drawing.ui_scale()
+    boxes: list[tuple[float, float, float, float]] = []
+    for mask in masks:
+        width, height = drawing.text_size(mask.label)
+        longest = len(mask.outlines[0]) if mask.outlines else 0
+        for outline in mask.outlines:
+            if len(outline) >= SHORTEST_NAMED * longest:
+                places = view.to_region(outline)
+                x, y = float(places[:, 0].mean()), float(places[:, 1].max()) + NAME_GAP * scale
+                y = free_height((x - 0.5 * width, y, width, height + NAME_GAP * scale), boxes)
+                boxes.append((x - 0.5 * width, y, width, height + NAME_GAP * scale))
+                drawing.text(mask.label, x, y, align="middle")
+
+
+def free_height(
+    box: tuple[float, float, float, float], taken: Sequence[tuple[float, float, float, float]]
+) -> float:
+    """The least y at or above a box's own at which it overlaps no other; a box is x, y, width, height."""
+    x, y, width, height = box
+    beside = [other for other in taken if x < other[0] + other[2] and other[0] < x + width]
+    for other in sorted(beside, key=lambda one: one[1]):
+        if y < other[1] + other[3] and other[1] < y + height:
+            y = other[1] + other[3]
+    return y
+
+
+@persistent
+def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Make the masks of the frame that is shown now."""
+    if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
+        return
+    try:
+        look_at_frame(scene)
+    except KeymarkError:
+        forget_previews()  # the clip is gone; whoever asks for masks again is told so
+
+
+def register() -> None:
+    """Follow the scene's frame, where there is a screen to draw on."""
+    if not bpy.app.background:
+        bpy.app.handlers.frame_change_post.append(_frame_changed)
+
+
+def unregister() -> None:
+    """Stop following it; let go of textures and open files."""
+    if _frame_changed in bpy.app.handlers.frame_change_post:
+        bpy.app.handlers.frame_change_post.remove(_frame_changed)
+    _drawn.clear()
+    forget_previews()

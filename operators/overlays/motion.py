@@ -1,0 +1,132 @@
+"""The reconstructed motion over an editor: everything that is switched on, as one picture."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shell.footage_view import FootageView
+from ..shell.messages import label
+from ..shell.results import review_of
+from ..shell.takes import find_take
+from . import drawing
+from .legend import Row, Sample, corner, legend
+from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_outlines
+from .paths import paths, window
+from .picture import Item
+from .skeleton import skeleton
+from .style import Style, body_scale
+
+if TYPE_CHECKING:
+    from ...core.review.review import Review
+
+Array = NDArray[np.float64]
+
+UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
+"""Of a marker that was removed since the reconstruction."""
+NEAREST = 0.75
+"""A scene frame further than this from every frame of the clip shows none of them."""
+
+
+class MotionView(Protocol):
+    """How an editor shows the motion."""
+
+    @property
+    def footage(self) -> FootageView | None:
+        """Where the footage is, if the editor shows it."""
+
+    def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
+        """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
+
+    def pixels_per_metre(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a metre at each point."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What of a take there is to draw."""
+
+    take: bpy.types.PropertyGroup
+    review: "Review"
+    index: int
+    """Place in the clip of the frame that the scene shows."""
+
+
+def shown(scene: bpy.types.Scene) -> Shown | None:
+    """The active take's motion at the scene's frame; None where there is none."""
+    take = find_take(scene)
+    review = None if take is None else review_of(take)
+    if take is None or review is None or not len(review.frames):
+        return None
+    away = np.abs(review.frames - scene.frame_current_final)
+    index = int(away.argmin())
+    return Shown(take, review, index) if away[index] <= NEAREST else None
+
+
+def picture(
+    context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
+) -> list[Item]:
+    """Everything that is switched on, and a legend that explains it."""
+    scale = drawing.ui_scale()
+    metre = view.pixels_per_metre(what.review, what.index)
+    style = Style(settings.opacity, settings.line_width, scale, body_scale(metre, scale))
+    items: list[Item] = []
+    if settings.show_paths:
+        items += _paths(what, view, settings, style)
+    if view.footage is not None:
+        items += _outlines(what, view.footage, settings, style)
+    if settings.show_skeleton:
+        (places,) = view.places(what.review, np.array([what.index]))
+        items += skeleton(what.review, what.index, places, metre, settings.uncertain_beyond, style)
+    if settings.show_legend:
+        rows = _rows(what, view, settings)
+        items += legend(rows, *corner(context.area, context.region, scale), style)
+    return items
+
+
+def _outlines(
+    what: Shown, footage: FootageView, settings: bpy.types.PropertyGroup, style: Style
+) -> list[Item]:
+    chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
+    colors = [chosen.get(name, UNKNOWN) for name in what.review.marker_names]
+    items: list[Item] = []
+    if settings.show_observed:
+        items += observed_outlines(what.review, what.index, footage.to_region, colors, style)
+    if settings.show_predicted:
+        items += predicted_outlines(what.review, what.index, footage.to_region, colors, style)
+    return items
+
+
+def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, style: Style) -> list[Item]:
+    review = what.review
+    frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
+    chosen = [point for point, name in enumerate(review.point_names) if name in settings.path_points]
+    names = [review.point_names[point] for point in chosen]
+    places = np.swapaxes(view.places(review, frames)[:, chosen], 0, 1)
+    return paths(names, places, frames, what.index, review.keyframe_indices, style)
+
+
+def _rows(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> tuple[Row, ...]:
+    """What the legend explains: only what is drawn."""
+    rows: list[Row] = []
+    if view.footage is not None:
+        if settings.show_observed:
+            hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
+            if hidden:
+                words = label("Hidden: {markers}", markers=", ".join(hidden))
+                rows.append((Sample.NONE, words))
+            rows.append((Sample.SOLID, label("Marker as seen")))
+        if settings.show_predicted:
+            rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
+    if settings.show_skeleton:
+        rows.append((Sample.LEFT, label("Performer's left")))
+        rows.append((Sample.RIGHT, label("Performer's right")))
+        if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
+            rows.append((Sample.RING, label("Uncertain point")))
+    if settings.show_paths:
+        rows.append((Sample.PAST, label("Path so far")))
+        rows.append((Sample.FUTURE, label("Path to come")))
+        rows.append((Sample.DIAMOND, label("Keyframe")))
+    return tuple(rows)

@@ -1,0 +1,71 @@
+"""Marker regions: where each was seen, solid, and where the motion puts it, dashed."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shell.messages import label
+from .drawing import INK
+from .figures import dashes, segments
+from .picture import Item, Label, Stroke
+from .style import DASH, GAP, Style, paler
+
+if TYPE_CHECKING:
+    from ...core.review.review import Review
+
+Array = NDArray[np.float64]
+MarkerColor = tuple[float, float, float]
+
+
+def hidden_markers(review: "Review", index: int) -> list[int]:
+    """Places of the markers that were not found in a frame."""
+    return np.flatnonzero(~np.isfinite(review.observed[index]).all(axis=-1).any(axis=-1)).tolist()
+
+
+def observed_outlines(
+    review: "Review",
+    index: int,
+    to_region: Callable[[Array], Array],
+    colors: list[MarkerColor],
+    style: Style,
+) -> list[Item]:
+    """A solid outline of each region that was found.
+
+    Args:
+        review: What there is to see.
+        index: Place of the frame.
+        to_region: Takes footage pixels (..., 2) to the region.
+        colors: Each marker's colour.
+        style: How to draw.
+    """
+    places = to_region(review.observed[index])
+    return [
+        Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
+        for outline, color in zip(places, colors, strict=True)
+    ]
+
+
+def predicted_outlines(
+    review: "Review",
+    index: int,
+    to_region: Callable[[Array], Array],
+    colors: list[MarkerColor],
+    style: Style,
+) -> list[Item]:
+    """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
+    places = to_region(review.predicted[index])
+    items: list[Item] = []
+    hidden = hidden_markers(review, index)
+    for marker, (outline, color) in enumerate(zip(places, colors, strict=True)):
+        whole = outline[np.isfinite(outline).all(axis=-1)]
+        if not len(whole):
+            continue
+        parts = dashes(whole, DASH * style.scale, GAP * style.scale, closed=True)
+        items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
+        if marker in hidden:
+            x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
+            words = label("{marker} hidden", marker=review.marker_names[marker])
+            items.append(Label(words, float(x), float(y), style.color(INK)))
+    return items

@@ -1,0 +1,103 @@
+"""What is drawn over the editors. Blender's own overlay switch hides all of it in the 3D viewport."""
+
+import bpy
+
+from ...core.body.human import HUMAN
+from ..markers.properties import segment_title
+from . import registry
+
+
+def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    registry.try_again()
+    registry.redraw(context)
+
+
+class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
+    """What is drawn over the editors, and how."""
+
+    show_observed: bpy.props.BoolProperty(
+        name="Observed Markers",
+        description="Outline each marker's region as it was found in the footage: a solid line",
+        default=True,
+        update=_changed,
+    )
+    show_predicted: bpy.props.BoolProperty(
+        name="Predicted Markers",
+        description="Outline each marker where the reconstructed motion puts it: a dashed line",
+        default=True,
+        update=_changed,
+    )
+    show_skeleton: bpy.props.BoolProperty(
+        name="Skeleton",
+        description="Draw the body: left limbs solid, right ones hollow, uncertain points as rings",
+        default=True,
+        update=_changed,
+    )
+    show_paths: bpy.props.BoolProperty(
+        name="Paths",
+        description="Draw the ways of chosen points: past solid, future dashed, diamonds at keyframes",
+        default=False,
+        update=_changed,
+    )
+    show_legend: bpy.props.BoolProperty(
+        name="Legend",
+        description="Explain in a corner what is drawn, and name the markers that are hidden",
+        default=True,
+        update=_changed,
+    )
+    path_points: bpy.props.EnumProperty(
+        name="Points",
+        description="Points whose way is drawn; Shift-click to choose several",
+        items=[(name, segment_title(name), "", 1 << place) for place, name in enumerate(HUMAN.point_names)],
+        options={"ENUM_FLAG"},
+        default={"wrist.L", "wrist.R"},
+        update=_changed,
+    )
+    path_before: bpy.props.IntProperty(
+        name="Frames Before",
+        description="How many frames of the way before the current one are drawn",
+        default=15,
+        min=0,
+        soft_max=100,
+        update=_changed,
+    )
+    path_after: bpy.props.IntProperty(
+        name="After",
+        description="How many frames of the way after the current one are drawn",
+        default=15,
+        min=0,
+        soft_max=100,
+        update=_changed,
+    )
+    uncertain_beyond: bpy.props.FloatProperty(
+        name="Uncertainty",
+        description="A point of larger standard deviation is drawn as a ring within a circle of that size",
+        subtype="DISTANCE",
+        default=0.05,
+        min=0.001,
+        soft_max=0.2,
+        precision=3,
+        update=_changed,
+    )
+    opacity: bpy.props.FloatProperty(
+        name="Opacity",
+        description="Opacity of everything that is drawn",
+        subtype="FACTOR",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        update=_changed,
+    )
+    line_width: bpy.props.FloatProperty(
+        name="Line Width",
+        description="Thickness of lines",
+        subtype="PIXEL",
+        default=1.5,
+        min=0.5,
+        max=8.0,
+        precision=1,
+        update=_changed,
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_overlays,))

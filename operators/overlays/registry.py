@@ -1,0 +1,105 @@
+"""Which overlays there are, and handing them to Blender's editors."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import bpy
+import gpu
+
+from ...core.errors import KeymarkError
+
+DrawFunction = Callable[[bpy.types.Context], None]
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """One draw function and where it draws."""
+
+    name: str
+    """What users call it."""
+    module: str
+    """The module beside this one whose `draw(context)` it is."""
+    space: str
+    """A class of `bpy.types`."""
+    region: str = "WINDOW"
+    phase: str = "POST_PIXEL"
+
+
+OVERLAYS = (
+    Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
+    Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
+    Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
+    Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
+    Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),
+    Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
+    Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
+)
+"""All of them; those of one place are drawn in this order."""
+
+_handlers: list[tuple[Overlay, Any]] = []
+_failures: dict[Overlay, str] = {}
+
+
+def guarded(overlay: Overlay, draw: DrawFunction) -> Callable[[], None]:
+    """A draw handler: `draw` with blending on, until it fails for the first time.
+
+    A failure is logged once; called at every redraw it would flood the console.
+    """
+
+    def handler() -> None:
+        if overlay in _failures:
+            return
+        gpu.state.blend_set("ALPHA")
+        try:
+            draw(bpy.context)
+        except KeymarkError:
+            pass  # a camera of another kind, say: there is nothing to draw until that is mended
+        except Exception as error:
+            _failures[overlay] = str(error) or type(error).__name__
+            logger.exception("Keymark's overlay '%s' failed and is switched off", overlay.name)
+        finally:
+            gpu.state.blend_set("NONE")
+
+    return handler
+
+
+def failures() -> dict[str, str]:
+    """What went wrong, by name of overlay, for those that are switched off."""
+    return {overlay.name: sentence for overlay, sentence in _failures.items()}
+
+
+def try_again() -> None:
+    """Let overlays that failed draw again."""
+    _failures.clear()
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Have every editor that shows an overlay drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if any(isinstance(area.spaces.active, getattr(bpy.types, it.space)) for it in OVERLAYS):
+                area.tag_redraw()
+
+
+def register() -> None:
+    """Add the draw handlers, unless there is no screen to draw on."""
+    if bpy.app.background:
+        return
+    for overlay in OVERLAYS:
+        draw = import_module(f".{overlay.module}", __package__).draw
+        space = getattr(bpy.types, overlay.space)
+        handler = space.draw_handler_add(guarded(overlay, draw), (), overlay.region, overlay.phase)
+        _handlers.append((overlay, handler))
+
+
+def unregister() -> None:
+    """Remove them."""
+    while _handlers:
+        overlay, handler = _handlers.pop()
+        getattr(bpy.types, overlay.space).draw_handler_remove(handler, overlay.region)
+    _failures.clear()

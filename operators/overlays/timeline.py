@@ -1,0 +1,276 @@
+"""Over the Timeline and the Dope Sheet: how fast the markers move, where to pose, how far to believe."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shell.keyed_frames import has_frame, is_posed, matched_frames
+from ..shell.messages import label
+from ..shell.results import Remembered, reading_of, review_of
+from ..shell.takes import find_take, footage_of
+from . import drawing
+from .drawing import Color, faded
+from .figures import diamonds, segments
+from .picture import Fill, Item, Label, Stroke, paint
+from .timeline_figures import graph, in_view, joined, pointers, squares, strip
+
+Array = NDArray[np.float64]
+
+MODES = ("TIMELINE", "DOPESHEET", "ACTION")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How large things are drawn on a plain screen [px]."""
+
+    graph: float
+    """Most height of the graph."""
+    ruler: float
+    """Kept free at the top."""
+    headroom: float
+    """Between graph and ruler, for triangles and words."""
+    strip: float
+    foot: float
+    """Below the strip; Blender's scroll bar is there."""
+    gap: float
+    """Between strip and graph."""
+    diamond: float
+    pointer: float
+
+
+ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
+SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
+"""For a Timeline that shows no more than its ruler, as Blender 5 opens it."""
+LEAST_ROOMY = 16.0
+"""Height of a graph [px] for which the ruler is kept free."""
+LEAST = 6.0
+SPEED: Color = (0.35, 0.68, 0.92, 1.0)
+PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
+MATCHED: Color = (0.55, 0.88, 0.60, 1.0)
+WEAK: Color = (0.95, 0.45, 0.15, 1.0)
+GROUND: Color = (0.0, 0.0, 0.0, 0.28)
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Where frames lie in a region, and how high things are drawn."""
+
+    origin: float
+    """Place of frame 0 [px]."""
+    scale: float
+    """Pixels of a frame."""
+    width: float
+    height: float
+    """Of the graph."""
+    pixel: float
+    """Pixels of the screen for one of a plain one."""
+    sizes: Sizes
+
+    @property
+    def strip_floor(self) -> float:
+        """Where the strip stands."""
+        return self.sizes.foot * self.pixel
+
+    @property
+    def floor(self) -> float:
+        """Where the graph stands."""
+        return (self.sizes.foot + self.sizes.strip + self.sizes.gap) * self.pixel
+
+    @property
+    def top(self) -> float:
+        """Where the graph ends."""
+        return self.floor + self.height
+
+    def places(self, frames: Array) -> Array:
+        """Where frames (F,) lie [px]."""
+        return self.origin + self.scale * np.asarray(frames, dtype=np.float64)
+
+    def fitting(self, x: Array, size: float) -> float:
+        """A mark's size [px], smaller where marks at places (N,) would cover each other."""
+        apart = float(np.median(np.diff(np.sort(x)))) if len(x) > 2 else np.inf
+        return float(np.clip(0.6 * apart, 0.4 * size * self.pixel, size * self.pixel))
+
+
+def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
+    """How a region of the Timeline or the Dope Sheet lies; None where it is too low to draw into."""
+    # Places come as whole pixels: a long way apart, the scale is exact nonetheless.
+    far = 100_000.0
+    start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
+    for sizes, least in ((ROOMY, LEAST_ROOMY), (SLIM, LEAST)):
+        taken = sizes.foot + sizes.strip + sizes.gap + sizes.headroom + sizes.ruler
+        height = min(sizes.graph, region.height / pixel - taken)
+        if height >= least and end > start:
+            middle, scale = 0.5 * (start + end), (end - start) / (2.0 * far)
+            return Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
+    return None
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    if context.space_data.mode not in MODES:
+        return
+    take = find_take(context.scene)
+    timeline = timeline_of(context.region, drawing.ui_scale())
+    if take is None or timeline is None:
+        return
+    paint(picture(context.scene, take, timeline))
+
+
+def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:
+    """Everything that is switched on and known."""
+    settings = scene.keymark.timeline
+    items: list[Item] = []
+    speed = _speed(scene, take)
+    if settings.show_speed and speed is not None:
+        items += _drawn(
+            f"speed {speed.key} {timeline}", lambda: speed_graph(speed.frames, speed.values, timeline)
+        )
+    review = review_of(take)
+    if settings.show_confidence and review is not None and np.isfinite(review.confidence).any():
+        items += _drawn(
+            f"confidence {take.review_key} {timeline}",
+            lambda: confidence_strip(review.frames, review.confidence, timeline),
+        )
+    weak = [weak.frame for weak in take.review.weak_frames] if settings.show_weak_frames else []
+    proposed = [proposal.frame for proposal in take.proposals] if settings.show_proposals else []
+    if weak:
+        frames = np.array([frame for frame in weak if not is_posed(take, frame)], dtype=np.float64)
+        items += weak_pointers(frames, timeline)
+    shown_speed = speed if settings.show_speed else None
+    matched = matched_frames(take) if settings.show_matches else ()
+    still = [frame for frame in proposed if not has_frame(matched, frame)]
+    if still:
+        frames = np.array(still, dtype=np.float64)
+        done = np.array([is_posed(take, frame) for frame in still])
+        items += proposals(frames, _level(frames, shown_speed), done, timeline)
+    if matched:
+        frames = np.array(matched, dtype=np.float64)
+        doubtful = {round(match.frame, 3) for match in take.matching.matches if match.is_doubtful}
+        sure = np.array([frame not in doubtful for frame in matched])
+        items += matches(frames, _level(frames, shown_speed), sure, timeline)
+    return items
+
+
+def _level(frames: Array, speed: "Speed | None") -> Array:
+    """How high marks at frames (K,) lie on the graph, 0 to 1; at its foot where there is none."""
+    if speed is None:
+        return np.zeros(len(frames))
+    return np.asarray(np.interp(frames, speed.frames, relative(speed.values)))
+
+
+def relative(speed: Array) -> Array:
+    """Speeds as heights from 0 to 1: few very fast frames do not press the others down."""
+    top = 1.15 * float(np.nanpercentile(speed, 98.0)) if np.isfinite(speed).any() else 1.0
+    return np.clip(speed / max(top, 1e-9), 0.0, 1.0)
+
+
+def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
+    """The sum of the markers' speeds as a translucent graph."""
+    x = timeline.places(frames)
+    shown = in_view(x, timeline.width)
+    x, values = joined(x[shown], relative(speed)[shown], lowest=False)
+    if len(x) < 2:
+        return []
+    line, area = graph(x, values, timeline.floor, timeline.height)
+    items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
+    if timeline.sizes == ROOMY:
+        words = label("Speed of markers")
+        items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
+    return items
+
+
+def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> list[Item]:
+    """How far each frame can be believed, on a dark ground against which heights are read."""
+    x = timeline.places(frames)
+    shown = in_view(x, timeline.width)
+    x, values = joined(x[shown], confidence[shown], lowest=True)
+    if not len(x):
+        return []
+    floor, height = timeline.strip_floor, timeline.sizes.strip * timeline.pixel
+    bars, colors = strip(x, values, floor, height)
+    (left, right), top = bars[[0, -1], [0, 1], 0], floor + height
+    ground = np.array([[(left, floor), (right, floor), (right, top), (left, top)]])
+    return [Fill(ground, GROUND), Fill(bars, colors)]
+
+
+def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
+    """Triangles over the graph that point at frames worth another keyframe, and a line down to the strip."""
+    if not len(frames):
+        return []
+    x = timeline.places(frames)
+    tip = timeline.top + timeline.pixel
+    marks = pointers(x, tip, timeline.fitting(x, timeline.sizes.pointer))
+    foot = np.stack([x, np.full_like(x, timeline.strip_floor)], axis=-1)
+    lines = np.stack([foot, np.stack([x, np.full_like(x, tip)], axis=-1)], axis=1)
+    return [
+        Stroke(lines, faded(WEAK, 0.45), 1.0),
+        Stroke(segments(marks, closed=True), WEAK, 1.0, 0.8),
+        Fill(marks, WEAK),
+    ]
+
+
+def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
+    """Diamonds on the graph: hollow where the actor is still to be posed, filled where it is."""
+    if not len(frames):
+        return []
+    heights = timeline.floor + timeline.height * level
+    x = timeline.places(frames)
+    marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
+    return [
+        Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
+        Fill(marks[done], PROPOSED),
+    ]
+
+
+def matches(frames: Array, level: Array, sure: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
+    """Squares on the graph at keyframes from a library: hollow where in doubt, filled where sure."""
+    x = timeline.places(frames)
+    centres = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
+    marks = squares(centres, timeline.fitting(x, timeline.sizes.diamond))
+    return [
+        Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8),
+        Fill(marks[sure], MATCHED),
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class Speed:
+    """V_sum on the time line."""
+
+    key: str
+    """Tells it from others."""
+    frames: Array
+    """(F,) scene frames."""
+    values: Array
+    """(F,) [px per frame]."""
+
+
+_speeds: Remembered[Speed] = Remembered()
+_views: Remembered[list[Item]] = Remembered(16)
+"""What was last drawn: a redraw without a change of view only draws."""
+
+
+def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | None:
+    """The markers' speed as last read; where that was lost, as the motion's review holds it."""
+    # Not before there is something to draw: Keymark registers without the libraries these need.
+    from ...core.prior.marker_speed import marker_speed
+    from ..bridge.frame_times import scene_frames
+
+    reading, review = reading_of(take), review_of(take)
+    if reading is not None and take.clip is not None:
+        footage = footage_of(scene, take)
+        key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
+
+        def read() -> Speed:
+            frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
+            return Speed(key, frames, marker_speed(reading.tracks))
+
+        return _speeds.get(key, read)
+    return None if review is None else Speed(take.review_key, review.frames, review.speed)
+
+
+def _drawn(key: str, make: Callable[[], list[Item]]) -> list[Item]:
+    return _views.get(key, make) or []

@@ -1,0 +1,66 @@
+"""From keyframes to the motion."""
+
+import bpy
+
+from ..shell.panel import TakePanel, draw_progress, draw_sentence
+from ..shell.takes import active_take, find_take
+
+
+class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
+    """Reconstructing, and what the actor shows."""
+
+    bl_label = "Reconstruct"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the button or the running job, the method, and the switch between keyframes and motion."""
+        take, column = active_take(context.scene), self.column()
+        row = column.row()
+        row.scale_y = 1.4
+        if not draw_progress(row, context, "keymark.reconstruct"):
+            row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
+        column.prop(take, "method")
+        column.prop(take, "live_preview")
+        _draw_show(column, take)
+
+
+def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """The switch between keyframes and motion, where there is a motion to switch to."""
+    if take.armature is None or take.motion_action is None:
+        return
+    data = take.armature.animation_data
+    shown = data.action if data else None
+    row = layout.row(align=True)
+    for which, action, text in (
+        ("KEYFRAMES", take.keyframe_action, "Keyframes"),
+        ("MOTION", take.motion_action, "Motion"),
+    ):
+        depress = action is not None and action == shown
+        row.operator("keymark.show_action", text=text, depress=depress).which = which
+
+
+class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
+    """What the last run says of its result."""
+
+    bl_label = "Notes"
+    bl_parent_id = "KEYMARK_PT_reconstruct"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There are notes."""
+        take = find_take(context.scene)
+        return take is not None and len(take.notes) > 0
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Show that there is something to read, the panel closed too."""
+        self.layout.label(text="", icon="INFO")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw each note, broken into lines as wide as the sidebar."""
+        column = self.layout.column()
+        for note in active_take(context.scene).notes:
+            draw_sentence(column, context, note.text)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PT_reconstruct, KEYMARK_PT_reconstruct_notes)
+)

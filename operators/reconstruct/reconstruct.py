@@ -1,0 +1,136 @@
+"""Reconstruct the motion between the keyframes from the footage."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ..markers.marker_styles import marker_styles
+from ..matching.matches import known_matches
+from ..review.review_results import show_review
+from ..shell.job_operator import JobOperator
+from ..shell.messages import say
+from ..shell.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
+from ..shell.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
+from ..shell.takes import active_take, actor_of, footage_of, take_called
+from .live_preview import LivePreview
+
+if TYPE_CHECKING:
+    from ...core.estimate.reconstruct import Reconstruction
+    from ...core.progress import Job, Progress
+    from ...core.review.review import Review
+
+TIMES, READ, SOLVED = 0.05, 0.4, 0.97
+"""Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the job hands over to the scene."""
+
+    take: str
+    """The take's identifier."""
+    frames: Any
+    """(F,) scene frames."""
+    reconstruction: "Reconstruction"
+    review: "Review"
+    notes: tuple[str, ...]
+
+
+class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
+    """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
+
+    bl_idname = "keymark.reconstruct"
+    bl_label = "Reconstruct"
+    bl_options = {"REGISTER", "UNDO"}
+    preview: LivePreview | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Everything a take holds must be there."""
+        return all_met(cls, context, footage, actor, markers, all_colors, two_keyframes, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+        """Read the scene's take and reconstruct it, beginning with what is known of it already."""
+        from ...core.estimate.reconstruct import check_reconstructible, reconstruct
+        from ...core.progress import stretch
+        from ...core.review.review import review
+        from ...core.take.read_footage import read_footage
+        from ..bridge.frame_times import scene_frames
+        from ..bridge.take_from_scene import read_scene_take
+
+        settings = active_take(scene)
+        identifier, method, armature = settings.identifier, settings.method, settings.armature
+        watched, kept, earlier = settings.live_preview, reading_of(settings), solved_before(settings)
+        reading_scene = read_scene_take(
+            footage_of(scene, settings),
+            armature,
+            settings.keyframe_action,
+            marker_styles(settings),
+            known_matches(settings),
+        )
+        take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+        _check_enough(len(take.keyframes), notes)
+        check_reconstructible(take, method)
+        reading = yield from stretch(read_footage(take, kept), TIMES, READ)
+        frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
+        self.preview = LivePreview(scene, armature, frames) if watched else None
+        result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
+        judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
+        return Outcome(identifier, frames, result, judged, (*notes, *result.notes))
+
+    def watch(self, progress: "Progress") -> None:
+        """Let the actor follow."""
+        if self.preview is not None and progress.preview is not None:
+            self.preview.show(progress.preview)
+
+    def unwatch(self) -> None:
+        """Leave actor and scene as they were."""
+        if self.preview is not None:
+            self.preview.end()
+            self.preview = None
+
+    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+        """Write the motion's Action and let it animate the actor; the keyframes stay in theirs."""
+        from ..bridge.fcurves import write_motion
+
+        take, motion = take_called(scene, result.take), result.reconstruction.motion
+        take.motion_action = write_motion(
+            actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
+        )
+        take.motion_action.use_fake_user = True
+        take.finish.outdated = take.finish.action is not None
+        keep_reading(take, result.reconstruction.reading)
+        keep_solved(take, result.reconstruction)
+        keep_review(take, result.review)
+        show_review(take, result.review)
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        take.notes.clear()
+        for note in result.notes:
+            sentence = note[:1].upper() + note[1:]
+            take.notes.add().text = sentence
+            self.report({"WARNING"}, sentence)
+        say(
+            self,
+            "INFO",
+            "Reconstructed {frames} frames from {keyframes} keyframes",
+            frames=len(result.frames),
+            keyframes=len(motion.keyframe_indices),
+        )
+
+
+def _check_enough(count: int, notes: tuple[str, ...]) -> None:
+    """Refuse a take with too few keyframes, with what the animator should know of those that do not count.
+
+    Raises:
+        InputError: There are fewer than two in the footage.
+    """
+    from ...core.errors import InputError
+
+    if count < 2:
+        posed = "one keyframe lies" if count else "no keyframe lies"
+        asked = f"{posed} in the footage; at least 2 are needed, so match a library or pose the actor"
+        raise InputError(". ".join((asked, *notes)))
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct,))

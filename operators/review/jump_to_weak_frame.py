@@ -1,0 +1,60 @@
+"""Go through the frames worth another keyframe, the worst first."""
+
+import bpy
+
+from ..shell.messages import say
+from ..shell.requirements import all_met, weak_frames
+from ..shell.takes import active_take
+
+
+class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
+    """Go to a frame that is worth another keyframe"""
+
+    bl_idname = "keymark.jump_to_weak_frame"
+    bl_label = "Jump to Weak Frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Which of the listed frames to go to",
+        items=[
+            ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
+            ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
+            ("PREVIOUS", "Previous", "Go to the previous frame of the list, which is weaker"),
+        ],
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The tooltip says which way."""
+        return {
+            "CHOSEN": "Go to the frame that is chosen in the list",
+            "NEXT": "Go to the next frame of the list; the worst comes first",
+            "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
+        }[properties.direction]
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There must be weak frames."""
+        return all_met(cls, context, weak_frames)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Go there; at the end of the list, stay and say so."""
+        review = active_take(context.scene).review
+        step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
+        # The first time, the worst frame itself is the next one.
+        chosen = review.weak_frames[min(review.active_weak_frame, len(review.weak_frames) - 1)]
+        if self.direction == "NEXT" and abs(chosen.frame - context.scene.frame_current_final) > 1e-3:
+            step = 0
+        wanted = review.active_weak_frame + step
+        if wanted < 0:
+            say(self, "INFO", "This is the weakest frame")
+            return {"CANCELLED"}
+        if wanted >= len(review.weak_frames):
+            say(self, "INFO", "This is the last frame of the list")
+            return {"CANCELLED"}
+        review.active_weak_frame = wanted  # which goes there
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_weak_frame,))

@@ -1,0 +1,86 @@
+"""How good the motion is, and where another keyframe helps."""
+
+import bpy
+
+from ..shell.keyed_frames import is_posed
+from ..shell.messages import label
+from ..shell.panel import TakePanel
+from ..shell.takes import active_take
+
+
+class KEYMARK_UL_weak_frames(bpy.types.UIList):
+    """Frames worth another keyframe: frame, reason, and how much a keyframe there is worth."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.AnyType,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.AnyType,
+        active_property: str,
+    ) -> None:
+        """Draw one frame."""
+        row = layout.row(align=True)
+        number = row.row()
+        number.ui_units_x = 2.2
+        number.label(text=f"{item.frame:g}")
+        reason = item.bl_rna.properties["reason"].enum_items[item.reason]
+        words = label(reason.name)
+        row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
+        worth = row.row()
+        worth.ui_units_x = 2.0
+        if is_posed(active_take(context.scene), item.frame):
+            worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
+        else:
+            worth.progress(factor=item.strength, text="", type="BAR")
+
+
+class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
+    """Confidence, and the frames worth another keyframe."""
+
+    bl_label = "Review"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw confidence and the list."""
+        review, column = active_take(context.scene).review, self.column()
+        if review.frame_count == 0:
+            column.label(text="Reconstruct the motion first", icon="INFO")
+            return
+        if review.confidence >= 0.0:
+            words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
+            column.progress(factor=review.confidence, text=words, type="BAR")
+        if not len(review.weak_frames):
+            column.label(text="No frame needs another keyframe", icon="CHECKMARK")
+            return
+        column.label(text="Worth Another Keyframe")
+        column.template_list(
+            "KEYMARK_UL_weak_frames", "", review, "weak_frames", review, "active_weak_frame", rows=4
+        )
+        row = column.row(align=True)
+        row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_UP").direction = "PREVIOUS"
+        row.operator("keymark.pose_from_motion", icon="KEY_HLT").where = "WEAK"
+        row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
+
+
+class KEYMARK_PT_timeline(TakePanel, bpy.types.Panel):
+    """What is drawn over the timeline."""
+
+    bl_label = "Timeline"
+    bl_parent_id = "KEYMARK_PT_review"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the switches."""
+        timeline, column = context.scene.keymark.timeline, self.column()
+        column.prop(timeline, "show_confidence")
+        column.prop(timeline, "show_weak_frames")
+        column.prop(timeline, "show_speed")
+        column.prop(timeline, "show_proposals")
+        column.prop(timeline, "show_matches")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_UL_weak_frames, KEYMARK_PT_review, KEYMARK_PT_timeline)
+)

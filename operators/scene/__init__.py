@@ -1,1 +1,0 @@
-"""What a scene holds of its takes: finding, filling and keeping them."""

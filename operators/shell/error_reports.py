@@ -1,0 +1,34 @@
+"""What can go wrong, as one sentence in Blender's status bar."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+from ...core.errors import KeymarkError
+from .messages import say
+from .redraw import redraw_sidebars_soon
+
+
+@contextmanager
+def reported(operator: bpy.types.Operator) -> Iterator[None]:
+    """Turn expected failures into the operator's error report.
+
+    In a script the report is raised by Blender as RuntimeError. Unexpected failures pass through.
+    """
+    try:
+        yield
+        redraw_sidebars_soon()
+    except ModuleNotFoundError as error:
+        missing = (error.name or "").partition(".")[0]
+        say(
+            operator,
+            "ERROR",
+            "Keymark needs the Python library {missing}, which is not there; "
+            "install Keymark from its package for this platform, which brings it along",
+            missing=missing,
+        )
+    except KeymarkError as error:
+        operator.report({"ERROR"}, str(error))
+    except ReferenceError:
+        say(operator, "ERROR", "Something the job works on was removed meanwhile; run it again")

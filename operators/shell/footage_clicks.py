@@ -1,0 +1,37 @@
+"""What operators share that wait for a click on the footage."""
+
+import bpy
+
+from .error_reports import reported
+from .messages import say
+
+NAVIGATION = {
+    *(
+        "MIDDLEMOUSE",
+        "WHEELUPMOUSE",
+        "WHEELDOWNMOUSE",
+        "TRACKPADPAN",
+        "TRACKPADZOOM",
+        "MOUSEPAN",
+        "MOUSEZOOM",
+    ),
+    *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
+}
+"""Events that move the view or the frame, and are left to Blender meanwhile."""
+
+
+def footage_is_shown(
+    operator: bpy.types.Operator, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> bool:
+    """Whether an editor of the window shows the take's footage; where none does, the operator says so."""
+    from .footage_view import shows_footage
+
+    with reported(operator):
+        if shows_footage(context, take):
+            return True
+        say(
+            operator,
+            "ERROR",
+            "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
+        )
+    return False

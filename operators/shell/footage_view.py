@@ -1,0 +1,138 @@
+"""Where an editor shows the footage: pixels of the file to places in a region, and back.
+
+Footage pixels count from the top left corner, x right and y down, in the file's own picture. The 3D viewport
+shows it straightened, as its camera has no distortion; the Movie Clip editor shows it as it is.
+"""
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.footage.camera import Camera
+from ..bridge.camera_from_scene import read_lens
+from .takes import footage_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FootageView:
+    """A region that shows a take's footage."""
+
+    region: bpy.types.Region
+    size: tuple[int, int]
+    """Width and height of the footage [px]."""
+    top_left: Array
+    """(2,) place of the picture's corner in the region, y up [px]."""
+    extent: Array
+    """(2,) from there to the bottom right corner [px]."""
+    lens: Camera | None
+    """The lens whose distortion the region takes out; None where it shows the picture as it is."""
+
+    def to_region(self, pixels: ArrayLike) -> Array:
+        """Places (..., 2) in the region of footage pixels (..., 2)."""
+        flat = np.asarray(pixels, dtype=np.float64)
+        if self.lens is not None:
+            _, direction = self.lens.rays(flat)
+            flat = _straight(self.lens).project(direction)[0]
+        return np.asarray(self.top_left + flat / self.size * self.extent)
+
+    def to_footage(self, places: ArrayLike) -> Array:
+        """Footage pixels (..., 2) at places (..., 2) in the region."""
+        flat = (np.asarray(places, dtype=np.float64) - self.top_left) / self.extent * self.size
+        if self.lens is not None:
+            _, direction = _straight(self.lens).rays(flat)
+            flat = self.lens.project(direction)[0]
+        return np.asarray(flat)
+
+
+def footage_view(
+    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, area: bpy.types.Area, region: bpy.types.Region
+) -> FootageView | None:
+    """How a region of an editor shows a take's footage; None where it does not show it.
+
+    In place of a file that is missing Blender shows a picture of another size.
+    """
+    if take.clip is None or take.clip_state.missing or region.type != "WINDOW" or not all(take.clip.size):
+        return None
+    space = area.spaces.active
+    if area.type == "VIEW_3D":
+        return _camera_view(scene, take, space, region)
+    if area.type == "CLIP_EDITOR" and space.clip == take.clip and space.view == "CLIP":
+        return _clip_view(scene, take, space, region)
+    return None
+
+
+def pixel_under(
+    context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
+) -> tuple[float, float] | None:
+    """The footage pixel under a place in the window, in whichever editor shows the footage there."""
+    for area in context.screen.areas:
+        if not (area.x <= mouse_x < area.x + area.width and area.y <= mouse_y < area.y + area.height):
+            continue
+        for region in area.regions:
+            view = footage_view(context.scene, take, area, region)
+            if view is None:
+                continue
+            x, y = view.to_footage((mouse_x - region.x, mouse_y - region.y))
+            if 0.0 <= x < view.size[0] and 0.0 <= y < view.size[1]:
+                return float(x), float(y)
+    return None
+
+
+def shows_footage(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> bool:
+    """Whether any editor of the window shows the footage."""
+    return any(
+        footage_view(context.scene, take, area, region) is not None
+        for area in context.screen.areas
+        for region in area.regions
+    )
+
+
+def _camera_view(
+    scene: bpy.types.Scene,
+    take: bpy.types.PropertyGroup,
+    space: bpy.types.SpaceView3D,
+    region: bpy.types.Region,
+) -> FootageView | None:
+    camera = space.camera if space.use_local_camera else scene.camera
+    view = space.region_3d
+    if camera is None or camera != take.camera or view is None or view.view_perspective != "CAMERA":
+        return None
+    matrix = camera.matrix_world.normalized()
+    # Top right, bottom right, bottom left, top left.
+    frame = [matrix @ corner for corner in camera.data.view_frame(scene=scene)]
+    corners = [location_3d_to_region_2d(region, view, corner) for corner in (frame[3], frame[1])]
+    if any(corner is None for corner in corners):
+        return None
+    top_left, bottom_right = (np.array(corner, dtype=np.float64) for corner in corners)
+    lens = read_lens(footage_of(scene, take))
+    return FootageView(
+        region, lens.resolution, top_left, bottom_right - top_left, lens if any(lens.distortion) else None
+    )
+
+
+def _clip_view(
+    scene: bpy.types.Scene,
+    take: bpy.types.PropertyGroup,
+    space: bpy.types.SpaceClipEditor,
+    region: bpy.types.Region,
+) -> FootageView:
+    view = region.view2d
+    top_left, bottom_right = (
+        np.array(view.view_to_region(*corner, clip=False), dtype=np.float64)
+        for corner in ((0.0, 1.0), (1.0, 0.0))
+    )
+    lens = None
+    if space.clip_user.use_render_undistorted and take.camera is not None:
+        lens = read_lens(footage_of(scene, take))
+    return FootageView(
+        region, (take.clip.size[0], take.clip.size[1]), top_left, bottom_right - top_left, lens
+    )
+
+
+def _straight(lens: Camera) -> Camera:
+    return replace(lens, distortion=(0.0, 0.0, 0.0))

@@ -1,0 +1,42 @@
+"""Files dropped onto an editor: footage is loaded, a take is opened, a keyframe library imported."""
+
+import bpy
+
+from ..footage.load_footage import IMAGES, VIDEOS
+
+EDITORS = {"VIEW_3D", "CLIP_EDITOR"}
+
+
+def _over_an_editor(context: bpy.types.Context) -> bool:
+    return context.area is not None and context.area.type in EDITORS
+
+
+class KEYMARK_FH_footage(bpy.types.FileHandler):
+    """Videos and images become footage."""
+
+    bl_idname = "KEYMARK_FH_footage"
+    bl_label = "Footage for Keymark"
+    bl_import_operator = "keymark.load_footage"
+    bl_file_extensions = ";".join(VIDEOS + IMAGES)
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        """Where footage is shown."""
+        return _over_an_editor(context)
+
+
+class KEYMARK_FH_take(bpy.types.FileHandler):
+    """A take.json opens its take, the .json of a keyframe library brings that to hand."""
+
+    bl_idname = "KEYMARK_FH_take"
+    bl_label = "Take or Library for Keymark"
+    bl_import_operator = "keymark.open_dropped"
+    bl_file_extensions = ".json"
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        """Where footage is shown, and where assets are."""
+        return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_FH_footage, KEYMARK_FH_take))

@@ -1,0 +1,37 @@
+"""What to do next with a take, from what costs nothing to look at."""
+
+import bpy
+
+from ..matching.matches import state_of
+from ..shell.keyed_frames import keyframes_of, matched_frames, unposed
+
+FEWEST_KEYFRAMES = 2
+
+
+def next_step(take: bpy.types.PropertyGroup) -> str:
+    """A few words that fit in a narrow sidebar, to be translated where they are drawn."""
+    if take.clip is None:
+        return "Next: load the footage"
+    if take.clip_state.missing:
+        return "Next: find the clip's file"
+    if not len(take.markers):
+        return "Next: add the markers"
+    if any(not marker.is_picked for marker in take.markers):
+        return "Next: pick the markers' colors"
+    if take.armature is None or take.armature.name not in take.id_data.objects:
+        return "Next: build the actor"
+    if not len(take.proposals) and not keyframes_of(take):
+        return "Next: match a library, or pose"
+    if take.motion_action is None:
+        if unposed(take) and not matched_frames(take):
+            return "Next: pose the proposed frames"
+        if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
+            return "Next: pose and store keyframes"
+        if any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches):
+            return "Next: check matches, reconstruct"
+        return "Next: reconstruct the motion"
+    if take.finish.action is None:
+        return "Next: review, then finish"
+    if take.finish.outdated:
+        return "Next: review, then bake again"
+    return "Next: mark as asset, or export"

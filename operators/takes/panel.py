@@ -1,0 +1,141 @@
+"""The main panel: the running job, or the takes of the scene and what to do next."""
+
+import bpy
+
+from ..library import registry
+from ..shell.job_operator import job_is_running
+from ..shell.panel import SidebarPanel, draw_progress
+from ..shell.takes import find_take
+from .next_step import next_step
+from .upgrade import is_newer
+
+STEPS = (
+    ("FILE_MOVIE", "Footage: load the clip, or open a take"),
+    ("EYEDROPPER", "Markers: pick each sleeve's color in the footage"),
+    ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
+    ("KEY_HLT", "Keyframes: match a library, or pose the actor"),
+    ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
+    ("OVERLAY", "Review: see where another keyframe helps"),
+    ("CHECKMARK", "Finish: bake, mark as asset, export"),
+)
+"""Icon and sentence of each step."""
+BIG = 1.6
+
+
+class KEYMARK_UL_takes(bpy.types.UIList):
+    """Takes by name, with an icon that tells whether there is a motion yet."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.AnyType,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.AnyType,
+        active_property: str,
+    ) -> None:
+        """Draw one take."""
+        row = layout.row(align=True)
+        done = item.motion_action is not None
+        row.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
+        if item.clip_state.missing:
+            row.label(text="", icon="ERROR")
+
+
+class KEYMARK_MT_add_take(bpy.types.Menu):
+    """Ways to another take."""
+
+    bl_label = "Add Take"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Same clip, other clip, or one from disk."""
+        layout = self.layout
+        layout.operator("keymark.add_performer", icon="USER")
+        layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
+        layout.menu("KEYMARK_MT_clips", icon="TRACKER")
+        layout.operator("keymark.open_take", icon="FILE_FOLDER")
+
+
+class KEYMARK_MT_take_specials(bpy.types.Menu):
+    """What is seldom done to a take."""
+
+    bl_label = "Take Specials"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Removing with everything, and the guide."""
+        layout = self.layout
+        entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
+        entry.delete_data = True
+        layout.popover("KEYMARK_PT_guide", icon="HELP")
+
+
+class KEYMARK_PT_guide(bpy.types.Panel):
+    """The way from a video to an Action, in seven lines."""
+
+    bl_label = "How It Works"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_options = {"INSTANCED"}
+    bl_ui_units_x = 16
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw one line a step."""
+        column = self.layout.column(align=True)
+        for icon, text in STEPS:
+            column.label(text=text, icon=icon)
+
+
+class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
+    """What runs, which takes there are, and what to do next."""
+
+    bl_label = "Keymark"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the running job, or the takes and the next step."""
+        registry.need()
+        layout, take = self.layout, find_take(context.scene)
+        if is_newer(context.scene):
+            box = layout.box().column(align=True)
+            box.label(text="A newer Keymark wrote this file", icon="ERROR")
+            box.label(text="Update Keymark before editing", icon="BLANK1")
+        if take is None:
+            # Installing shows its progress among the libraries; what is above must not move.
+            if job_is_running(context, "keymark.install_") or not draw_progress(layout, context):
+                _draw_beginning(layout)
+            return
+        _draw_takes(layout, context.scene.keymark)
+        if not draw_progress(layout, context):
+            layout.label(text=next_step(take), icon="FORWARD")
+
+
+def _draw_beginning(layout: bpy.types.UILayout) -> None:
+    """What to begin with in an empty scene."""
+    column = layout.column()
+    column.scale_y = BIG
+    column.operator("keymark.load_footage", icon="FILE_MOVIE")
+    column.operator("keymark.open_take", icon="FILE_FOLDER")
+    column.popover("KEYMARK_PT_guide", icon="HELP")
+    if bpy.data.movieclips:
+        layout.menu("KEYMARK_MT_clips", icon="TRACKER")
+
+
+def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """The list of takes; a single one is a line."""
+    row = layout.row()
+    if len(settings.takes) == 1:
+        buttons = row.row(align=True)
+        buttons.prop(settings.takes[0], "name", text="", icon="FILE_MOVIE")
+    else:
+        row.template_list(
+            "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
+        )
+        buttons = row.column(align=True)
+    buttons.menu("KEYMARK_MT_add_take", text="", icon="ADD")
+    buttons.operator("keymark.remove_take", text="", icon="REMOVE")
+    buttons.menu("KEYMARK_MT_take_specials", text="", icon="DOWNARROW_HLT")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_UL_takes, KEYMARK_MT_add_take, KEYMARK_MT_take_specials, KEYMARK_PT_guide, KEYMARK_PT_main)
+)

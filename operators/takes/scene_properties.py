@@ -1,0 +1,52 @@
+"""Keymark's part of a scene: its takes and keyframe libraries, and which of them are worked on."""
+
+import bpy
+
+from ..library.editing.properties import KEYMARK_PG_library
+from ..overlays.properties import KEYMARK_PG_overlays
+from ..overlays.timeline_properties import KEYMARK_PG_timeline
+from ..shell.takes import bring_forward, find_take
+from .take_properties import KEYMARK_PG_take
+
+
+def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ..footage.take_footage import is_missing
+
+    bring_forward(settings.id_data)
+    take = find_take(settings.id_data)
+    if take is not None:
+        take.clip_state.missing = is_missing(take.clip)
+
+
+class KEYMARK_PG_settings(bpy.types.PropertyGroup):
+    """Keymark's part of a scene."""
+
+    version: bpy.props.IntProperty(
+        name="Version", description="Version of Keymark's properties in this file", options={"HIDDEN"}
+    )
+    takes: bpy.props.CollectionProperty(type=KEYMARK_PG_take)
+    active_take: bpy.props.IntProperty(
+        name="Active Take",
+        description="The take that is worked on; its footage and camera become the scene's",
+        default=0,
+        min=0,
+        update=_active_take_changed,
+    )
+    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_library)
+    active_library: bpy.props.IntProperty(
+        name="Active Library", description="The keyframe library that is worked on", default=0, min=0
+    )
+    overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
+    timeline: bpy.props.PointerProperty(type=KEYMARK_PG_timeline)
+
+
+def register() -> None:
+    """Add the properties to scenes."""
+    bpy.utils.register_class(KEYMARK_PG_settings)
+    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=KEYMARK_PG_settings)
+
+
+def unregister() -> None:
+    """Take them away."""
+    del bpy.types.Scene.keymark
+    bpy.utils.unregister_class(KEYMARK_PG_settings)

@@ -1,0 +1,165 @@
+"""One take: a performer in a clip, with all that the animator says and Keymark finds of it."""
+
+from contextlib import suppress
+
+import bpy
+
+from ..actor.properties import KEYMARK_PG_lengths
+from ..finish.properties import KEYMARK_PG_finish
+from ..footage.properties import KEYMARK_PG_clip_state
+from ..markers.properties import KEYMARK_PG_marker
+from ..matching.properties import KEYMARK_PG_matching
+from ..review.properties import KEYMARK_PG_review
+from ..shell.takes import unique_name
+from ..turntable.properties import KEYMARK_PG_turntable
+
+METHODS = (
+    ("map", "Whole Clip", "Estimate all frames at once; the most accurate"),
+    ("ekf", "Fuzzy Kalman Filter", "The published filter, frame after frame; for comparison"),
+    ("interpolation", "Keyframes Only", "Interpolate the keyframes without looking at the footage"),
+)
+
+
+def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "ARMATURE")
+
+
+def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """The panel shows the lengths of the armature that is chosen, not of the one before."""
+    from ...core.errors import InputError
+
+    with suppress(InputError, ModuleNotFoundError):  # another skeleton, or Keymark without its libraries
+        from ...core.body.human import HUMAN
+        from ..actor.new_actor import show_lengths
+        from ..bridge.actor_lengths import read_body
+
+        show_lengths(take, read_body(take.armature, HUMAN))
+
+
+def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "CAMERA")
+
+
+def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    others = [other.name for other in take.id_data.keymark.takes if other != take]
+    free = unique_name(take.name.strip() or "Take", others)
+    if take.name != free:
+        take.name = free
+
+
+def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ..footage.take_footage import clip_chosen
+
+    clip_chosen(take)
+
+
+def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from ..footage.take_footage import camera_chosen
+
+    camera_chosen(take)
+
+
+class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
+    """A frame worth posing."""
+
+    frame: bpy.props.IntProperty(name="Frame", description="The scene frame that is proposed")
+
+
+class KEYMARK_PG_note(bpy.types.PropertyGroup):
+    """What the last run says of its result."""
+
+    text: bpy.props.StringProperty(name="Note", description="A sentence that the last reconstruction left")
+
+
+class KEYMARK_PG_take(bpy.types.PropertyGroup):
+    """A performer in a clip."""
+
+    name: bpy.props.StringProperty(
+        name="Name", description="What you call this take", default="Take", update=_renamed
+    )
+    identifier: bpy.props.StringProperty(
+        name="Identifier", description="Tells takes apart whatever they are called", options={"HIDDEN"}
+    )
+    clip: bpy.props.PointerProperty(
+        name="Clip",
+        description="The footage of the performer; the scene's size, rate and range follow it",
+        type=bpy.types.MovieClip,
+        update=_clip_chosen,
+    )
+    clip_state: bpy.props.PointerProperty(type=KEYMARK_PG_clip_state)
+    camera: bpy.props.PointerProperty(
+        name="Camera",
+        description="The camera that the footage was taken with; if it moves, it is used as it moves",
+        type=bpy.types.Object,
+        poll=_is_camera,
+        update=_camera_chosen,
+    )
+    guessed_lens_mm: bpy.props.FloatProperty(
+        name="Guessed Lens",
+        description="The focal length that was guessed as nobody had stated one; 0 for none",
+        min=0.0,
+        options={"HIDDEN"},
+    )
+    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
+    armature: bpy.props.PointerProperty(
+        name="Actor",
+        description="The performer's armature",
+        type=bpy.types.Object,
+        poll=_is_armature,
+        update=_armature_chosen,
+    )
+    stature: bpy.props.FloatProperty(
+        name="Height",
+        description="The performer's body height, from which an actor of average proportions is built",
+        subtype="DISTANCE",
+        precision=3,
+        default=1.75,
+        min=0.5,
+        max=3.0,
+    )
+    lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
+    markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
+    active_marker: bpy.props.IntProperty(
+        name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
+    keyframe_action: bpy.props.PointerProperty(
+        name="Keyframes",
+        description="The Action that holds the keyframes you pose",
+        type=bpy.types.Action,
+    )
+    keyframe_count: bpy.props.IntProperty(
+        name="Count",
+        description="How many keyframes to propose; 0 for 10 in 100 frames",
+        default=0,
+        min=0,
+        soft_max=100,
+    )
+    proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
+    matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
+    method: bpy.props.EnumProperty(
+        name="Method", description="How the frames between the keyframes are found", items=METHODS
+    )
+    motion_action: bpy.props.PointerProperty(
+        name="Motion",
+        description="The Action that holds the reconstructed motion",
+        type=bpy.types.Action,
+    )
+    live_preview: bpy.props.BoolProperty(
+        name="Live Preview",
+        description="Let the actor follow while frames are solved; without it the result comes sooner",
+        default=True,
+    )
+    notes: bpy.props.CollectionProperty(type=KEYMARK_PG_note)
+    reading_key: bpy.props.StringProperty(
+        name="Reading", description="Under which key lies what was read of the clip", options={"HIDDEN"}
+    )
+    review_key: bpy.props.StringProperty(
+        name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
+    )
+    review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
+    finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_proposal, KEYMARK_PG_note, KEYMARK_PG_take)
+)

@@ -1,0 +1,81 @@
+"""A take from disk in a scene."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.take.take import Take, check_frame_count, open_clip, rate_note, read_take
+from ..actor.new_actor import add_actor
+from ..bridge.actions import assign_action
+from ..bridge.footage import clip_rate
+from ..bridge.footage_to_scene import load_footage, show_footage
+from ..bridge.frame_times import scene_frames
+from ..bridge.keyframes import write_keyframes
+from ..markers.marker_styles import set_marker_color
+from ..matching.matches import add_candidate, add_match
+from ..shell.keyframe_action import new_keyframe_action
+from ..shell.takes import add_take
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedTake:
+    """A take whose clip has been gone through."""
+
+    take: Take
+    time_s: NDArray[np.float64]
+    """(F,) time of each frame [s]."""
+    notes: tuple[str, ...]
+    """What a person should know, one sentence each."""
+
+
+def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
+    """Read a take and check it against its clip.
+
+    Args:
+        folder: The take's folder.
+        keyframe_file: Name of the keyframe file in it; a take without the usual one opens unposed.
+
+    Raises:
+        InputError: The take or its clip is unusable.
+    """
+    usual = keyframe_file == "keyframes.json"
+    take = read_take(folder, None if usual else folder / keyframe_file, keyframes_required=not usual)
+    clip = open_clip(take)
+    time_s = clip.time_stamps()
+    check_frame_count(take, len(time_s))
+    rate = rate_note(take, clip)
+    return OpenedTake(take, time_s, (*take.notes, *([rate] if rate else [])))
+
+
+def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
+    """Add a take to the scene: footage, camera, actor, markers, keyframes; returns the armature object.
+
+    Raises:
+        InputError: Blender cannot read the clip; the scene is as before then.
+    """
+    take, scene = opened.take, context.scene
+    rate = clip_rate(load_footage(take.clip), take.fps)
+    frames = scene_frames(opened.time_s, take.frame_start, rate)
+    camera_object = show_footage(scene, take.camera, take.clip, rate, take.frame_start, len(frames), frames)
+    settings = add_take(scene, take.name)
+    settings.camera, settings.clip = camera_object, scene.active_clip
+    armature_object = add_actor(context, settings, take.body)
+    settings.stature = take.body.actor.stature_m
+    for style in take.markers:
+        marker = settings.markers.add()
+        marker.name, marker.segment = style.name, style.segment
+        set_marker_color(marker, style.color_srgb)
+    if take.keyframes:
+        action = settings.keyframe_action = new_keyframe_action(armature_object)
+        write_keyframes(armature_object, action, take.keyframes, frames)
+        assign_action(armature_object, action)
+    for keyframe in take.keyframes:
+        if keyframe.matched is not None:
+            known = keyframe.matched
+            match = add_match(settings, float(frames[keyframe.index]), known.library)
+            add_candidate(match, keyframe.posture, known.posture, known.mirrored, known.confidence)
+    scene.frame_set(scene.frame_start)
+    return armature_object

@@ -1,1 +1,0 @@
-"""Properties, panels and what is drawn over the editors."""

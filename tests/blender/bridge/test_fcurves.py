@@ -1,0 +1,197 @@
+"""Motions as F-curves: slots, key types, and the animator's own keys."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.core.take.motion import Motion
+from keymark.operators.bridge.actions import existing_channelbag
+from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.fcurves import write_motion
+from mathutils import Euler, Matrix, Vector
+
+CHANNELS = 7 + 4 * 6 + 3 * 6
+"""Pelvis: 3 + 4. Chest, head, 2 upper arms, 2 thighs are balls; 2 girdles, forearms, shins have angles."""
+
+
+@pytest.fixture
+def actor(body: Body) -> bpy.types.Object:
+    """An actor in the scene."""
+    return build_armature(bpy.context.scene, body)
+
+
+def curves(actor: bpy.types.Object, action: bpy.types.Action) -> dict[tuple[str, int], bpy.types.FCurve]:
+    """The curves that animate the actor."""
+    found = existing_channelbag(action, actor).fcurves
+    return {(curve.data_path, curve.array_index): curve for curve in found}
+
+
+def key_count(actor: bpy.types.Object, action: bpy.types.Action) -> int:
+    """Number of keys on all curves."""
+    return sum(len(curve.keyframe_points) for curve in curves(actor, action).values())
+
+
+def test_every_frame_shows_the_motion(
+    actor: bpy.types.Object, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
+) -> None:
+    """Scrubbing through the frames, the bones lie where the motion's points are."""
+    write_motion(actor, wave_motion)
+    for frame, points in zip(wave_motion.scene_frames, wave_motion.points, strict=True):
+        bpy.context.scene.frame_set(int(frame))
+        assert shown_points(actor) == pytest.approx(points, abs=1e-5)
+
+
+def test_a_placed_and_scaled_actor_shows_the_same_places(
+    actor: bpy.types.Object, body: Body, wave_motion: Motion
+) -> None:
+    """The motion is the world's: hips are where they are, however the object stands."""
+    actor.matrix_world = Matrix.LocRotScale(Vector((1, 2, 0)), Euler((0.1, 0.2, 0.3)), Vector((0.8,) * 3))
+    write_motion(actor, wave_motion)
+    bpy.context.scene.frame_set(7)
+    pelvis = actor.matrix_world @ actor.pose.bones["pelvis"].head
+    assert np.array(pelvis) == pytest.approx(wave_motion.posture.translation[6], abs=1e-5)
+
+
+def test_the_action_has_a_slot_groups_and_one_key_a_frame(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """The slot is assigned (without it nothing moves), each bone has its group, each channel its keys."""
+    action = write_motion(actor, wave_motion)
+    assert actor.animation_data.action == action
+    assert actor.animation_data.action_slot == action.slots[0]
+    found = curves(actor, action)
+    assert len(found) == CHANNELS
+    assert {len(curve.keyframe_points) for curve in found.values()} == {len(wave_motion.time_s)}
+    assert all(f'"{curve.group.name}"' in path for (path, _), curve in found.items())
+
+
+def test_keys_are_generated_linear_and_on_the_motions_frames(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """Keys made by a program are told from the animator's."""
+    found = curves(actor, write_motion(actor, wave_motion))
+    points = found['pose.bones["shin.L"].rotation_euler', 0].keyframe_points
+    assert {point.type for point in points} == {"GENERATED"}
+    assert {point.interpolation for point in points} == {"LINEAR"}
+    assert [point.co.x for point in points] == pytest.approx(wave_motion.scene_frames)
+    knee = wave_motion.posture.to_vector()[:, HUMAN.dof_names.index("knee.L.flexion")]
+    assert [point.co.y for point in points] == pytest.approx(knee, abs=1e-6)
+
+
+def test_a_second_run_replaces_generated_keys_only(actor: bpy.types.Object, wave_motion: Motion) -> None:
+    """The animator's correction survives with its value and handles; the number of curves stays."""
+    action = write_motion(actor, wave_motion)
+    before = key_count(actor, action)
+    curve = curves(actor, action)['pose.bones["forearm.L"].rotation_euler', 0]
+    own = curve.keyframe_points.insert(5.0, 1.25)
+    own.type, own.interpolation = "KEYFRAME", "BEZIER"
+    own.handle_left_type = own.handle_right_type = "FREE"
+    own.handle_right = (5.3, 2.0)
+    curve.keyframe_points.insert(9.5, 1.5).type = "EXTREME"
+    assert write_motion(actor, wave_motion, action) == action
+    points = curves(actor, action)['pose.bones["forearm.L"].rotation_euler', 0].keyframe_points
+    kept = next(point for point in points if point.co.x == 5.0)
+    assert (kept.type, kept.interpolation, kept.co.y) == ("KEYFRAME", "BEZIER", 1.25)
+    assert tuple(kept.handle_right) == pytest.approx((5.3, 2.0))
+    assert next(point.type for point in points if point.co.x == 9.5) == "EXTREME"
+    assert key_count(actor, action) == before + 1  # the key at 5 stands in for a generated one
+
+
+def test_a_generated_key_that_was_keyed_over_is_the_animators(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """Blender leaves its type as it was; the value tells."""
+    action = write_motion(actor, wave_motion)
+    bone = actor.pose.bones["forearm.L"]
+    bone.rotation_euler.x = 1.25
+    bone.keyframe_insert("rotation_euler", index=0, frame=5)
+    for _ in range(2):
+        write_motion(actor, wave_motion, action)
+        points = curves(actor, action)['pose.bones["forearm.L"].rotation_euler', 0].keyframe_points
+        assert [point.co.x for point in points if point.type == "KEYFRAME"] == [5.0]
+        assert next(point.co.y for point in points if point.co.x == 5.0) == 1.25
+
+
+def test_a_shorter_second_run_leaves_no_stale_keys(actor: bpy.types.Object, wave_motion: Motion) -> None:
+    """Keys of frames that are not in the new motion are gone."""
+    action = write_motion(actor, wave_motion)
+    half = slice(0, 5)
+    shorter = Motion(
+        wave_motion.body,
+        wave_motion.fps,
+        wave_motion.frame_start,
+        wave_motion.time_s[half],
+        wave_motion.posture[half],
+        wave_motion.points[half],
+        wave_motion.point_covariance[half],
+        (0, 4),
+        "map",
+    )
+    write_motion(actor, shorter, action)
+    assert key_count(actor, action) == CHANNELS * 5
+
+
+def test_another_rotation_mode_in_between_leaves_no_stale_curves(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """After the animator switched a bone to Euler angles, its old quaternion curves go."""
+    action = write_motion(actor, wave_motion)
+    actor.pose.bones["thigh.L"].rotation_mode = "XYZ"
+    write_motion(actor, wave_motion, action)
+    channels = {path for path, _ in curves(actor, action) if '"thigh.L"' in path}
+    assert channels == {'pose.bones["thigh.L"].rotation_euler'}
+
+
+def test_curves_of_other_things_stay(actor: bpy.types.Object, wave_motion: Motion) -> None:
+    """An animator's custom property, keyed in the same Action, is none of our business."""
+    action = write_motion(actor, wave_motion)
+    actor["mood"] = 1.0
+    actor.keyframe_insert('["mood"]', frame=3)
+    write_motion(actor, wave_motion, action)
+    assert ('["mood"]', 0) in curves(actor, action)
+
+
+def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_motion: Motion) -> None:
+    """Bones without degrees of freedom take their curves from the keyframe Action, and only those."""
+    hand = actor.pose.bones["hand.R"]
+    hand.keyframe_insert("rotation_quaternion", frame=1)
+    hand.rotation_quaternion = (0.6, 0.8, 0.0, 0.0)
+    hand.keyframe_insert("rotation_quaternion", frame=13)
+    actor.pose.bones["head"].keyframe_insert("scale", frame=1)
+    posed = actor.animation_data.action
+    action = write_motion(actor, wave_motion, keyframe_action=posed)
+    assert action != posed
+    bpy.context.scene.frame_set(13)
+    assert tuple(hand.rotation_quaternion) == pytest.approx((0.6, 0.8, 0.0, 0.0), abs=1e-6)
+    assert not any("scale" in path for path, _ in curves(actor, action))
+    write_motion(actor, wave_motion, action, posed)
+    assert len(curves(actor, action)) == CHANNELS + 4
+
+
+def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
+    """Of a hand's keys only the copies of the keyframes' are replaced."""
+    hand = actor.pose.bones["hand.R"]
+    for frame in (1, 13):
+        hand.keyframe_insert("rotation_quaternion", frame=frame)
+    posed = actor.animation_data.action
+    action = write_motion(actor, wave_motion, keyframe_action=posed)
+    hand.rotation_quaternion = (0.6, 0.8, 0.0, 0.0)
+    for frame in (5, 13):
+        hand.keyframe_insert("rotation_quaternion", frame=frame)
+    write_motion(actor, wave_motion, action, posed)
+    curve = curves(actor, action)['pose.bones["hand.R"].rotation_quaternion', 1]
+    assert [key.co.x for key in curve.keyframe_points] == [1.0, 5.0, 13.0]
+    assert [key.co.y for key in curve.keyframe_points] == pytest.approx([0.0, 0.8, 0.8])
+
+
+def test_fractional_frames_of_an_uneven_clip_are_kept(actor: bpy.types.Object, wave_motion: Motion) -> None:
+    """A clip of variable rate has its keys between whole frames."""
+    frames = wave_motion.scene_frames + 0.25
+    found = curves(actor, write_motion(actor, wave_motion, frames=frames))
+    points = found['pose.bones["pelvis"].location', 2].keyframe_points
+    assert [point.co.x for point in points] == pytest.approx(frames)

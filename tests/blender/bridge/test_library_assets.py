@@ -1,0 +1,282 @@
+"""Keyframe libraries as pose assets: to files, to other armatures, and back."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.actor import Actor
+from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.errors import InputError
+from keymark.core.files.json_file import parse_json
+from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from keymark.core.library.library_file import read_library, write_library
+from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.library import pose_assets
+from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
+from keymark.operators.bridge.library.pose_assets import (
+    HEADER,
+    POSTURE,
+    add_assets,
+    library_from_assets,
+    read_asset,
+)
+from keymark.operators.bridge.object_space import evaluated
+from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.bridge.posture_curves import channel_values
+
+RandomPosture = Callable[[int], Posture]
+ANGLE = 1e-6
+
+
+@pytest.fixture
+def library(random_posture: RandomPosture) -> Library:
+    """Four postures with tags, one of them with a name and a tag that Blender cannot hold whole."""
+    names = ("Left Heel Strike", "Midstance", "ÄÖ" * 30, "Toe-off, late")
+    tags: tuple[tuple[str, ...], ...] = ((), ("swing", "a, b"), ("ß" * 40,), ("late",))
+    postures = tuple(
+        LibraryPosture(name, random_posture(seed), tags[seed]) for seed, name in enumerate(names)
+    )
+    steps = tuple(MotionStep(name, 0.123456789 * place) for place, name in enumerate(names))
+    cycle = LibraryMotion("Cycle", steps, 1.05, True, (0.0, -1.1234567, 0.25))
+    once = LibraryMotion("Once: again", steps[:2], 0.7)
+    return Library(
+        *("gait-1", "Gait: slow/fast", 3, "Ä. Author", "CC-BY-4.0", Actor.from_stature(1.81)),
+        postures=postures,
+        motions=(cycle, once),
+        description="For tests.",
+        sources=("Winter (2009)", "Perry; Burnfield (2010)"),
+        tags=("walk",),
+    )
+
+
+def file_bytes(library: Library, folder: Path) -> bytes:
+    """What the library's file holds."""
+    write_library(folder / "x.json", library)
+    return (folder / "x.json").read_bytes()
+
+
+def test_a_library_file_comes_back_from_assets_to_the_last_byte(library: Library, tmp_path: Path) -> None:
+    """File to Actions to file; and once more after saving and loading the .blend."""
+    first = file_bytes(library, tmp_path)
+    add_assets(read_library(tmp_path / "x.json"))
+    (back,) = library_from_assets(bpy.data.actions)
+    assert file_bytes(back, tmp_path) == first
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "work.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "work.blend"))
+    (back,) = library_from_assets(bpy.data.actions)
+    assert file_bytes(back, tmp_path) == first
+
+
+def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path) -> None:
+    """The open file is as before, after writing and after reading; only pose assets are in the .blend."""
+    first = file_bytes(library, tmp_path)
+    mine = bpy.data.actions.new("Midstance")
+    before = set(bpy.data.user_map())
+    folder = tmp_path / "assets"
+    write_library_blend(folder / "gait-1.blend", library)
+    assert sorted(file.name for file in folder.iterdir()) == ["blender_assets.cats.txt", "gait-1.blend"]
+    (back,) = read_library_blend(folder / "gait-1.blend")
+    assert file_bytes(back, tmp_path) == first
+    assert set(bpy.data.user_map()) == before and mine.name == "Midstance"
+    with bpy.data.libraries.load(str(folder / "gait-1.blend")) as (found, _):
+        kinds = {kind: list(getattr(found, kind)) for kind in dir(found) if kind != "version"}
+    assert [kind for kind, names in kinds.items() if names] == ["actions"]
+    lines = (folder / "blender_assets.cats.txt").read_text().splitlines()
+    paths = [line.split(":")[1] for line in lines if line.count(":") == 2 and not line.startswith("#")]
+    assert paths == ["Keymark", "Keymark/Gait- slow-fast", "Keymark/Gait- slow-fast/Cycle"]
+
+
+def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
+    """A curve, the name and the tags; joints whose curves were not touched keep every digit."""
+    actions = add_assets(library)
+    stored = read_asset(actions[0]).posture
+    fcurve = next(
+        curve
+        for curve in actions[0].layers[0].strips[0].channelbags[0].fcurves
+        if curve.data_path == 'pose.bones["forearm.L"].rotation_euler' and curve.array_index == 0
+    )
+    fcurve.keyframe_points[0].co[1] += 0.25
+    actions[0].name = "Heel Contact"
+    actions[0].asset_data.tags.new("mine")
+    posture = read_asset(actions[0])
+    assert posture.name == "Heel Contact" and posture.tags == ("mine",)
+    flexion = HUMAN.dof_names.index("elbow.L.flexion")
+    change = posture.posture.minus(stored)
+    assert change[flexion] == pytest.approx(0.25, abs=ANGLE)
+    pronation = HUMAN.dof_names.index("forearm.L.pronation")
+    others = [i for i in range(HUMAN.dof_count) if i not in (flexion, pronation)]
+    assert (change[others] == 0.0).all()
+    (back,) = library_from_assets(actions)
+    assert [step.posture for step in back.motions[0].steps][0] == "Heel Contact"
+
+
+def test_a_deleted_asset_leaves_the_motions(library: Library) -> None:
+    """The first step that is left is the motion's beginning."""
+    actions = add_assets(library)
+    bpy.data.actions.remove(actions[0])
+    (back,) = library_from_assets(bpy.data.actions)
+    assert len(back.postures) == 3
+    assert [step.time_s for step in back.motions[0].steps] == pytest.approx([0.0, 0.123456789, 0.246913578])
+    assert len(back.motions[1].steps) == 1
+
+
+def test_the_curves_pose_an_actor_as_the_library_does(library: Library) -> None:
+    """Blender's own way of applying a pose asset, on an actor of the library's proportions."""
+    body = Body(library.actor)
+    actor = build_armature(bpy.context.scene, body)
+    for action, posture in zip(add_assets(library), library.postures, strict=True):
+        actor.pose.apply_pose_from_action(action, evaluation_time=1.0)
+        shown = body.points(body.pose(read_posture(actor, body).posture))
+        assert np.abs(shown - body.points(body.pose(posture.posture))).max() < 1e-5
+
+
+def test_assets_are_seen_as_such(library: Library) -> None:
+    """Catalog, author, licence, description, tags and a picture."""
+    action = add_assets(library)[1]
+    data = action.asset_data
+    assert (data.author, data.license, data.description) == ("Ä. Author", "CC-BY-4.0", "For tests.")
+    assert {tag.name for tag in data.tags} == {"swing", "a, b"}
+    assert tuple(action.preview.image_size) == (256, 256)
+    assert action.use_fake_user
+    assert tuple(action.frame_range) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        (HEADER, "{", "no valid JSON"),
+        (HEADER, "[]", "must hold an object"),
+        (HEADER, "{}", "schema"),
+        (POSTURE, '{"postures": []}', "postures"),
+        (POSTURE, '{"postures": 3}', "postures"),
+        (POSTURE, '{"postures": [{"name": "a", "posture": {"pelvis.location_x": 1e999}}]}', "number"),
+        (POSTURE, "[" * 100_000, "nested too deeply"),
+    ],
+)
+def test_nonsense_in_an_asset_is_one_sentence(library: Library, name: str, value: str, sentence: str) -> None:
+    """Whatever a stranger writes into the custom properties."""
+    action = add_assets(library)[0]
+    action[name] = value
+    with pytest.raises(InputError, match=sentence) as raised:
+        library_from_assets([action])
+    assert "\n" not in str(raised.value)
+
+
+WRONG = (None, True, -1, 10**14, 1e308, "", "x" * 5000, "\u202e", [], [[]], {}, {"a": 1}, [None] * 3)
+
+
+def _spoiled(value: object, rng: np.random.Generator) -> object:
+    """A JSON value with one thing in it, however deep, exchanged for something else or left out."""
+    if not isinstance(value, dict | list) or not value or rng.random() < 0.15:
+        return WRONG[rng.integers(len(WRONG))]
+    keys = list(value) if isinstance(value, dict) else list(range(len(value)))
+    key = keys[rng.integers(len(keys))]
+    spoiled = dict(value) if isinstance(value, dict) else list(value)
+    if rng.random() < 0.2:
+        del spoiled[key]
+    else:
+        spoiled[key] = _spoiled(value[key], rng)
+    return spoiled
+
+
+def test_spoiled_texts_of_an_asset_are_refused_or_read(library: Library) -> None:
+    """Many ways to spoil what an asset says: a library, or one sentence; never anything else."""
+    actions = add_assets(library)[:2]
+    first = actions[0]
+    texts = {name: first[name] for name in (HEADER, POSTURE)}
+    rng = np.random.default_rng(5)
+    refused = 0
+    for turn in range(160):
+        name = (HEADER, POSTURE)[turn % 2]
+        for own, text in texts.items():
+            first[own] = text
+        first[name] = json.dumps(_spoiled(json.loads(texts[name]), rng))
+        try:
+            assert library_from_assets(actions)
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error)
+    assert refused > 80
+
+
+def test_nonsense_in_curves_is_passed_over(library: Library) -> None:
+    """Curves of scripts' paths, values that are no numbers: the posture stays usable."""
+    action = add_assets(library)[0]
+    bag = action.layers[0].strips[0].channelbags[0]
+    bag.fcurves.new('["evil"]', index=0).keyframe_points.insert(1, 5)
+    for curve in bag.fcurves:
+        if "location" in curve.data_path or "quaternion" in curve.data_path:
+            curve.keyframe_points[0].co[1] = float("nan")
+    posture = read_asset(action).posture
+    assert np.isfinite(posture.to_vector()).all()
+
+
+@pytest.mark.parametrize("content", [b"", b"BLENDER", b"BLENDER-v405" + b"x" * 500, b"PK\x03\x04"])
+def test_a_broken_blend_says_so_and_leaves_nothing(tmp_path: Path, content: bytes) -> None:
+    """One sentence; no data-block comes of it."""
+    file = tmp_path / "bad.blend"
+    file.write_bytes(content)
+    before = set(bpy.data.user_map())
+    with pytest.raises(InputError, match="bad.blend"):
+        read_library_blend(file)
+    assert set(bpy.data.user_map()) == before
+
+
+def test_a_cut_off_blend_says_so(library: Library, tmp_path: Path) -> None:
+    """At every place where it may be cut."""
+    write_library_blend(tmp_path / "a.blend", library)
+    whole = (tmp_path / "a.blend").read_bytes()
+    for share in (0.01, 0.3, 0.7, 0.99):
+        (tmp_path / "b.blend").write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises(InputError):
+            read_library_blend(tmp_path / "b.blend")
+    assert not len(bpy.data.actions)
+
+
+def test_a_blend_without_libraries_is_refused(tmp_path: Path) -> None:
+    """Other assets are none of ours, and are gone again afterwards."""
+    action = bpy.data.actions.new("Other")
+    action.asset_mark()
+    bpy.data.libraries.write(str(tmp_path / "other.blend"), {action})
+    bpy.data.actions.remove(action)
+    with pytest.raises(InputError, match="holds no pose assets of a keyframe library"):
+        read_library_blend(tmp_path / "other.blend")
+    assert not len(bpy.data.actions)
+
+
+def test_channels_of_a_posture_are_those_of_the_armature(library: Library) -> None:
+    """Without an armature, the very values that `write_posture` gives one."""
+    body = Body(library.actor)
+    actor = build_armature(bpy.context.scene, body)
+    posture = library.postures[2].posture
+    write_posture(actor, posture)
+    values = channel_values(body, posture)
+    for name, column in values.items():
+        bone = actor.pose.bones[name]
+        turn = bone.rotation_quaternion if bone.rotation_mode == "QUATERNION" else bone.rotation_euler
+        assert np.array(turn) == pytest.approx(column[: len(turn)], abs=2e-6)
+    assert np.array(actor.pose.bones["pelvis"].location) == pytest.approx(values["pelvis"][4:], abs=2e-6)
+    evaluated(actor)
+
+
+def test_the_header_that_all_assets_share_is_read_once(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It holds all motions: read again for each of a thousand postures, it took half a minute."""
+    actions = add_assets(library)
+    read: list[str] = []
+
+    def parse(text: str, where: str) -> dict[str, Any]:
+        read.append(text)
+        return parse_json(text, where)
+
+    pose_assets._parsed.cache_clear()
+    monkeypatch.setattr(pose_assets, "parse_json", parse)
+    assert len(library_from_assets(actions)[0].postures) == 4
+    assert read.count(actions[0][HEADER]) == 1

@@ -1,0 +1,223 @@
+"""Keyframes that matching gave: they count as matched until the animator touches them."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.prior.keyframes import Keyframe, Matched
+from keymark.core.progress import run
+from keymark.core.take.take import Take, read_take, write_take
+from keymark.operators.bridge import posing
+from keymark.operators.bridge.actions import existing_channelbag
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose
+from keymark.operators.bridge.matched_keyframes import (
+    remove_keyframes,
+    take_over,
+    untouched_frames,
+    write_matched,
+)
+from keymark.operators.bridge.pose import read_posture
+from keymark.operators.bridge.take_from_scene import read_scene_take
+from keymark.operators.markers.marker_styles import marker_styles
+from keymark.operators.matching.matches import known_matches
+from keymark.operators.shell.keyed_frames import forget, keyframes_of, matched_frames, posed_frames
+from keymark.operators.shell.takes import active_take, footage_of
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+MATCHED = Matched("walking", "Contact Left", True, 0.625)
+
+
+@pytest.fixture
+def matched_take(tiny_take: Take) -> Take:
+    """The tiny take with its middle keyframe, at frame 7, matched."""
+    first, middle, last = tiny_take.keyframes
+    take = replace(tiny_take, keyframes=(first, replace(middle, matched=MATCHED), last))
+    write_take(take, tiny_take.folder)
+    return take
+
+
+@pytest.fixture
+def take(matched_take: Take) -> bpy.types.PropertyGroup:
+    """That take, opened."""
+    bpy.ops.keymark.open_take(filepath=str(matched_take.folder / "take.json"))
+    return active_take(bpy.context.scene)
+
+
+def keyframes_in(take: bpy.types.PropertyGroup) -> tuple[Keyframe, ...]:
+    """What a reconstruction is given."""
+    scene = bpy.context.scene
+    reading = read_scene_take(
+        footage_of(scene, take),
+        take.armature,
+        take.keyframe_action,
+        marker_styles(take),
+        known_matches(take),
+    )
+    return run(reading)[0].keyframes
+
+
+def matched_in(take: bpy.types.PropertyGroup) -> list[Matched | None]:
+    """What each of them was matched with."""
+    return [keyframe.matched for keyframe in keyframes_in(take)]
+
+
+def key_at(take: bpy.types.PropertyGroup, path: str, index: int, frame: float) -> bpy.types.Keyframe:
+    """A key of the keyframe Action."""
+    curve = existing_channelbag(take.keyframe_action, take.armature).fcurves.find(path, index=index)
+    return next(key for key in curve.keyframe_points if key.co[0] == frame)
+
+
+def test_a_take_with_matched_keyframes_is_opened_and_saved_as_it_was(
+    take: bpy.types.PropertyGroup, matched_take: Take
+) -> None:
+    """File -> scene -> file keeps what each keyframe was matched with, and its posture."""
+    assert keyframes_of(take) == (1.0, 7.0, 13.0)
+    assert (matched_frames(take), posed_frames(take)) == ((7.0,), (1.0, 13.0))
+    bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
+    again = read_take(matched_take.folder / "again")
+    assert [keyframe.matched for keyframe in again.keyframes] == [None, MATCHED, None]
+    for after, before in zip(again.keyframes, matched_take.keyframes, strict=True):
+        assert after.posture.minus(before.posture) == pytest.approx(0.0, abs=1e-5)
+
+
+def test_matches_survive_the_blend_file(take: bpy.types.PropertyGroup, matched_take: Take) -> None:
+    """Saved and loaded, the keyframe is matched still."""
+    file = str(matched_take.folder / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    assert matched_in(active_take(bpy.context.scene)) == [None, MATCHED, None]
+
+
+def test_a_changed_key_makes_the_keyframe_posed(take: bpy.types.PropertyGroup) -> None:
+    """One bone is enough; giving it back its value, as undo does, makes it matched again."""
+    key = key_at(take, 'pose.bones["forearm.L"].rotation_euler', 0, 7.0)
+    before = key.co[1]
+    key.co[1] += 0.01
+    assert matched_in(take) == [None, None, None]
+    key.co[1] = before
+    assert matched_in(take) == [None, MATCHED, None]
+
+
+def test_keying_the_same_frame_by_blender_makes_it_posed(take: bpy.types.PropertyGroup) -> None:
+    """Auto keying changes the value of a key and leaves its type."""
+    bpy.context.scene.frame_set(7)
+    bone = take.armature.pose.bones["chest"]
+    bone.rotation_quaternion = (0.9, 0.3, 0.2, 0.1)
+    bone.keyframe_insert("rotation_quaternion", frame=7)
+    assert matched_in(take) == [None, None, None]
+
+
+def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.PropertyGroup) -> None:
+    """Whoever says when a posture happens has posed it."""
+    for curve in existing_channelbag(take.keyframe_action, take.armature).fcurves:
+        for key in curve.keyframe_points:
+            if key.co[0] == 7.0:
+                key.co_ui[0] = 9.0
+        curve.update()
+    found = keyframes_in(take)
+    assert [(keyframe.index, keyframe.matched) for keyframe in found] == [(0, None), (8, None), (12, None)]
+
+
+def test_a_bone_in_another_rotation_mode_shows_something_else(take: bpy.types.PropertyGroup) -> None:
+    """Its curves say nothing any more, so the posture is not the matched one."""
+    take.armature.pose.bones["chest"].rotation_mode = "XYZ"
+    assert matched_in(take) == [None, None, None]
+
+
+def test_storing_the_pose_makes_it_posed_and_says_so(take: bpy.types.PropertyGroup) -> None:
+    """Store Keyframe accepts the posture as it is."""
+    bpy.context.scene.frame_set(7)
+    bpy.ops.keymark.store_keyframe()
+    assert matched_in(take) == [None, None, None]
+    assert key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0).type == "KEYFRAME"
+
+
+def test_other_lengths_leave_matches_as_they_are(take: bpy.types.PropertyGroup) -> None:
+    """The actor's bones change, its keyframes do not."""
+    take.lengths.forearm_L *= 1.05
+    bpy.ops.keymark.apply_lengths()
+    assert matched_in(take) == [None, MATCHED, None]
+
+
+def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGroup) -> None:
+    """Taken over, they are the animator's own; removed, nothing of the body is keyed there."""
+    armature_object, action = take.armature, take.keyframe_action
+    before = read_at(take, 7)
+    take_over(armature_object, action, HUMAN, (7.0,))
+    assert untouched_frames(armature_object, action, HUMAN) == ()
+    assert read_at(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
+    key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
+    assert key.type == "KEYFRAME" and key.amplitude >= 0.0
+    remove_keyframes(armature_object, action, HUMAN, (7.0,))
+    forget()
+    assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)
+
+
+def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.PropertyGroup) -> None:
+    """Hands and feet have no degrees of freedom: what is keyed there is always the animator's."""
+    armature_object, action = take.armature, take.keyframe_action
+    store_pose(armature_object, action, HUMAN, 7.0)
+    remove_keyframes(armature_object, action, HUMAN, (1.0, 7.0, 13.0))
+    left = {curve.data_path for curve in existing_channelbag(action, armature_object).fcurves}
+    assert left == {
+        f'pose.bones["{bone}"].rotation_quaternion' for bone in ("hand.L", "hand.R", "foot.L", "foot.R")
+    }
+
+
+def test_matched_postures_between_posed_ones_do_not_turn_the_long_way_round(
+    take: bpy.types.PropertyGroup, random_posture: Callable[[int], Posture]
+) -> None:
+    """A quaternion of the other sign is turned, so that curves pass smoothly."""
+    armature_object, action = take.armature, take.keyframe_action
+    bag = existing_channelbag(action, armature_object)
+    curves = [bag.fcurves.find('pose.bones["pelvis"].rotation_quaternion', index=i) for i in range(4)]
+    for curve in curves:
+        for key in curve.keyframe_points:
+            key.co[1] *= -1.0
+        curve.update()
+    posture = random_posture(3)
+    write_matched(armature_object, action, np.array([4.0]), [posture])
+    beside = np.array([[curve.evaluate(frame) for curve in curves] for frame in (1.0, 4.0)])
+    assert beside[0] @ beside[1] > 0.0
+    body_keyframes = read_keyframes(
+        bpy.context.scene, armature_object, action, body_of(take), np.arange(1.0, 14.0)
+    )
+    assert body_keyframes.keyframes[1].posture.minus(posture) == pytest.approx(0.0, abs=1e-5)
+
+
+def body_of(take: bpy.types.PropertyGroup) -> Body:
+    """The actor's body."""
+    return read_body(take.armature, HUMAN)
+
+
+def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
+    """The posture that the actor shows at a frame."""
+    bpy.context.scene.frame_set(frame)
+    return read_posture(take.armature, body_of(take)).posture
+
+
+def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
+    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A matched keyframe says where the body is about, yet nothing of where its sleeves sit."""
+    asked: list[int] = []
+    original = posing.calibrated
+
+    def calibrated(model, seen, posture, frames):  # noqa: ANN001, ANN202
+        asked.append(len(frames))
+        return original(model, seen, posture, frames)
+
+    monkeypatch.setattr(posing, "calibrated", calibrated)
+    bpy.ops.keymark.propose_keyframes()  # reads the clip
+    bpy.context.scene.frame_set(4)
+    assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
+    take_over(take.armature, take.keyframe_action, HUMAN, (7.0,))
+    assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
+    assert asked == [2, 3]

@@ -1,0 +1,70 @@
+"""A .blend from a stranger: pose assets come out of it, and nothing in it runs, auto-run or not."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import bpy
+import pytest
+from keymark.core.body.actor import Actor
+from keymark.core.body.posture import Posture
+from keymark.core.library.library import Library, LibraryPosture
+from keymark.operators.bridge.library.library_blend import read_library_blend
+from keymark.operators.bridge.library.pose_assets import add_assets
+
+RandomPosture = Callable[[int], Posture]
+
+
+@pytest.fixture
+def auto_run() -> Iterator[None]:
+    """The preference that lets scripts of opened files run."""
+    paths = bpy.context.preferences.filepaths
+    before = paths.use_scripts_auto_execute
+    paths.use_scripts_auto_execute = True
+    yield
+    paths.use_scripts_auto_execute = before
+
+
+@pytest.fixture
+def library(random_posture: RandomPosture) -> Library:
+    """A library of one posture."""
+    postures = (LibraryPosture("A", random_posture(1)),)
+    return Library("small", "Small", 1, "A. Person", "CC0-1.0", Actor.from_stature(1.7), postures)
+
+
+def hostile_blend(path: Path, library: Library, proof: Path) -> None:
+    """Pose assets that bring a text to be run on loading and a camera with a driver that writes a file."""
+    source = f"open({str(proof)!r}, 'w').close()"
+    (action,) = add_assets(library)
+    text = bpy.data.texts.new("start.py")
+    text.write(source)
+    text.use_module = True
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    driver = camera.driver_add("location", 0).driver
+    driver.type, driver.expression = "SCRIPTED", f"len([{source}])"
+    action["text"], action["camera"] = text, camera
+    bpy.data.libraries.write(str(path), {action, text, camera}, fake_user=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+
+
+def test_pose_assets_are_read_and_nothing_runs_or_stays(
+    registered: None, auto_run: None, library: Library, tmp_path: Path
+) -> None:
+    """Neither the text nor the driver has run, and neither is in the open file afterwards."""
+    proof = tmp_path / "ran"
+    hostile_blend(tmp_path / "hostile.blend", library, proof)
+    before = set(bpy.data.user_map())
+    (read,) = read_library_blend(tmp_path / "hostile.blend")
+    bpy.context.view_layer.update()
+    assert [posture.name for posture in read.postures] == ["A"]
+    assert not proof.exists()
+    assert set(bpy.data.user_map()) == before
+    assert "start.py" not in bpy.data.texts
+
+
+def test_the_proof_would_be_there_had_it_run(library: Library, tmp_path: Path, auto_run: None) -> None:
+    """What the test above looks for does appear where that file is opened with auto-run."""
+    proof = tmp_path / "ran"
+    hostile_blend(tmp_path / "hostile.blend", library, proof)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hostile.blend"), use_scripts=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert proof.exists()

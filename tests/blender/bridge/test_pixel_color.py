@@ -1,0 +1,25 @@
+"""The colour of a pixel of the frame that the scene shows."""
+
+import bpy
+import numpy as np
+from keymark.core.footage.camera import Camera
+from keymark.core.take.take import Take
+from keymark.operators.bridge.footage import Footage
+from keymark.operators.bridge.footage_to_scene import show_footage
+from keymark.operators.bridge.pixel_color import footage_color
+
+
+def test_another_frame_has_another_colour_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
+    """The frame that the scene shows is the one that is read."""
+    shown = show_footage(bpy.context.scene, camera, tiny_take.clip, tiny_take.fps, 1, 13)
+    footage = Footage(bpy.context.scene, bpy.context.scene.active_clip, shown)
+    pose = tiny_take.body.pose(tiny_take.keyframes[0].posture)
+    elbow, wrist = tiny_take.body.segment_ends(pose, "forearm.L")
+    pixel, _ = camera.project(0.5 * (elbow + wrist))
+    bpy.context.scene.frame_set(1)
+    first = np.array(footage_color(footage, pixel))
+    bpy.context.scene.frame_set(13)
+    last = np.array(footage_color(footage, pixel))
+    red = np.array(tiny_take.markers[1].color_srgb)
+    assert np.abs(first - red).max() < 40
+    assert np.abs(last - red).max() > 40

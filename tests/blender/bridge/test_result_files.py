@@ -1,0 +1,133 @@
+"""The .blend and the BVH that a conversion writes."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.errors import ConversionError
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
+from keymark.operators.bridge import result_files
+from keymark.operators.bridge.result_files import write_scene
+
+
+@pytest.fixture
+def written(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> Path:
+    """A folder beside the take with both files."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    write_scene(tiny_take, wave_motion, folder / "motion.blend", folder / "motion.bvh")
+    return folder
+
+
+def test_the_file_reopens_with_the_motion_on_the_actor(
+    written: Path, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
+) -> None:
+    """Every frame of the reopened file shows the motion's points."""
+    bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
+    actor = next(o for o in bpy.data.objects if o.type == "ARMATURE")
+    assert actor.animation_data.action_slot is not None
+    for frame, points in zip(wave_motion.scene_frames, wave_motion.points, strict=True):
+        bpy.context.scene.frame_set(int(frame))
+        assert shown_points(actor) == pytest.approx(points, abs=1e-5)
+
+
+def test_the_file_has_footage_behind_its_camera(written: Path) -> None:
+    """The clip is found by a relative path; range and camera are set."""
+    bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
+    scene = bpy.context.scene
+    (clip,) = bpy.data.movieclips
+    assert clip.filepath == "//../tiny/clip.mp4"
+    assert tuple(clip.size) == (160, 120)
+    assert (scene.frame_start, scene.frame_end) == (1, 13)
+    assert scene.camera.data.background_images[0].clip == clip
+    assert scene.active_clip == clip
+
+
+def test_the_body_wears_the_markers_colours(written: Path) -> None:
+    """One material a marker, in its colour, on a mesh that the armature moves."""
+    bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
+    mesh = next(o for o in bpy.data.objects if o.type == "MESH")
+    assert [m.name for m in mesh.data.materials][1:] == [
+        "trunk",
+        "forearm.L",
+        "forearm.R",
+        "shin.L",
+        "shin.R",
+    ]
+    assert mesh.modifiers[0].object.type == "ARMATURE"
+    used = {polygon.material_index for polygon in mesh.data.polygons}
+    assert used == set(range(6))
+
+
+def test_the_file_is_compressed(written: Path) -> None:
+    """It begins with Zstandard's magic number."""
+    assert (written / "motion.blend").read_bytes()[:4] == b"\x28\xb5\x2f\xfd"
+
+
+def test_the_bvh_holds_every_frame_and_comes_back_right(
+    written: Path, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
+) -> None:
+    """Imported again, the bones lie where the motion's points are."""
+    lines = (written / "motion.bvh").read_text().splitlines()
+    assert "Frames: 13" in lines
+    assert float(next(line for line in lines if "Frame Time" in line).split()[-1]) == pytest.approx(0.04)
+    bpy.ops.import_anim.bvh(filepath=str(written / "motion.bvh"), axis_forward="Y", axis_up="Z")
+    actor = next(o for o in bpy.data.objects if o.type == "ARMATURE")
+    for frame in (1, 7, 13):
+        bpy.context.scene.frame_set(frame)
+        assert shown_points(actor) == pytest.approx(wave_motion.points[frame - 1], abs=1e-4)
+
+
+def test_the_open_file_is_not_touched(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> None:
+    """What is open in Blender, its scene and its data, is the same afterwards."""
+    mine = bpy.data.objects.new("Actor", bpy.data.meshes.new("Actor"))
+    bpy.context.collection.objects.link(mine)
+    scene = bpy.context.scene
+    before = {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS}
+    write_scene(tiny_take, wave_motion, tmp_path / "motion.blend", tmp_path / "motion.bvh")
+    assert {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS} == before
+    assert bpy.context.scene == scene
+    assert bpy.context.view_layer.objects.get("Actor") == mine
+
+
+KINDS = [
+    "scenes",
+    "objects",
+    "meshes",
+    "armatures",
+    "cameras",
+    "materials",
+    "actions",
+    "movieclips",
+    "worlds",
+]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(
+    tmp_path: Path, tiny_take: Take, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Files are moved into place whole; the temporary scene is gone as well."""
+    target = tmp_path / "motion.blend"
+    target.write_bytes(b"old")
+
+    def fail(path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
+        path.write_bytes(b"half")
+        raise ConversionError("the disk is full")
+
+    monkeypatch.setattr(result_files, "write_blend", fail)
+    with pytest.raises(ConversionError, match="disk is full"):
+        write_scene(tiny_take, wave_motion, target, None)
+    assert target.read_bytes() == b"old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["motion.blend", "tiny"]
+    assert len(bpy.data.scenes) == 1
+
+
+def test_a_folder_that_is_not_there_is_one_sentence(
+    tmp_path: Path, tiny_take: Take, wave_motion: Motion
+) -> None:
+    """Blender's own error is turned into ours."""
+    with pytest.raises(ConversionError, match="could not write"):
+        write_scene(tiny_take, wave_motion, tmp_path / "nowhere" / "motion.blend", None)

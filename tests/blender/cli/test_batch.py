@@ -1,0 +1,212 @@
+"""Batches with real workers: several processes, failures, kills and interruptions, the very same results."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import pytest
+from _shoot import write_shoot
+from keymark.core.take.conversion_record import read_record
+from keymark.operators.cli.batch import command
+from keymark.operators.cli.main import main
+
+TESTS = Path(__file__).resolve().parents[2]
+GOOD = ("day1/take01", "day1/take02", "day1/take03")
+THIS_TREE = """
+import sys
+sys.path.insert(0, {tests!r})
+from _boot import load_package
+load_package()
+from keymark.operators.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+pytestmark = pytest.mark.skipif(
+    bool(bpy.app.binary_path),
+    reason="a Blender program's own Python has no bpy; tests/real_blender runs batches in it",
+)
+
+
+@pytest.fixture(scope="module")
+def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three good takes, one that is no video and one whose keyframes are cut off."""
+    folder = write_shoot(tmp_path_factory.mktemp("batch") / "shoot", takes=3)
+    (folder / "day1" / "text.mp4").write_text("this is no video", encoding="utf-8")
+    shutil.copytree(folder / "day1" / "take03", folder / "day2" / "cut off")
+    os.truncate(folder / "day2" / "cut off" / "keyframes.json", 40)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def results(shoot: Path) -> Path:
+    """The shoot's results, by one worker."""
+    out = shoot.parent / "one"
+    assert main(["batch", str(shoot), "--output", str(out), "--jobs", "1", "--quiet"]) == 1
+    return out
+
+
+def tree(folder: Path) -> dict[str, Any]:
+    """Every file below a folder but for what tells of the run, and .blend files, which name their folder."""
+    found: dict[str, Any] = {}
+    for file in sorted(folder.rglob("*")):
+        if file.is_file() and file.suffix != ".blend" and not file.name.startswith(("summary.", ".as_made")):
+            found[file.relative_to(folder).as_posix()] = file.read_bytes()
+    for name in [name for name in found if name.endswith("conversion.json")]:
+        found[name] = json.loads(found[name])
+        del found[name]["files"]["motion.blend"]
+    return found
+
+
+def leftovers(folder: Path) -> list[Path]:
+    """What a process that was killed has left half-done."""
+    return [path for path in folder.rglob(".*") if path.name not in (".keymark", ".as_made.json")]
+
+
+def batch(shoot: Path, out: Path, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, Any]:
+    """Run `keymark batch --json`; returns status and what it says."""
+    status = main(["batch", str(shoot), "--output", str(out), "--json", *more])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def statuses(said: Any) -> dict[str, str]:
+    """The status of each take."""
+    return {take["take"]: take["status"] for take in said["takes"]}
+
+
+def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
+    """Every good take has its files as recorded; the bad ones have nothing, and a sentence in the summary."""
+    for name in GOOD:
+        record = read_record(results / name)
+        assert all((results / name / file).stat().st_size > 0 for file in record.files)
+        assert {"motion.json", "motion.blend", "motion.bvh"} <= set(record.files)
+    lines = (results / "summary.jsonl").read_text(encoding="utf-8").splitlines()
+    errors = {row["take"]: row["error"] for row in map(json.loads, lines)}
+    assert list(errors) == [*GOOD, "day1/text", "day2/cut off"]
+    assert "text.mp4" in errors["day1/text"] and "keyframes.json: line" in errors["day2/cut off"]
+    assert not (results / "day1" / "text").exists() and not (results / "day2").exists()
+    assert not leftovers(results)
+
+
+def test_two_workers_give_the_same_bytes_as_one(
+    shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Motions, records and failures, whoever made them and in whatever order."""
+    out = shoot.parent / "two"
+    status, said = batch(shoot, out, capsys, "--jobs", "2")
+    assert status == 1 and said["counts"] == {"converted": 3, "unchanged": 0, "failed": 2, "waiting": 0}
+    assert tree(out) == tree(results)
+
+
+def test_what_is_converted_is_skipped_until_its_input_changes(
+    shoot: Path, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A run on a copy leaves every file alone; other keyframes or a lost file are reason to convert."""
+    own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
+    shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
+    (own / "day1" / "text.mp4").unlink()
+    out = Path(shutil.copytree(results, tmp_path / results.name))
+    before = {file: file.stat().st_mtime_ns for file in (out / "day1").rglob("*.json")}
+    status, said = batch(own, out, capsys, "--jobs", "1")
+    assert status == 0 and statuses(said) == dict.fromkeys(GOOD, "unchanged")
+    assert {file: file.stat().st_mtime_ns for file in (out / "day1").rglob("*.json")} == before
+    posed = own / "day1" / "take02.keyframes.json"
+    value = json.loads(posed.read_text(encoding="utf-8"))
+    value["keyframes"] = value["keyframes"][:2]
+    posed.write_text(json.dumps(value), encoding="utf-8")
+    (out / "day1" / "take03" / "motion.bvh").unlink()
+    status, said = batch(own, out, capsys, "--jobs", "1")
+    assert status == 0
+    assert statuses(said) == dict(zip(GOOD, ("unchanged", "converted", "converted"), strict=True))
+    status, said = batch(own, out, capsys, "--jobs", "1", "--again", "--take", GOOD[0])
+    assert statuses(said) == {GOOD[0]: "converted"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")
+def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
+    shoot: Path,
+    results: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Killed once a take converts all the same, to the same bytes; killed twice it alone fails."""
+    for death in ("take01-1", "take02-1", "take02-2"):
+        (tmp_path / death).touch()
+    words = [sys.executable, str(TESTS / "_dying_worker.py"), str(tmp_path)]
+    monkeypatch.setattr(command, "worker_words", lambda: words)
+    out = shoot.parent / "killed"
+    chosen = [word for name in GOOD for word in ("--take", name)]
+    status, said = batch(shoot, out, capsys, "--jobs", "2", *chosen)
+    assert status == 1 and list(tmp_path.iterdir()) == []
+    assert statuses(said) == dict(zip(GOOD, ("converted", "failed", "converted"), strict=True))
+    assert "was killed by SIGKILL" in said["takes"][1]["error"]
+    status, said = batch(shoot, out, capsys, "--jobs", "1")
+    assert statuses(said) == {
+        **dict(zip(GOOD, ("unchanged", "converted", "unchanged"), strict=True)),
+        "day1/text": "failed",
+        "day2/cut off": "failed",
+    }
+    assert tree(out) == tree(results) and not leftovers(out)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to one process")
+def test_an_interrupted_batch_is_whole_and_goes_on(
+    shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By Ctrl-C, and again when it is asked to end; the same command then does the rest."""
+    out = shoot.parent / "interrupted"
+    interrupt(shoot, out, os.killpg, signal.SIGINT)
+    interrupt(shoot, out, os.kill, signal.SIGTERM)
+    status, said = batch(shoot, out, capsys, "--jobs", "1")
+    assert status == 1 and said["counts"]["failed"] == 2
+    assert tree(out) == tree(results)
+
+
+def interrupt(shoot: Path, out: Path, send: Callable[[int, int], None], how: int) -> None:
+    """Interrupt a batch at its first take: status 130, one line, no process left and nothing half-written."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", THIS_TREE.format(tests=str(TESTS)), "batch", str(shoot), "--output", str(out)]
+        + ["--jobs", "2"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    first = process.stdout.readline()
+    send(process.pid, how)
+    _, wrong = process.communicate()
+    assert first.startswith("[1/5]") and process.returncode == 130
+    (line,) = wrong.splitlines()
+    assert "of 5 takes are converted" in line
+    with pytest.raises(ProcessLookupError):
+        os.killpg(process.pid, 0)
+    assert not leftovers(out)
+
+
+def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
+    """A worker whose batch is gone stops at the next thing it would have told, and cleans up."""
+    words = [*command.worker_words()]
+    worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert worker.stdin is not None and worker.stdout is not None
+    assert b"ready" in worker.stdout.readline()
+    from keymark.core.shoot.finding.find_takes import find_takes
+    from keymark.core.take.conversion_settings import NOTHING_CHOSEN
+    from keymark.operators.cli.batch.protocol import Job
+
+    take = find_takes(shoot).takes[0]
+    worker.stdout.close()
+    worker.stdin.write(Job(take, tmp_path / "out", NOTHING_CHOSEN).to_line())
+    worker.stdin.flush()
+    assert worker.wait() == 130
+    worker.stdin.close()
+    assert worker.stderr is not None
+    worker.stderr.close()
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,74 @@
+"""The footage in a viewport: all of it beside the sidebar, and what stands in front of it."""
+
+from math import sqrt
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from keymark.core.take.take import Take
+from keymark.operators.footage.camera_view import camera_view, free_box, picture_at_factor_one
+from keymark.operators.footage.occluding_objects import names_in_the_way
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+REGION = (1000, 600)
+
+
+def region(kind: str, x: int, y: int, width: int, height: int) -> SimpleNamespace:
+    """A part of an area."""
+    return SimpleNamespace(type=kind, x=x, y=y, width=width, height=height)
+
+
+def test_panels_take_their_room() -> None:
+    """A sidebar right, tools left, headers on top or below; one that is folded or beside takes none."""
+    window = region("WINDOW", 100, 50, *REGION)
+    sidebar, tools = region("UI", 850, 50, 250, 600), region("TOOLS", 100, 50, 40, 600)
+    header, beside = region("HEADER", 100, 620, 1000, 30), region("UI", 1100, 50, 200, 600)
+    assert free_box(SimpleNamespace(regions=[window, sidebar, tools, header]), window) == (40, 0, 750, 570)
+    assert free_box(SimpleNamespace(regions=[window, beside, region("UI", 1099, 50, 1, 1)]), window) == (
+        *(0, 0),
+        *REGION,
+    )
+    wide = region("UI", 200, 50, 900, 600)
+    assert free_box(SimpleNamespace(regions=[window, wide]), window) == (0, 0, *REGION)
+
+
+@pytest.mark.parametrize("picture", [(1920.0, 1080.0), (1080.0, 1920.0), (960.0, 912.0)])
+@pytest.mark.parametrize("sensor_fit", ["HORIZONTAL", "VERTICAL", "AUTO"])
+def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fit: str) -> None:
+    """Centred there, touching the margin on one pair of sides and within it on the other."""
+    free = (40.0, 0.0, 750.0, 570.0)
+    whole = picture_at_factor_one(REGION, picture, sensor_fit)
+    zoom, offset = camera_view(REGION, free, whole)
+    factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
+    edges = []
+    for axis in (0, 1):
+        centre = 0.5 * REGION[axis] - 2.0 * factor * offset[axis] * REGION[axis]
+        half = 0.5 * factor * whole[axis]
+        edges.append((centre - half - free[axis], free[axis + 2] - centre - half))
+    assert min(min(pair) for pair in edges) == pytest.approx(12.0)
+    assert all(pair[0] == pytest.approx(pair[1]) for pair in edges)
+
+
+def test_what_hides_the_performer_is_named_and_left_alone(tiny_take: Take) -> None:
+    """Blender's cube does; hidden, drawn as wire, behind the camera or beside the picture it does not."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    context, cube = bpy.context, bpy.data.objects["Cube"]
+    take = active_take(context.scene)
+
+    def hiding() -> list[str]:
+        context.view_layer.update()
+        return names_in_the_way(context, take)
+
+    assert hiding() == ["Cube"]
+    assert cube.visible_get()
+    cube.display_type = "WIRE"
+    assert hiding() == []
+    cube.display_type = "TEXTURED"
+    for place in ((0.0, -50.0, 0.0), (30.0, 0.0, 0.0)):
+        cube.location = place
+        assert hiding() == []
+    cube.location = (0.0, 0.0, 0.0)
+    cube.hide_set(True)
+    assert hiding() == []

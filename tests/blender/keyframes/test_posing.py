@@ -1,0 +1,333 @@
+"""Building, measuring and posing the actor over the footage, scripted as an animator would press it."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.body.human import HUMAN
+from keymark.core.body.standing_posture import hip_height_m, standing_height_m
+from keymark.core.errors import InputError
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
+from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
+from keymark.operators.markers.marker_styles import marker_styles
+from keymark.operators.shell.keyed_frames import posed_frames, unposed
+from keymark.operators.shell.results import reading_of
+from keymark.operators.shell.takes import active_take, footage_of
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture
+def opened(tiny_take: Take) -> bpy.types.Scene:
+    """The scene with the tiny take opened."""
+    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
+    return bpy.context.scene
+
+
+@pytest.fixture
+def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
+    """The same without an actor."""
+    take = active_take(opened)
+    bpy.data.objects.remove(take.armature)
+    take.armature = take.keyframe_action = None
+    return opened
+
+
+def posture_of(scene: bpy.types.Scene):  # noqa: ANN201
+    """What the actor shows."""
+    armature_object = active_take(scene).armature
+    return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
+
+
+def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
+    """Mean distance of the 13 points from the truth at a scene frame."""
+    body = motion.body
+    return float(
+        np.linalg.norm(body.points(body.pose(posture_of(scene))) - motion.points[frame - 1], axis=-1).mean()
+    )
+
+
+def test_one_click_stands_the_actor_at_the_performer(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion
+) -> None:
+    """The hips within decimetres along the view, and much nearer across it."""
+    unposed_scene.frame_set(1)
+    assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
+    true = wave_motion.posture.translation[0]
+    found = posture_of(unposed_scene).translation
+    assert abs(found[1] - true[1]) < 0.5
+    assert np.linalg.norm((found - true)[[0, 2]]) < 0.12
+
+
+def test_without_footage_the_actor_stands_at_the_origin() -> None:
+    """In an empty scene, with a take of its own."""
+    bpy.ops.keymark.build_actor(stature=1.6)
+    scene = bpy.context.scene
+    body = read_body(active_take(scene).armature, HUMAN)
+    np.testing.assert_allclose(posture_of(scene).translation, [0.0, 0.0, hip_height_m(body)], atol=1e-5)
+    assert active_take(scene).lengths.trunk == pytest.approx(0.285 * 1.6)
+
+
+def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.types.Scene) -> None:
+    """No second armature, no key lost, no pose moved."""
+    take = active_take(opened)
+    armature_object, action = take.armature, take.keyframe_action
+    opened.frame_set(7)
+    before, keys = posture_of(opened), keyed_frames(armature_object, action, HUMAN)
+    objects = len(bpy.data.objects)
+    bpy.ops.keymark.build_actor(stature=1.9)
+    assert (take.armature, take.keyframe_action, len(bpy.data.objects)) == (armature_object, action, objects)
+    assert keyed_frames(armature_object, action, HUMAN) == keys
+    assert read_body(armature_object, HUMAN).actor.stature_m == pytest.approx(1.9, rel=1e-4)
+    opened.frame_set(7)
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-4)
+
+
+def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
+    """Symmetric ones come in pairs; nonsense is refused by the property itself."""
+    take = active_take(opened)
+    take.lengths.symmetric = True
+    take.lengths.forearm_L = 0.31
+    assert take.lengths.forearm_R == pytest.approx(0.31)
+    take.lengths.symmetric = False
+    take.lengths.shin_R = 0.5
+    assert take.lengths.shin_L != pytest.approx(0.5)
+    bpy.ops.keymark.apply_lengths()
+    segments = read_body(take.armature, HUMAN).actor.segments_m
+    assert (segments["forearm.R"], segments["shin.R"]) == pytest.approx((0.31, 0.5), rel=1e-4)
+
+
+def test_a_standing_performer_is_measured_from_two_pixels(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion, tiny_take: Take
+) -> None:
+    """Place to a few centimetres, height exactly."""
+    unposed_scene.frame_set(1)
+    body = wave_motion.body
+    hips = wave_motion.posture.translation[0]
+    ground = hips - [0.0, 0.0, hip_height_m(body)]
+    height = standing_height_m(body)
+    head, floor = tiny_take.camera.project(np.stack([ground + [0.0, 0.0, height], ground]))[0]
+    result = bpy.ops.keymark.measure_actor(stature=height, head_pixel=head, floor_pixel=floor)
+    assert result == {"FINISHED"}
+    found = posture_of(unposed_scene).translation
+    assert np.linalg.norm(found - hips) < 0.12
+    assert standing_height_m(read_body(active_take(unposed_scene).armature, HUMAN)) == pytest.approx(height)
+    with pytest.raises(RuntimeError, match="below the ground"):
+        bpy.ops.keymark.measure_actor(stature=height, head_pixel=floor, floor_pixel=head)
+
+
+@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "STANDING"])
+def test_fitting_brings_the_pose_to_the_markers(
+    opened: bpy.types.Scene, wave_motion: Motion, start: str
+) -> None:
+    """Between two keyframes, from whatever start; no key is set, and a redraw keeps the pose."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
+    write_posture(take.armature, rough)
+    before = off_m(opened, wave_motion, 4)
+    keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    assert bpy.ops.keymark.fit_pose(start=start) == {"FINISHED"}
+    fitted = posture_of(opened)
+    assert off_m(opened, wave_motion, 4) < (0.25 if start == "STANDING" else 0.8 * before)
+    bpy.context.view_layer.update()
+    bpy.context.evaluated_depsgraph_get().update()
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
+    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == keys
+    assert take.armature.animation_data.action == take.keyframe_action
+
+
+def test_what_was_fitted_is_stored_and_read_back(opened: bpy.types.Scene) -> None:
+    """The key holds the pose although other keys surround it."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    bpy.ops.keymark.fit_pose()
+    fitted = posture_of(opened)
+    bpy.ops.keymark.store_keyframe()
+    opened.frame_set(1)
+    opened.frame_set(4)
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-4)
+    assert 4.0 in posed_frames(take)
+
+
+def test_the_first_keyframe_is_fitted_from_standing(
+    unposed_scene: bpy.types.Scene, wave_motion: Motion
+) -> None:
+    """Nothing is keyed yet: nearest keyframes means standing."""
+    unposed_scene.frame_set(5)
+    bpy.ops.keymark.build_actor(stature=1.72)
+    before = off_m(unposed_scene, wave_motion, 5)
+    bpy.ops.keymark.fit_pose()
+    assert off_m(unposed_scene, wave_motion, 5) < 0.95 * before
+
+
+def test_fitting_outside_the_footage_says_where_it_is(opened: bpy.types.Scene) -> None:
+    """And leaves the pose."""
+    opened.frame_set(40)
+    before = posture_of(opened)
+    with pytest.raises(RuntimeError, match="whose frames are 1 to 13"):
+        bpy.ops.keymark.fit_pose()
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-9)
+
+
+def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.types.Scene) -> None:
+    """The pose of the motion becomes a keyframe; the motion's Action gets no key."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    assert take.armature.animation_data.action == take.motion_action
+    opened.frame_set(4)
+    shown = posture_of(opened)
+    bpy.ops.keymark.store_keyframe()
+    assert take.armature.animation_data.action == take.keyframe_action
+    assert 4.0 in keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    assert keyed_frames(take.armature, take.motion_action, HUMAN) == ()
+    np.testing.assert_allclose(posture_of(opened).minus(shown), 0.0, atol=1e-4)
+
+
+def test_fitting_while_the_motion_is_shown_shows_the_keyframes(opened: bpy.types.Scene) -> None:
+    """The fitted pose is what is seen, not the Action's."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    opened.frame_set(4)
+    bpy.ops.keymark.fit_pose(start="STANDING")
+    fitted = posture_of(opened)
+    assert take.armature.animation_data.action == take.keyframe_action
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
+    opened.frame_set(4)
+    assert np.abs(posture_of(opened).minus(fitted)).max() > 0.01
+
+
+def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.Scene) -> None:
+    """A key moved in the Dope Sheet counts at its new frame."""
+    take = active_take(opened)
+    take.proposals.clear()
+    for frame in (1, 4, 7, 10, 13):
+        take.proposals.add().frame = frame
+    assert posed_frames(take) == (1.0, 7.0, 13.0)
+    assert unposed(take) == [4, 10]
+    opened.frame_set(4)
+    bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
+    assert opened.frame_current == 10
+    bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
+    assert opened.frame_current == 4
+    for fcurve in take.keyframe_action.layers[0].strips[0].channelbags[0].fcurves:
+        fcurve.keyframe_points[1].co.x = 4.0
+        fcurve.update()
+    take.keyframe_action.update_tag()
+    bpy.context.view_layer.update()
+    assert posed_frames(take) == (1.0, 4.0, 13.0)
+    assert unposed(take) == [7, 10]
+
+
+def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
+    """And the count with it."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.keymark.store_keyframe()
+    bpy.ops.ed.undo_push(message="stored")
+    assert 4.0 in posed_frames(take)
+    bpy.ops.ed.undo()
+    take = active_take(bpy.context.scene)
+    assert 4.0 not in posed_frames(take)
+
+
+def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.types.Scene) -> None:
+    """Applying them to another one would otherwise make it the old one's size."""
+    from keymark.core.body.actor import Actor
+    from keymark.core.body.kinematics import Body
+    from keymark.operators.bridge.armature import build_armature
+
+    take = active_take(opened)
+    other = build_armature(opened, Body(Actor.from_stature(1.2)))
+    take.armature = other
+    assert take.lengths.trunk == pytest.approx(0.285 * 1.2, rel=1e-4)
+    bpy.ops.keymark.apply_lengths()
+    assert read_body(other, HUMAN).actor.stature_m == pytest.approx(1.2, rel=1e-4)
+
+
+def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
+    """Keys on the camera that leave it where the footage was taken from in this frame alone."""
+    take = active_take(opened)
+    camera = take.camera
+    for frame, aside in ((1, 0.6), (4, 0.0), (13, 0.9)):
+        camera.location.x = camera.location.x + aside
+        camera.keyframe_insert("location", frame=frame)
+        camera.location.x = camera.location.x - aside
+    opened.frame_set(4)
+    write_posture(take.armature, wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25)))
+    before = off_m(opened, wave_motion, 4)
+    bpy.ops.keymark.fit_pose(start="POSE")
+    assert off_m(opened, wave_motion, 4) < 0.8 * before
+
+
+def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.Scene) -> None:
+    """Blender forgets unkeyed poses when it goes to another frame; no performer's is lost."""
+    take = active_take(opened)
+    opened.frame_set(5)
+    camera = take.camera
+    camera.keyframe_insert("location", frame=1)
+    camera.location.x += 0.01
+    camera.keyframe_insert("location", frame=13)
+    take.armature.pose.bones["head"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    before = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    frame = frame_in_footage(footage_of(opened, take), marker_styles(take))
+    fit_to_frame(frame, take.armature, take.keyframe_action, "POSE")
+    bpy.context.view_layer.update()
+    after = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
+    np.testing.assert_allclose(after, before, atol=1e-6)
+
+
+def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.Scene) -> None:
+    """A linked copy of the scene shows the same actor at a frame of its own."""
+    opened.frame_set(1)
+    first = posture_of(opened)
+    bpy.ops.scene.new(type="LINK_COPY")
+    copy = bpy.context.scene
+    assert copy != opened and opened in active_take(copy).armature.users_scene
+    copy.frame_set(7)
+    apart = np.abs(posture_of(copy).minus(first)).max()
+    opened_again = read_keyframes(
+        copy,
+        active_take(copy).armature,
+        active_take(copy).keyframe_action,
+        read_body(active_take(copy).armature, HUMAN),
+        np.arange(1.0, 14.0),
+    ).keyframes
+    assert apart > 0.01
+    assert np.abs(opened_again[0].posture.minus(opened_again[1].posture)).max() > 0.01
+
+
+def test_posed_frames_are_those_of_this_very_action(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Not of one that had the same name before."""
+    take = active_take(opened)
+    before, name = posed_frames(take), take.keyframe_action.name
+    assert len(before) == len(tiny_take.keyframes)
+    bpy.data.actions.remove(take.keyframe_action)
+    take.keyframe_action = bpy.data.actions.new(name)
+    assert take.keyframe_action.name == name and posed_frames(take) == ()
+
+
+def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy.types.Scene) -> None:
+    """It does not lie outside the footage; the nearest frame is named."""
+    take = active_take(opened)
+    bpy.ops.keymark.propose_keyframes()
+    reading = reading_of(take)
+    stretched = reading.tracks.time_s.copy()
+    stretched[6:] += 2.0 / 25.0
+    varying = replace(reading, tracks=replace(reading.tracks, time_s=stretched))
+    opened.frame_set(7)
+    with pytest.raises(InputError, match="no frame of its own at 7; go to frame 6"):
+        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)
+    opened.frame_set(40)
+    with pytest.raises(InputError, match="lies outside the footage"):
+        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)

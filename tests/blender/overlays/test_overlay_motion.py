@@ -1,0 +1,271 @@
+"""What the overlays of the motion consist of, without a screen."""
+
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from keymark.core.body.human import HUMAN
+from keymark.core.review.review import Review
+from keymark.operators.overlays import motion
+from keymark.operators.overlays.clip_editor import ClipView
+from keymark.operators.overlays.legend import Sample, corner, legend
+from keymark.operators.overlays.paths import paths, window
+from keymark.operators.overlays.picture import Fill, Label, Stroke, merged
+from keymark.operators.overlays.skeleton import skeleton
+from keymark.operators.overlays.style import SMALLEST, Style, body_scale
+from keymark.operators.overlays.viewport import world_view
+from keymark.operators.shell import results, takes
+from keymark.operators.shell.footage_view import FootageView
+from mathutils import Matrix, Vector
+
+FRAMES = 40
+STYLE = Style(opacity=1.0, width=1.5, scale=1.0)
+FOOTAGE = FootageView(None, (320, 240), np.array([10.0, 490.0]), np.array([640.0, -480.0]), None)
+CAMERA_VIEW = ClipView(FOOTAGE, np.eye(4), 400.0)
+
+
+@pytest.fixture
+def review() -> Review:
+    """Forty frames in which the second marker is hidden from the eleventh on and the head is uncertain."""
+    rng = np.random.default_rng(4)
+    turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    centres = rng.uniform(80.0, 160.0, (FRAMES, 2, 1, 2))
+    observed = centres + 10.0 * ring
+    observed[10:, 1] = np.nan
+    points = rng.uniform(-0.5, 0.5, (FRAMES, 13, 3)) - [0.0, 0.0, 4.0]
+    sigma = np.full((FRAMES, 13), 0.02)
+    sigma[:, HUMAN.point_names.index("head")] = 0.09
+    return Review(
+        frames=np.arange(FRAMES) + 5.0,
+        size=(320, 240),
+        marker_names=("trunk", "shin.L"),
+        point_names=HUMAN.point_names,
+        observed=observed,
+        predicted=centres + 12.0 * ring,
+        points=points,
+        image_points=np.array([160.0, 120.0]) + 400.0 * points[..., :2] / 4.0,
+        sigma_m=sigma,
+        reprojection_px=np.zeros((FRAMES, 2)),
+        nearness=np.ones(FRAMES),
+        speed=np.ones(FRAMES),
+        confidence=np.ones(FRAMES),
+        keyframe_indices=np.array([0, 12, 39]),
+        weak_frames=(),
+    )
+
+
+@pytest.fixture
+def scene(registered: None, review: Review, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Scene:
+    """A scene with a take of two markers whose motion the review describes."""
+    scene = bpy.context.scene
+    take = takes.add_take(scene, "Take")
+    for name, color in (("shin.L", (1.0, 0.0, 0.0)), ("trunk", (0.0, 1.0, 0.0))):
+        marker = take.markers.add()
+        marker.name, marker.color = name, color
+    monkeypatch.setattr(motion, "review_of", lambda asked: review if asked == take else None)
+    return scene
+
+
+def drawn(scene: bpy.types.Scene, view: ClipView = CAMERA_VIEW) -> list:
+    """Everything that is drawn at the scene's frame."""
+    region = SimpleNamespace(x=0, y=0, width=800, height=600, alignment="NONE")
+    context = SimpleNamespace(area=SimpleNamespace(regions=[region], type="VIEW_3D"), region=region)
+    return motion.picture(context, motion.shown(scene), view, scene.keymark.overlays)
+
+
+def words(items: list) -> list[str]:
+    """What is written."""
+    return [item.words for item in items if isinstance(item, Label)]
+
+
+def switch(scene: bpy.types.Scene, *on: str) -> None:
+    """Show these parts alone."""
+    settings = scene.keymark.overlays
+    for part in ("observed", "predicted", "skeleton", "paths", "legend"):
+        setattr(settings, f"show_{part}", part in on)
+
+
+def test_the_frame_that_the_scene_shows_is_drawn(scene: bpy.types.Scene) -> None:
+    """Clips do not begin at frame 0; outside of the clip nothing is drawn."""
+    scene.frame_set(5)
+    assert motion.shown(scene).index == 0
+    scene.frame_set(20, subframe=0.4)
+    assert motion.shown(scene).index == 15
+    scene.frame_set(4)
+    assert motion.shown(scene) is None
+    scene.frame_set(45)
+    assert motion.shown(scene) is None
+
+
+def test_outlines_have_their_markers_colours_and_lie_on_the_footage(scene: bpy.types.Scene) -> None:
+    """By name, whatever the order in the list; the picture's top left corner is where the region has it."""
+    switch(scene, "observed")
+    scene.frame_set(5)
+    first, second = drawn(scene)
+    assert first.color[:3] == (0.0, 1.0, 0.0)
+    assert second.color[:3] == (1.0, 0.0, 0.0)
+    what = motion.shown(scene)
+    centre = what.review.observed[0, 0].mean(axis=0)
+    assert first.segments.mean(axis=(0, 1)) == pytest.approx([10 + 2 * centre[0], 490 - 2 * centre[1]])
+
+
+def test_a_hidden_marker_is_named_where_it_is_predicted(scene: bpy.types.Scene) -> None:
+    """Its prediction stays, dashed; the legend names it as well."""
+    switch(scene, "observed", "predicted", "legend")
+    scene.frame_set(5)
+    assert not any("idden" in line for line in words(drawn(scene)))
+    scene.frame_set(20)
+    items = drawn(scene)
+    assert "shin.L hidden" in words(items)
+    assert "Hidden: shin.L" in words(items)
+    trunk_seen, shin_seen, *predicted = [item for item in items if isinstance(item, Stroke)][:4]
+    assert len(shin_seen.segments) == 0
+    assert all(len(stroke.segments) > 8 for stroke in predicted)
+    inked = np.linalg.norm(np.diff(predicted[0].segments, axis=1), axis=-1).sum()
+    whole = np.linalg.norm(np.diff(trunk_seen.segments, axis=1), axis=-1).sum() * 1.2
+    assert inked == pytest.approx(0.6 * whole, rel=0.05)
+
+
+def test_without_the_footage_there_are_no_outlines(scene: bpy.types.Scene) -> None:
+    """A viewport seen from elsewhere shows the skeleton and explains no more than that."""
+    region = SimpleNamespace(width=800, height=600)
+    looking = SimpleNamespace(perspective_matrix=Matrix.Identity(4), view_matrix=Matrix.Identity(4))
+    scene.frame_set(20)
+    lines = words(drawn(scene, world_view(region, looking, None)))
+    assert lines == ["Uncertain point", "Performer's right", "Performer's left"]  # from the bottom up
+
+
+def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:
+    """Nothing at all, with everything off."""
+    scene.frame_set(20)
+    switch(scene)
+    assert drawn(scene) == []
+    switch(scene, "paths")
+    scene.keymark.overlays.path_points = {"head"}
+    one = discs(drawn(scene))
+    scene.keymark.overlays.path_points = {"head", "ankle.R"}
+    assert discs(drawn(scene)) == 2 * one > 0
+
+
+def discs(items: list) -> int:
+    """How many polygons are filled."""
+    return sum(len(item.corners) for item in items if isinstance(item, Fill))
+
+
+def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
+    """The others are discs."""
+    places = CAMERA_VIEW.places(review, np.array([3]))[0]
+    metre = CAMERA_VIEW.pixels_per_metre(review, 3)
+    items = skeleton(review, 3, places, metre, 0.05, STYLE)
+    assert discs(items) == 12
+    circle = items[-1].segments.reshape(-1, 2)
+    head = review.point_names.index("head")
+    assert np.linalg.norm(circle - places[head], axis=-1) == pytest.approx(0.09 * metre[head], rel=0.01)
+    assert metre[head] == pytest.approx(2.0 * 400.0 / -review.points[3, head, 2])
+    unknown = SimpleNamespace(point_names=review.point_names, sigma_m=np.full_like(review.sigma_m, np.nan))
+    items = skeleton(unknown, 3, places, metre, 0.05, STYLE)
+    assert discs(items) == 13
+
+
+def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
+    """Dots on frames, diamonds on keyframes, nothing beyond the clip."""
+    frames = window(12, 15, 4, FRAMES)
+    assert frames.tolist() == list(range(17))
+    assert window(38, 2, 10, FRAMES).tolist() == [36, 37, 38, 39]
+    places = np.stack([30.0 * frames, np.full(len(frames), 7.0)], axis=-1)
+    items = paths(["wrist.L"], places[None], frames, 12, np.array([0, 12, 39]), STYLE)
+    past, ahead, dots, _, marks = items
+    assert past.segments[..., 0].max() == pytest.approx(360.0)
+    assert len(past.segments) == 12
+    assert ahead.segments[..., 0].min() == pytest.approx(360.0)
+    inked = np.diff(ahead.segments[..., 0], axis=1).sum()
+    assert inked == pytest.approx(0.6 * 120.0)
+    assert len(dots.corners) == 15
+    assert marks.corners.mean(axis=1) == pytest.approx(np.array([[0.0, 7.0], [360.0, 7.0]]))
+
+
+def test_the_viewports_projection_is_blenders() -> None:
+    """Place by place, and nothing behind the viewer."""
+    region = SimpleNamespace(width=640, height=480)
+    view = Matrix.LocRotScale(Vector((0.3, -1.0, 0.5)), Matrix.Rotation(0.7, 3, "X").to_quaternion(), None)
+    lens = Matrix(((1.9, 0, 0.1, 0), (0, 2.5, 0.0, 0), (0, 0, -1.01, -0.2), (0, 0, -1, 0)))
+    looking = SimpleNamespace(perspective_matrix=lens @ view.inverted(), view_matrix=view.inverted())
+    seen = world_view(region, looking, None)
+    points = np.random.default_rng(8).normal(size=(20, 3)) * 2.0
+    places = seen.project(points)
+    before = 0
+    for point, place in zip(points, places, strict=True):
+        expected = location_3d_to_region_2d(region, looking, Vector(point))
+        if expected is None:
+            assert np.isnan(place).all()
+        else:
+            before += 1
+            assert place == pytest.approx(tuple(expected), rel=1e-4, abs=0.01)
+    assert 3 < before < 20
+    at = view @ Vector((0.1, 0.2, -3.0))
+    beside = view @ Vector((0.2, 0.2, -3.0))
+    pair = SimpleNamespace(points=np.array([[at, beside]], dtype=float))
+    here, there = seen.places(pair, np.array([0]))[0]
+    assert seen.pixels_per_metre(pair, 0)[0] == pytest.approx(10.0 * np.linalg.norm(there - here), rel=1e-4)
+
+
+def test_a_far_body_is_drawn_finer() -> None:
+    """Down to a limit; points behind the viewer do not count."""
+    assert body_scale(np.array([200.0, np.nan, 300.0]), 1.0) == 1.0
+    assert body_scale(np.array([80.0]), 1.0) == pytest.approx(0.5)
+    assert body_scale(np.array([160.0]), 2.0) == pytest.approx(0.5)
+    assert body_scale(np.array([1.0]), 1.0) == SMALLEST
+
+
+def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
+    """Empty, it is nothing."""
+    assert legend((), 40.0, 30.0, STYLE) == ()
+    rows = [(sample, f"Like {sample.value}, explained at length") for sample in Sample]
+    ground, *rest = legend(tuple(rows), 40.0, 30.0, STYLE)
+    assert len(words(rest)) == len(rows)
+    low, high = ground.corners[0].min(axis=0), ground.corners[0].max(axis=0)
+    labels = [item for item in rest if isinstance(item, Label)]
+    assert all(low[1] < label.y < high[1] - 8.0 and low[0] < label.x < high[0] for label in labels)
+
+
+def test_neighbours_that_are_alike_are_drawn_at_once() -> None:
+    """With their own colours, in their order; different ones are not mixed."""
+    line = np.zeros((2, 2, 2))
+    red, blue = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
+    thin = [Stroke(line, red, 1.0), Stroke(line + 1.0, [blue, red], 1.0)]
+    items = merged([*thin, Stroke(line, red, 2.0), Label("x", 0.0, 0.0), Fill(np.zeros((3, 4, 2)), blue)])
+    assert [type(item) for item in items] == [Stroke, Stroke, Label, Fill]
+    assert items[0].segments[:, 0, 0].tolist() == [0.0, 0.0, 1.0, 1.0]
+    assert items[0].color.tolist() == [list(color) for color in (red, red, blue, red)]
+    squares = merged(
+        [Fill(np.zeros((1, 4, 2)), red), Fill(np.zeros((2, 4, 2)), blue), Fill(np.zeros((1, 8, 2)), red)]
+    )
+    assert [len(item.corners) for item in squares] == [3, 1]
+
+
+def test_the_legend_keeps_clear_of_what_covers_the_region() -> None:
+    """A toolbar at the left, the panel of the last operator at the bottom; a closed one covers nothing."""
+
+    def other(kind: str, alignment: str, x: int, y: int, width: int, height: int) -> SimpleNamespace:
+        return SimpleNamespace(type=kind, alignment=alignment, x=x, y=y, width=width, height=height)
+
+    own = other("WINDOW", "NONE", 100, 50, 800, 600)
+    tools, panel = other("TOOLS", "LEFT", 100, 50, 60, 600), other("HUD", "FLOAT", 170, 50, 200, 40)
+    closed = other("TOOLS", "LEFT", 100, 50, 1, 1)
+    alone = corner(SimpleNamespace(type="VIEW_3D", regions=[own, closed]), own, 1.0)
+    x, y = corner(SimpleNamespace(type="VIEW_3D", regions=[own, tools, panel]), own, 1.0)
+    assert (x - alone[0], y - alone[1]) == (60.0, 40.0)
+    assert corner(SimpleNamespace(type="CLIP_EDITOR", regions=[own]), own, 1.0)[1] > alone[1]
+
+
+def test_a_lost_review_draws_nothing(registered: None) -> None:
+    """A file from another machine: the key is there, the result is not."""
+    scene = bpy.context.scene
+    assert motion.shown(scene) is None
+    take = takes.add_take(scene, "Take")
+    take.review_key = "review-" + 32 * "0"
+    results.forget()
+    assert motion.shown(scene) is None

@@ -1,0 +1,89 @@
+"""Handing draw functions to Blender, and what happens when one fails."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from keymark.core.errors import InputError
+from keymark.operators.overlays import registry
+from keymark.operators.overlays.registry import Overlay, guarded
+
+BROKEN = Overlay("Broken", "broken", "SpaceView3D")
+
+
+@pytest.fixture(autouse=True)
+def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What the handlers set blending to; without a window the real thing is not there."""
+    modes: list[str] = []
+    monkeypatch.setattr(registry, "gpu", SimpleNamespace(state=SimpleNamespace(blend_set=modes.append)))
+    registry.try_again()
+    return modes
+
+
+def test_a_failure_is_logged_once_and_switches_the_overlay_off(
+    caplog: pytest.LogCaptureFixture, blending: list[str]
+) -> None:
+    """The second redraw does not even try; another go is given on demand."""
+    calls = []
+
+    def draw(context: bpy.types.Context) -> None:
+        calls.append(context)
+        raise ValueError("no such marker")
+
+    handler = guarded(BROKEN, draw)
+    handler()
+    handler()
+    assert len(calls) == len(caplog.records) == 1
+    assert "'Broken' failed" in caplog.text
+    assert registry.failures() == {"Broken": "no such marker"}
+    assert blending == ["ALPHA", "NONE"]
+    registry.try_again()
+    handler()
+    assert len(calls) == 2
+
+
+def test_another_overlay_goes_on(blending: list[str]) -> None:
+    """One that fails takes no other with it."""
+    calls = []
+
+    def draw(context: bpy.types.Context) -> None:
+        raise ValueError
+
+    guarded(BROKEN, draw)()
+    guarded(Overlay("Sound", "sound", "SpaceView3D"), calls.append)()
+    assert calls == [bpy.context]
+    assert registry.failures() == {"Broken": "ValueError"}
+    assert blending == ["ALPHA", "NONE"] * 2
+
+
+def test_every_overlay_can_be_handed_to_blender() -> None:
+    """Spaces and modules exist; Blender takes each handler and gives it back."""
+    from importlib import import_module
+
+    for overlay in registry.OVERLAYS:
+        draw = import_module(f"keymark.operators.overlays.{overlay.module}").draw
+        space = getattr(bpy.types, overlay.space)
+        handler = space.draw_handler_add(guarded(overlay, draw), (), overlay.region, overlay.phase)
+        space.draw_handler_remove(handler, overlay.region)
+
+
+def test_without_a_screen_no_handler_is_added() -> None:
+    """Tests, render farms and the command line draw nothing."""
+    registry.register()
+    assert registry._handlers == []
+    registry.unregister()
+
+
+def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
+    """A camera of a kind that no footage has, say: no error, and no overlay that stays off."""
+    calls = []
+
+    def draw(context: bpy.types.Context) -> None:
+        calls.append(context)
+        raise InputError("camera 'Camera' is of type ORTHO; footage needs a perspective one")
+
+    handler = guarded(BROKEN, draw)
+    handler()
+    handler()
+    assert len(calls) == 2 and not registry.failures()
+    assert blending == ["ALPHA", "NONE"] * 2

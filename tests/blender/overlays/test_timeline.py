@@ -1,0 +1,143 @@
+"""What is drawn over the timeline: figures as arrays, and what of a take is shown."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from _review import made_up_review
+from keymark.core.footage.reading import Reading
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.take.take import Take
+from keymark.operators.overlays.picture import Fill, Label, Stroke
+from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
+from keymark.operators.overlays.timeline_figures import believed_color, graph, in_view, joined, strip
+from keymark.operators.shell.keyed_frames import is_posed
+from keymark.operators.shell.results import keep_reading, keep_review
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+VIEW = Timeline(origin=20.0, scale=10.0, width=200.0, height=60.0, pixel=1.0, sizes=ROOMY)
+
+
+@pytest.fixture
+def take(tiny_take: Take) -> bpy.types.PropertyGroup:
+    """The tiny take opened, with three keyframes at 1, 7 and 13."""
+    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
+    return active_take(bpy.context.scene)
+
+
+def reading(frames: int = 13) -> Reading:
+    """One marker that stands still, jumps by five pixels in the middle and stands again."""
+    centroid = np.zeros((frames, 1, 2))
+    centroid[frames // 2 :, 0, 0] = 5.0
+    ones = np.ones((frames, 1))
+    second = np.broadcast_to(np.eye(2), (frames, 1, 2, 2))
+    tracks = RegionTracks(
+        ("trunk",), centroid, second, ones, ones, ones > 1.0, np.arange(frames) / 25.0, (160, 120)
+    )
+    return Reading(tracks, key="reading-of-this-test")
+
+
+def items_of(take: bpy.types.PropertyGroup, kind: type, view: Timeline = VIEW) -> list:
+    """What is drawn of one kind."""
+    return [item for item in picture(bpy.context.scene, take, view) if isinstance(item, kind)]
+
+
+def test_a_take_of_which_nothing_is_known_draws_nothing(take: bpy.types.PropertyGroup) -> None:
+    """No reading, no review, no proposals."""
+    assert picture(bpy.context.scene, take, VIEW) == []
+
+
+def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
+    """A diamond each, at its frame; of those only the keyed ones are filled."""
+    for frame in (1, 4, 7):
+        take.proposals.add().frame = frame
+    (outline,), (filled,) = items_of(take, Stroke), items_of(take, Fill)
+    assert len(outline.segments) == 3 * 4
+    assert filled.corners.mean(axis=1)[:, 0] == pytest.approx([30.0, 90.0])
+    assert [is_posed(take, frame) for frame in (1.0, 4.0, 7.4)] == [True, False, True]
+    bpy.context.scene.keymark.timeline.show_proposals = False
+    assert items_of(take, Fill) == []
+
+
+def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -> None:
+    """It comes from what was last read of the clip; proposals then stand on it."""
+    keep_reading(take, reading())
+    area = items_of(take, Fill)[0]
+    heights = area.corners[:, 3, 1] - VIEW.floor
+    assert heights.argmax() in (5, 6) and heights.max() <= VIEW.height and heights[0] < 1.0
+    assert [label.words for label in items_of(take, Label)] == ["Speed of markers"]
+    take.proposals.add().frame = 7
+    *_, diamond = items_of(take, Fill)
+    assert diamond.corners[0, :, 1].mean() - VIEW.floor > 0.5 * VIEW.height
+    assert items_of(take, Label, replace(VIEW, sizes=SLIM)) == []
+    bpy.context.scene.keymark.timeline.show_speed = False
+    *_, diamond = items_of(take, Fill)
+    assert diamond.corners[0, :, 1].mean() == pytest.approx(VIEW.floor)
+
+
+def test_confidence_is_told_by_height_and_colour(take: bpy.types.PropertyGroup) -> None:
+    """The lowest bar stands in the middle, where the review is least sure."""
+    keep_review(take, made_up_review())
+    bpy.context.scene.keymark.timeline.show_speed = False
+    ground, bars = items_of(take, Fill)
+    heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
+    assert heights == pytest.approx(ROOMY.strip * made_up_review().confidence)
+    (across, up), reach = ground.corners[0].T, (VIEW.places([0.5]), VIEW.places([13.5]))
+    assert (across.min(), across.max()) == (pytest.approx(reach[0]), pytest.approx(reach[1]))
+    assert np.ptp(up) == pytest.approx(ROOMY.strip)
+    assert bars.color[0, 2] > bars.color[6, 2] and bars.color[6, 0] > bars.color[0, 0]
+    keep_review(take, replace(made_up_review(), confidence=np.full(13, np.nan)))
+    assert items_of(take, Fill) == []
+
+
+def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -> None:
+    """A triangle each."""
+    for frame in (4.0, 9.0):
+        take.review.weak_frames.add().frame = frame
+    assert len(items_of(take, Fill)[0].corners) == 2
+    take.review.weak_frames[0].frame = 7.0  # where a keyframe is
+    (triangle,) = items_of(take, Fill)[0].corners
+    assert triangle[0, 0] == pytest.approx(110.0) and triangle[0, 1] < triangle[1:, 1].min()
+
+
+def test_a_long_clip_is_drawn_no_finer_than_can_be_seen() -> None:
+    """Fewer places than pixels, and the extremes survive."""
+    x, values = np.linspace(0.0, 300.0, 3000), np.full(3000, 0.9)
+    values[1234] = 0.1
+    places, lowest = joined(x, values, lowest=True)
+    assert len(places) <= 201 and lowest.min() == 0.1
+    assert joined(x, values, lowest=False)[1].min() == 0.9
+    assert len(joined(x[:10] * 100.0, values[:10], lowest=True)[0]) == 10
+
+
+def test_only_what_the_region_shows_is_drawn() -> None:
+    """With one frame more on each side, so that lines leave it."""
+    x = np.arange(-100.0, 500.0, 10.0)
+    shown = x[in_view(x, 200.0)]
+    assert (shown[0], shown[-1]) == (-10.0, 200.0)
+
+
+def test_figures_keep_gaps() -> None:
+    """A frame of which nothing is known has no bar and no area."""
+    values = np.array([0.5, np.nan, 1.0])
+    bars, _ = strip(np.arange(3.0), values, 0.0, 10.0)
+    assert np.isnan(bars).any((1, 2)).tolist() == [False, True, False]
+    _, area = graph(np.arange(3.0), values, 0.0, 10.0)
+    assert np.isnan(area).any((1, 2)).all()
+
+
+def test_colours_and_heights_stay_in_range() -> None:
+    """Also for values beyond what is usual."""
+    colors = believed_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
+    assert colors.min() >= 0.0 and colors.max() <= 1.0
+    heights = relative(np.array([0.0, 1.0, 1.0, 50.0, np.nan]))
+    assert np.nanmax(heights) <= 1.0 and np.isnan(heights[-1])
+
+
+def test_the_editors_modes_exist() -> None:
+    """Blender has not renamed them."""
+    known = {item.identifier for item in bpy.types.SpaceDopeSheetEditor.bl_rna.properties["mode"].enum_items}
+    assert set(MODES) - {"TIMELINE"} <= known

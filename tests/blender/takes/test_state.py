@@ -1,0 +1,245 @@
+"""What Keymark keeps in a file: its versions, other scenes and files, links, overrides and undo."""
+
+from pathlib import Path
+
+import bpy
+import keymark
+import pytest
+from keymark.core.take.take import Take
+from keymark.operators.bridge.armature import build_armature
+from keymark.operators.shell.takes import VERSION, active_take, add_take
+from keymark.operators.takes.upgrade import is_newer, tell_apart
+
+RIG = "tiny Actor"
+
+
+def open_take(take: Take) -> bpy.types.PropertyGroup:
+    """The active take of a scene with a take opened."""
+    assert bpy.ops.keymark.open_take(filepath=str(take.folder)) == {"FINISHED"}
+    return active_take(bpy.context.scene)
+
+
+def save_and_reopen(path: Path) -> bpy.types.Scene:
+    """The scene as another session would find it."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    return bpy.context.scene
+
+
+def wear_red(take: bpy.types.PropertyGroup) -> None:
+    """The one marker of the tiny take that is red."""
+    bpy.ops.keymark.add_marker()
+    take.markers[0].segment, take.markers[0].color = "forearm.L", (220 / 255, 40 / 255, 40 / 255)
+
+
+@pytest.fixture
+def rig_file(registered: None, tiny_take: Take, tmp_path: Path) -> Path:
+    """A .blend whose rig has keyframes, and an empty file in which it is to be used."""
+    open_take(tiny_take)
+    path = tmp_path / "rig.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return path
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_file_says_its_version_and_keeps_its_takes(tiny_take: Take, tmp_path: Path) -> None:
+    """Saved and opened again."""
+    identifier = open_take(tiny_take).identifier
+    scene = save_and_reopen(tmp_path / "scene.blend")
+    take = active_take(scene)
+    assert (scene.keymark.version, take.identifier, len(take.markers)) == (VERSION, identifier, 5)
+    assert take.armature.animation_data.action == take.keyframe_action
+    assert not is_newer(scene)
+
+
+@pytest.mark.usefixtures("registered")
+def test_what_a_newer_keymark_wrote_is_left_alone(tiny_take: Take, tmp_path: Path) -> None:
+    """The version stays, so does everything else; working on does not call it older."""
+    take = open_take(tiny_take)
+    take.identifier = ""  # as if it meant something else by then
+    bpy.context.scene.keymark.version = VERSION + 1
+    scene = save_and_reopen(tmp_path / "scene.blend")
+    assert is_newer(scene)
+    assert active_take(scene).identifier == ""
+    add_take(scene, "Another")
+    assert scene.keymark.version == VERSION + 1
+
+
+class OldMarker(bpy.types.PropertyGroup):
+    """A marker as version 0 had it."""
+
+    segment: bpy.props.EnumProperty(items=[("trunk", "", ""), ("head", "", "")])
+    name: bpy.props.StringProperty()
+    color: bpy.props.FloatVectorProperty(size=3)
+
+
+class OldSettings(bpy.types.PropertyGroup):
+    """A scene's settings as version 0 had them, for one performer."""
+
+    armature: bpy.props.PointerProperty(type=bpy.types.Object)
+    stature: bpy.props.FloatProperty()
+    keyframe_action: bpy.props.PointerProperty(type=bpy.types.Action)
+    method: bpy.props.EnumProperty(items=[("map", "", ""), ("ekf", "", "")])
+    markers: bpy.props.CollectionProperty(type=OldMarker)
+
+
+def test_a_file_of_one_performer_becomes_a_take(tmp_path: Path, body, tiny_take: Take) -> None:  # noqa: ANN001
+    """Version 0 kept in the scene what a take keeps now; saved again it stays as it is."""
+    for old in (OldMarker, OldSettings):
+        bpy.utils.register_class(old)
+    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=OldSettings)
+    scene = bpy.context.scene
+    scene.keymark.armature = build_armature(scene, body)
+    scene.keymark.keyframe_action = bpy.data.actions.new("Posed")
+    scene.keymark.stature, scene.keymark.method = 1.62, "ekf"
+    for segment in ("trunk", "head"):
+        marker = scene.keymark.markers.add()
+        marker.name, marker.segment, marker.color = f"my {segment}", segment, (0.25, 0.5, 0.75)
+    scene.active_clip = bpy.data.movieclips.load(str(tiny_take.clip))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
+    del bpy.types.Scene.keymark
+    for old in (OldSettings, OldMarker):
+        bpy.utils.unregister_class(old)
+    keymark.register()
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+        for _ in range(2):
+            take = active_take(bpy.context.scene)
+            assert (take.armature.name, take.keyframe_action.name, take.method) == ("Actor", "Posed", "ekf")
+            assert take.stature == pytest.approx(1.62)
+            assert [marker.name for marker in take.markers] == ["my trunk", "my head"]
+            assert take.markers[0].segment == "trunk"
+            assert tuple(take.markers[1].color) == (0.25, 0.5, 0.75)
+            assert take.clip == bpy.context.scene.active_clip
+            assert (len(bpy.context.scene.keymark.takes), bpy.context.scene.keymark.version) == (1, VERSION)
+            save_and_reopen(tmp_path / "new.blend")
+    finally:
+        keymark.unregister()
+
+
+def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) -> None:
+    """The file's data outlives the definitions."""
+    keymark.register()
+    identifier = open_take(tiny_take).identifier
+    keymark.unregister()
+    keymark.register()
+    take = active_take(bpy.context.scene)
+    assert (take.identifier, len(take.markers), take.armature.name) == (identifier, 5, RIG)
+    keymark.unregister()
+
+
+def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
+    """With its Action; another keyframe goes into it, and it is reconstructed."""
+    with bpy.data.libraries.load(str(rig_file)) as (_source, target):
+        target.objects = [RIG]
+    scene = bpy.context.scene
+    rig = target.objects[0]
+    scene.collection.objects.link(rig)
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    take = active_take(scene)
+    take.armature, take.keyframe_action = rig, rig.animation_data.action
+    keys = len(take.keyframe_action.layers[0].strips[0].channelbags[0].fcurves[0].keyframe_points)
+    scene.frame_set(4)
+    assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
+    curve = take.keyframe_action.layers[0].strips[0].channelbags[0].fcurves[0]
+    assert len(curve.keyframe_points) == keys + 1
+    wear_red(take)
+    take.method = "interpolation"
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+
+
+def test_a_linked_rig_asks_for_an_override(rig_file: Path, tiny_take: Take) -> None:
+    """One sentence, before anything is tried."""
+    with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
+        target.objects = [RIG]
+    scene = bpy.context.scene
+    scene.collection.objects.link(target.objects[0])
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    active_take(scene).armature = target.objects[0]
+    for operator in (bpy.ops.keymark.store_keyframe, bpy.ops.keymark.show_action):
+        with pytest.raises(RuntimeError, match="make a library override of it first"):
+            operator()
+
+
+def test_a_library_override_is_an_actor(rig_file: Path, tiny_take: Take, tmp_path: Path) -> None:
+    """Keyframes, motion, and both after the file is opened again; the library's file stays untouched."""
+    with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
+        target.objects = [RIG]
+    before = rig_file.read_bytes()
+    scene = bpy.context.scene
+    rig = target.objects[0].override_create(remap_local_usages=True)
+    scene.collection.objects.link(rig)
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    take = active_take(scene)
+    take.armature = rig
+    for frame in (1, 13):
+        scene.frame_set(frame)
+        assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
+    assert take.keyframe_action.library is None
+    wear_red(take)
+    take.method = "interpolation"
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    assert rig.animation_data.action == take.motion_action
+    take = active_take(save_and_reopen(tmp_path / "using.blend"))
+    assert take.armature.override_library is not None
+    assert take.armature.animation_data.action == take.motion_action
+    assert take.armature.animation_data.action_slot is not None
+    assert rig_file.read_bytes() == before
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
+    """Its take points to the copies, and reconstructing there leaves the first scene's actor."""
+    first = open_take(tiny_take)
+    first.method = "interpolation"
+    bpy.ops.scene.new(type="FULL_COPY")
+    copied = active_take(bpy.context.scene)
+    first = active_take(bpy.data.scenes["Scene"])
+    assert copied.armature != first.armature
+    assert copied.armature.name in bpy.context.scene.objects
+    assert copied.camera == bpy.context.scene.camera != first.camera
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    assert copied.motion_action is not None
+    assert first.motion_action is None
+    assert first.armature.animation_data.action == first.keyframe_action
+    tell_apart(bpy.data.scenes)  # as when the file is opened the next time
+    assert copied.identifier != first.identifier
+
+
+@pytest.mark.usefixtures("registered")
+def test_everything_can_be_undone(tiny_take: Take, tmp_path: Path) -> None:
+    """Step by step back to the empty scene, and every state once more forward."""
+
+    def state() -> tuple[object, ...]:
+        scene = bpy.context.scene
+        takes = [
+            (take.name, take.clip and take.clip.filepath, take.guessed_lens_mm, take.clip_state.missing)
+            for take in scene.keymark.takes
+        ]
+        return takes, scene.keymark.active_take, scene.frame_end, scene.render.fps, len(bpy.data.objects)
+
+    other = tmp_path / "other.mp4"
+    other.write_bytes(tiny_take.clip.read_bytes())
+    steps = (
+        lambda: bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)),
+        lambda: bpy.ops.keymark.keep_lens(),
+        lambda: bpy.ops.keymark.relocate_clip(filepath=str(other)),
+        lambda: bpy.ops.keymark.add_performer(),
+        lambda: bpy.ops.keymark.open_take(filepath=str(tiny_take.folder)),
+        lambda: setattr(bpy.context.scene.keymark, "active_take", 0),
+        lambda: bpy.ops.keymark.remove_take(delete_data=True),
+    )
+    bpy.ops.ed.undo_push(message="empty")
+    states = [state()]
+    for step in steps:
+        step()
+        bpy.ops.ed.undo_push(message="step")
+        states.append(state())
+    assert all(was != now for was, now in zip(states, states[1:], strict=False))
+    for wanted in states[-2::-1]:
+        bpy.ops.ed.undo()
+        assert state() == wanted
+    for wanted in states[1:]:
+        bpy.ops.ed.redo()
+        assert state() == wanted

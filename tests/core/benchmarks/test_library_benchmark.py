@@ -1,0 +1,52 @@
+"""What the benchmark of keyframe libraries computes before it prints it."""
+
+import sys
+from dataclasses import replace
+
+import pytest
+from _boot import ROOT
+from _synthetic_take import write_synthetic_take
+
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+import matching as bench  # noqa: E402
+from keymark.core.library.library_file import read_library  # noqa: E402
+from keymark.core.library.registry import SHIPPED  # noqa: E402
+from trials import Trial  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
+    """A small synthetic take, read as if nobody had posed anything."""
+    return bench.read_unposed(write_synthetic_take(tmp_path_factory.mktemp("libraries") / "take", 24))
+
+
+def test_every_library_that_fits_a_take_is_shipped() -> None:
+    """A wrong name would be noticed only when that take is measured."""
+    shipped = {path.stem for path in SHIPPED.glob("*.json")}
+    assert {name for names in bench.FITTING.values() for name in names} <= shipped
+
+
+def test_nothing_that_was_posed_is_used(trial: Trial) -> None:
+    """Neither as a keyframe nor to look for markers, and every frame is scored."""
+    assert trial.take.keyframes == () and trial.unscored == ()
+
+
+def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None:
+    """The frames that are posed exactly do not count, and the table has the shares that it names."""
+    found = bench.measure("waves", trial, read_library(SHIPPED / "waving.json"))
+    assert (found.unposed.keyframes, found.two.keyframes, found.both.keyframes) == (0, 2, 2)
+    assert found.unposed.coverage95 is not None and found.matching_ms > 0.0
+    better = replace(found, both=replace(found.both, mpjpe=0.4 * found.two.mpjpe))
+    assert "| 0.40 |" in bench.accuracy_table({"waves": better})
+
+
+def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
+    """A take that shows something known must be recognised; others may go without a library."""
+    found = bench.choose("walk", trial, [read_library(SHIPPED / "walking.json")])
+    assert found.right is True and found.chosen == "walking"
+    assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]
+    assert bench.is_right("dance", bench.NONE) is None
+    assert "(wrong)" in bench.choice_table(
+        {"reach": replace(found, right=bench.is_right("reach", "walking"))}
+    )

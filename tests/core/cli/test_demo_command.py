@@ -1,0 +1,70 @@
+"""`keymark demo`: converts the take that comes along and scores it, here with a small take in its place."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from _synthetic_take import write_synthetic_take
+from keymark.core.review.score import read_truth, score_points
+from keymark.core.take.motion_file import read_motion
+from keymark.core.take.take import read_take
+from keymark.operators.cli import demo
+from keymark.operators.cli.main import main
+
+FRAMES = 16
+
+
+@pytest.fixture
+def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small take in the demonstration's place, and two empty files in place of Blender's."""
+    folder = write_synthetic_take(tmp_path / "demo", FRAMES)
+    shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
+
+    monkeypatch.setattr(demo, "DEMO", folder)
+    monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
+    return folder
+
+
+def test_it_scores_every_method_by_the_motion_it_wrote(
+    take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The score of `map` is that of motion.json against truth.json; the others stand beside it."""
+    assert main(["demo", "--output", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    motion = read_motion(tmp_path / "out" / "motion.json")
+    truth = read_truth(take / "truth.json", motion.frame_start, FRAMES)
+    camera = read_take(take).camera
+    score = score_points(motion.points, truth, motion.keyframe_indices, camera, motion.sigma_m).to_dict()
+    known = {name: value for name, value in score.items() if value is not None}
+    assert {name: said["scores_mm"]["map"][name] for name in known} == pytest.approx(
+        known, rel=1e-3, abs=1e-3
+    )
+    assert set(said["scores_mm"]) == {"interpolation", "ekf", "map"}
+    assert said["scores_mm"]["interpolation"]["coverage95"] is None
+    assert all(scores["mpjpe"] > 0.0 for scores in said["scores_mm"].values())
+
+
+def test_it_says_where_to_look(take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The text has a row of numbers for each method and names the .blend and the pictures."""
+    assert main(["demo", "--output", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    rows = {
+        line.split()[0]: line.split()[1:]
+        for line in said.splitlines()
+        if line.startswith("  ") and line.split()
+    }
+    for method in ("interpolation", "ekf", "map"):
+        assert len([float(value) for value in rows[method]]) == len(demo.COLUMNS)
+    for place in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report"):
+        assert str(place) in said and place.exists()
+
+
+def test_an_installation_without_it_is_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where the demonstration is missing, status is 2 and nothing is made."""
+    monkeypatch.setattr(demo, "DEMO", tmp_path / "nowhere")
+    assert main(["demo", "--output", str(tmp_path / "out")]) == 2
+    assert "demonstration take is missing" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,217 @@
+"""`keymark library`: what is listed, said and made, and that mistakes are one line with status 2."""
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from _libraries import small_library
+from _synthetic_take import BODY, true_postures
+from keymark.core.library.library_file import read_library, write_library
+from keymark.core.take.motion import Motion
+from keymark.core.take.motion_file import write_motion
+from keymark.operators.cli.library import folders
+from keymark.operators.cli.main import main
+
+FRAMES = 40
+
+
+@pytest.fixture(autouse=True)
+def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with one library and one broken file; nothing else is on the shelf."""
+    folder = tmp_path / "shelf"
+    folder.mkdir()
+    write_library(folder / "any name.json", small_library())
+    (folder / "broken.json").write_text("{", encoding="utf-8")
+    monkeypatch.setenv(folders.VARIABLE, str(folder))
+    monkeypatch.setattr(folders, "SHIPPED", tmp_path / "nothing")
+    return folder
+
+
+@pytest.fixture
+def motion(tmp_path: Path) -> Path:
+    """A motion that does not come again."""
+    posture = true_postures(FRAMES)
+    points = BODY.points(BODY.pose(posture))
+    unknown = np.full((*points.shape, 3), np.nan)
+    made = Motion(BODY, 30.0, 1, np.arange(FRAMES) / 30.0, posture, points, unknown, (0,), "interpolation")
+    write_motion(made, tmp_path / "motion.json")
+    return tmp_path / "motion.json"
+
+
+def run(*words: object) -> int:
+    """Run `keymark library`."""
+    return main(["library", *map(str, words)])
+
+
+def test_the_list_says_what_cannot_be_used(capsys: pytest.CaptureFixture[str]) -> None:
+    """Status 0: other libraries can be used all the same."""
+    assert run("list") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(
+        re.match(r"small_steps +Small steps, große Schritte, 3 postures, 2 motions", line) for line in lines
+    )
+    assert any(line.startswith("broken") and "cannot be used" in line for line in lines)
+    assert run("list", "--json") == 0
+    rows = {row["identifier"]: row for row in json.loads(capsys.readouterr().out)["libraries"]}
+    assert rows["small_steps"]["postures"] == 3 and rows["small_steps"]["problem"] == ""
+    assert "line 1" in rows["broken"]["problem"]
+
+
+def test_a_library_is_shown_by_name_and_by_file(
+    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its motions with their times; the sheet is a picture."""
+    said = []
+    for name in ("small_steps", shelf / "any name.json"):
+        assert run("show", name) == 0
+        said.append(capsys.readouterr().out)
+    assert said[0] == said[1]
+    assert "Steps: 3 postures, again and again, 1.00 s" in said[0] and "CC0-1.0" in said[0]
+    assert run("show", "small_steps", "--json", "--sheet", tmp_path / "sheet.png") == 0
+    result = json.loads(capsys.readouterr().out)
+    assert [motion["cyclic"] for motion in result["motions"]] == [True, False]
+    picture = cv2.imread(str(tmp_path / "sheet.png"))
+    assert picture is not None and picture.shape[1] > 300
+
+
+def test_checking_names_every_broken_file(
+    shelf: Path, motion: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 2 and one line with all of them, and 0 where all are well."""
+    assert run("check", shelf / "any name.json") == 0
+    assert "Small steps" in capsys.readouterr().out
+    assert run("check", shelf / "any name.json", shelf / "broken.json", motion) == 2
+    said = capsys.readouterr()
+    assert len(said.err.splitlines()) == 1 and said.out == ""
+    assert "broken.json: line 1" in said.err and "motion.json: schema is None" in said.err
+
+
+def test_a_motion_is_learned_and_nothing_replaced(
+    motion: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The file is a library of as many postures as wanted; a second run needs --replace."""
+    output = tmp_path / "learned.json"
+    words: tuple[object, ...] = ("learn", motion, "--title", "Anna Sways", "--output", output)
+    assert run(*words, "--count", "12", "--author", "Anna", "--license", "CC0-1.0", "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    library = read_library(output)
+    assert said["identifier"] == library.identifier == "anna_sways" and said["files"] == [str(output)]
+    assert len(library.postures) == 12 and (library.author, library.license) == ("Anna", "CC0-1.0")
+    before = output.read_bytes()
+    assert run(*words) == 2
+    assert "--replace" in capsys.readouterr().err and output.read_bytes() == before
+    assert run(*words, "--replace", "--quiet") == 0
+    assert read_library(output).author == "Unknown"
+
+
+def mirror_words(shelf: Path, tmp_path: Path) -> list[object]:
+    """A command that mirrors."""
+    return ["mirror", "small_steps", "--output", tmp_path / "out.json"]
+
+
+def merge_words(shelf: Path, tmp_path: Path) -> list[object]:
+    """A command that merges a library with itself."""
+    return ["merge", "small_steps", shelf / "any name.json", "--output", tmp_path / "out.json"]
+
+
+@pytest.mark.parametrize("words", [mirror_words, merge_words])
+def test_what_is_made_of_libraries_is_one(
+    words: Callable[[Path, Path], list[object]],
+    shelf: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The file written can be read, and the ones it was made of stay as they were."""
+    before = (shelf / "any name.json").read_bytes()
+    assert run(*words(shelf, tmp_path), "--json") == 0
+    assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "out.json")]
+    assert len(read_library(tmp_path / "out.json").postures) >= 3
+    assert (shelf / "any name.json").read_bytes() == before
+
+
+def test_two_versions_are_merged_only_as_told(
+    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What has changed is named and nothing written, until somebody says which of them counts."""
+    mine = small_library()
+    first, *others = mine.postures
+    moved = replace(first, posture=others[0].posture)
+    theirs = replace(mine, version=mine.version + 1, postures=(moved, *others))
+    write_library(tmp_path / "theirs.json", theirs)
+    words = ("merge", "small_steps", tmp_path / "theirs.json", "--output", tmp_path / "out.json")
+    assert run(*words) == 2
+    assert first.name in capsys.readouterr().err and not (tmp_path / "out.json").exists()
+    for choice, wanted in (("keep", first), ("replace", moved)):
+        assert run(*words, "--conflicts", choice, "--replace", "--quiet") == 0
+        got = read_library(tmp_path / "out.json").by_name[first.name].posture
+        assert np.abs(got.minus(wanted.posture)).max() < 1e-8
+
+
+def test_different_libraries_become_a_new_one(
+    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With everything of both, and an identifier of its own."""
+    write_library(tmp_path / "other.json", replace(small_library(), identifier="other", title="Other"))
+    words = ("merge", "small_steps", tmp_path / "other.json", "--output", tmp_path / "out.json")
+    assert run(*words, "--title", "Both of Them", "--quiet") == 0
+    both = read_library(tmp_path / "out.json")
+    assert (both.identifier, both.title) == ("both_of_them", "Both of Them")
+
+
+def test_both_sides_fit_in_one_library(tmp_path: Path) -> None:
+    """With --both the postures that a mirror shows are added."""
+    assert run("mirror", "small_steps", "--both", "--output", tmp_path / "out.json", "--quiet") == 0
+    assert len(read_library(tmp_path / "out.json").postures) == 6
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ([], "list, show, check"),
+        (["bogus"], "bogus"),
+        (["show"], "LIBRARY"),
+        (["show", "small_step"], "'small_step'.*is 'small_steps' meant"),
+        (["show", "../small_steps"], "no such file"),
+        (["show", "broken"], "broken.json: line 1"),
+        (["learn", "m.json", "--output", "l.json"], "--title"),
+        (["learn", "m.json", "--title", "T", "--output", "l.json"], "m.json: no such file"),
+        (["learn", "m.json", "--title", "T", "--output", "l.json", "--identifier", "../x"], "--identifier"),
+        (["learn", "MOTION", "--title", "T", "--output", "l.json", "--license", "free for all!"], "SPDX"),
+        (["learn", "MOTION", "--title", "T", "--output", "l.json", "--count", "400"], "40 frames"),
+        (["merge", "small_steps", "--output", "c.json"], "B"),
+        (["mirror", "small_steps", "--output", "SHELF/any name.json"], "is there already"),
+    ],
+)
+def test_mistakes_are_one_line(
+    words: list[str],
+    sentence: str,
+    motion: Path,
+    shelf: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Status 2, on standard error, and nothing is written."""
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    monkeypatch.chdir(empty)
+    places: dict[str, Any] = {"MOTION": str(motion), "SHELF": str(shelf)}
+    filled = [re.sub("MOTION|SHELF", lambda match: places[match[0]], word) for word in words]
+    assert run(*filled) == 2
+    said = capsys.readouterr()
+    assert len(said.err.splitlines()) == 1 and re.search(sentence, said.err), said.err
+    assert list(empty.iterdir()) == []
+
+
+def test_a_sheet_never_takes_the_place_of_a_library(shelf: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`show A --sheet A` by mistake: one line, status 2, and the file is as it was."""
+    file = shelf / "any name.json"
+    before = file.read_bytes()
+    assert run("show", file, "--sheet", file) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1 and file.read_bytes() == before

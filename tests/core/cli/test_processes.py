@@ -1,0 +1,83 @@
+"""The command line as a process of its own: started, asked to end, and quick to help."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from _command_line import one_line, tree
+from _synthetic_take import write_synthetic_take
+
+FRAMES = 16
+
+
+@pytest.fixture
+def take(tmp_path: Path) -> Path:
+    """A take."""
+    return write_synthetic_take(tmp_path / "take", FRAMES)
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    """An output folder that holds an earlier result."""
+    folder = tmp_path / "results" / "out"
+    folder.mkdir(parents=True)
+    (folder / "motion.json").write_text("earlier", encoding="utf-8")
+    return folder
+
+
+def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess.Popen[str]":
+    """`python -m keymark` in a process of its own, whatever the repository's folder is called."""
+    links = tmp_path / "links"
+    links.mkdir()
+    (links / "keymark").symlink_to(repository, target_is_directory=True)
+    # Inside a Blender the libraries that its Python lacks lie in a folder of the tests' own.
+    places = [str(links), *filter(None, [os.environ.get("KEYMARK_TEST_LIBRARIES")])]
+    return subprocess.Popen(
+        [sys.executable, "-m", "keymark", *words],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
+    """The exit status is the process'."""
+    process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
+    said, wrong = process.communicate()
+    assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
+
+
+def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words are there at once: what computes is loaded by the command that needs it."""
+    monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
+    _, told = module_process(tmp_path, repository, "--help").communicate()
+    loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
+    assert "keymark.operators.cli.shoot_arguments" in loaded
+    assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
+def test_a_process_that_is_asked_to_end_cleans_up(
+    take: Path, out: Path, tmp_path: Path, repository: Path
+) -> None:
+    """In the middle of its work, on the signal that render farms send, it leaves the output as it was."""
+    before = tree(out.parent)
+    # Inside a Blender program this process has bpy, but the Python that it starts has none.
+    find = "import importlib.util, sys; sys.exit(importlib.util.find_spec('bpy') is None)"
+    has_blender = subprocess.run([sys.executable, "-c", find]).returncode == 0
+    words = ("convert", str(take), "--output", str(out)) if has_blender else ("propose", str(take))
+    process = module_process(tmp_path, repository, *words)
+    assert process.stdout is not None and process.stderr is not None
+    for line in process.stdout:
+        if line.startswith("Following the markers"):
+            process.send_signal(signal.SIGTERM)
+            break
+    process.stdout.close()
+    assert process.wait() == 130
+    assert "interrupted" in one_line(process.stderr.read())
+    process.stderr.close()
+    assert tree(out.parent) == before

@@ -1,0 +1,100 @@
+"""The summary of a batch as files: one line a take, one page, whole at every moment."""
+
+import json
+import threading
+from pathlib import Path
+
+import pytest
+from _outcomes import FILES, RECORD, converted, failed, waiting
+from keymark.core.errors import ConversionError
+from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.shoot.shoot import Shoot
+from keymark.operators.cli.batch.summary import LINES, PAGE, write_summary
+
+
+def outcomes(output: Path) -> list[Outcome]:
+    """One of each kind, not in order."""
+    return [
+        waiting(output, "day2/jump"),
+        converted(output, "day1/walk", library="walking", matched=(60,)),
+        failed(output, "day1/fall", "day1/fall/clip.mp4: no such file", RECORD),
+        Outcome("day1/rún\u2028", output / "day1/rún\u2028", Status.UNCHANGED, RECORD),
+    ]
+
+
+def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
+    """In the order of names, in ASCII, with all fields; a result counts only where it is of this input."""
+    output = tmp_path / "out"
+    files = write_summary(output, Shoot(tmp_path / "autumn", ()), outcomes(output))
+    assert files == (output / LINES, output / PAGE)
+    text = (output / LINES).read_bytes().decode("ascii")
+    rows = [json.loads(line) for line in text.splitlines()]
+    assert [row["take"] for row in rows] == ["day1/fall", "day1/rún\u2028", "day1/walk", "day2/jump"]
+    assert {tuple(row) for row in rows} == {tuple(rows[0])}
+    assert [row["status"] for row in rows] == ["failed", "unchanged", "converted", "waiting"]
+    fall, run, walk, jump = rows
+    assert fall["error"].endswith("no such file") and fall["confidence"] is None and fall["files"] == []
+    assert walk["files"] == [f"day1/walk/{name}" for name in (*FILES, "conversion.json")]
+    assert (walk["library"], walk["matched"], walk["weak_frames"]) == ("walking", [60], [87, 31])
+    assert (walk["seconds"], run["seconds"], run["frames"], jump["error"]) == (12.0, None, 120, None)
+    assert ">autumn</bdi></h1>" in (output / PAGE).read_text(encoding="utf-8")
+
+
+def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
+    """Whatever order they come in, and nothing else is left in the folder."""
+    shoot = Shoot(tmp_path, ())
+    first = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path))]
+    again = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path)[::-1])]
+    assert first == again
+    assert sorted(file.name for file in tmp_path.iterdir()) == [PAGE, LINES]
+
+
+def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
+    """Its results lie beside the summary."""
+    outcome = Outcome(".", tmp_path, Status.CONVERTED, RECORD)
+    lines, page = write_summary(tmp_path, Shoot(tmp_path / "walk", ()), [outcome])
+    assert json.loads(lines.read_text(encoding="ascii"))["files"] == [*FILES, "conversion.json"]
+    assert 'href="./motion.blend"' in page.read_text(encoding="utf-8")
+
+
+def test_several_machines_write_at_once_and_readers_see_whole_files(tmp_path: Path) -> None:
+    """Each reader sees the summary of one writer; the last writer's stays."""
+    shoot, over = Shoot(tmp_path, ()), threading.Event()
+    seen: set[int] = set()
+    wrong: list[BaseException] = []
+
+    def write(takes: int) -> None:
+        try:
+            for _ in range(6):
+                write_summary(tmp_path, shoot, [waiting(tmp_path, f"take{n}") for n in range(takes)])
+        except BaseException as error:
+            wrong.append(error)
+
+    def read() -> None:
+        try:
+            while not over.is_set():
+                rows = (tmp_path / LINES).read_text(encoding="ascii").splitlines(keepends=True)
+                assert all(json.loads(row) and row.endswith("\n") for row in rows)
+                assert (tmp_path / PAGE).read_text(encoding="utf-8").endswith("</html>\n")
+                seen.add(len(rows))
+        except BaseException as error:
+            wrong.append(error)
+
+    write_summary(tmp_path, shoot, [waiting(tmp_path, "take0")])
+    reader = threading.Thread(target=read)
+    writers = [threading.Thread(target=write, args=(takes,)) for takes in (2, 30, 300)]
+    for thread in (reader, *writers):
+        thread.start()
+    for thread in writers:
+        thread.join()
+    over.set()
+    reader.join()
+    assert wrong == [] and seen <= {1, 2, 30, 300}
+    assert len((tmp_path / LINES).read_text(encoding="ascii").splitlines()) in (2, 30, 300)
+
+
+def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
+    """A file where the folder should be is named in a sentence."""
+    (tmp_path / "out").touch()
+    with pytest.raises(ConversionError, match="out"):
+        write_summary(tmp_path / "out", Shoot(tmp_path, ()), [])

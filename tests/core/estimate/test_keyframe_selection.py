@@ -1,0 +1,72 @@
+"""Which matched keyframes are used beside posed ones."""
+
+from dataclasses import replace
+
+import numpy as np
+from _scene import BODY, MODEL, exercise, film
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.keyframe_selection import worthwhile
+from keymark.core.prior.keyframes import Keyframe, Matched
+
+FRAMES, FPS = 91, 30.0
+TRUTH = exercise(FRAMES)
+TRACKS = film(TRUTH, 0.3)
+SAID = Matched("walking", "step", False, 0.9)
+DOFS = BODY.skeleton.dof_count
+OF_ANGLES = np.where(np.arange(DOFS) < 3, 0.0, 1.0)
+
+
+def used(posed: list[int], library: Posture) -> tuple[list[int], list[int]]:
+    """Frames of the posed and of the matched keyframes that are left, of matched ones every 10 frames."""
+    keyframes = [Keyframe(i, library[i], matched=SAID) for i in range(5, FRAMES, 10) if i not in posed]
+    keyframes += [Keyframe(i, TRUTH[i]) for i in posed]
+    left = worthwhile(tuple(sorted(keyframes, key=lambda k: k.index)), MODEL, TRACKS, FPS)
+    return [k.index for k in left if k.matched is None], [k.index for k in left if k.matched is not None]
+
+
+def alike() -> Posture:
+    """The motion as another performer does it: a little otherwise all along."""
+    return TRUTH.plus(np.tile(0.04 * OF_ANGLES, (FRAMES, 1)))
+
+
+def unlike() -> Posture:
+    """Another motion: off by as much again and again, to all sides."""
+    turns = np.sin(np.arange(FRAMES)[:, None] / 9.0 + np.arange(DOFS))
+    return TRUTH.plus(1.2 * OF_ANGLES * turns)
+
+
+def test_a_library_of_the_motion_is_used_between_posed_keyframes_that_are_far_apart() -> None:
+    """Two posed keyframes know little of three seconds."""
+    assert used([0, 90], alike()) == ([0, 90], list(range(5, FRAMES, 10)))
+
+
+def test_posed_keyframes_near_each_other_need_no_library() -> None:
+    """What they leave open is less than what the library gets wrong; elsewhere it is used."""
+    posed, matched = used([*range(0, 43, 3), 90], alike())
+    assert posed == [*range(0, 43, 3), 90]
+    assert not set(matched) & set(range(43)) and {55, 65, 75, 85} <= set(matched)
+
+
+def test_a_library_of_another_motion_is_used_outside_posed_keyframes_only() -> None:
+    """Between them it does harm; outside there is nothing else."""
+    posed, matched = used([20, 45, 70], unlike())
+    assert posed == [20, 45, 70]
+    assert matched == [5, 15, 75, 85]
+
+
+def test_with_one_posed_keyframe_or_none_all_are_used() -> None:
+    """Nothing lies between posed keyframes."""
+    every = list(range(5, FRAMES, 10))
+    assert used([], unlike()) == ([], every)
+    assert used([40], unlike()) == ([40], every)
+
+
+def test_a_clip_in_which_nothing_is_seen_keeps_a_library_that_agrees() -> None:
+    """The posed keyframes' interpolation cannot be held against anything."""
+    hidden = replace(TRACKS, quality=np.zeros_like(TRACKS.quality))
+    keyframes = (
+        Keyframe(0, TRUTH[0]),
+        *(Keyframe(i, alike()[i], matched=SAID) for i in (30, 60)),
+        Keyframe(90, TRUTH[90]),
+    )
+    assert worthwhile(keyframes, MODEL, hidden, FPS) == keyframes

@@ -1,0 +1,124 @@
+"""Fields that come from several files: the nearest counts, and each knows where it stands."""
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from keymark.core.errors import InputError
+from keymark.core.files.fields import Fields
+from keymark.core.files.inherited_fields import ALTERNATIVES, Inherited, child_place
+
+FAR, NEAR = "/shoot/shoot.json", "/shoot/take/take.json"
+
+
+def merged(*patches: dict[str, Any]) -> Inherited:
+    """Objects over each other, the farthest first; their places are `0.json`, `1.json` and so on."""
+    fields = Inherited()
+    for index, patch in enumerate(patches):
+        fields = fields.patched(patch, f"{index}.json")
+    return fields
+
+
+def test_the_nearer_field_counts_and_objects_are_merged() -> None:
+    """A list is replaced whole, an object field by field."""
+    far = {"fps": 24, "camera": {"lens_mm": 35.0, "resolution": [640, 480]}}
+    fields = merged(far, {"fps": 30, "camera": {"resolution": [320, 240]}})
+    assert fields == {"fps": 30, "camera": {"lens_mm": 35.0, "resolution": [320, 240]}}
+    assert fields.places == {"fps": "1.json", "camera": "1.json"}
+    assert fields["camera"].places == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
+
+
+def test_null_takes_an_inherited_field_away_and_is_itself_where_there_is_none() -> None:
+    """Then the sentence can say that it is null."""
+    fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
+    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.places
+    with pytest.raises(InputError, match=r"^1\.json: fps is null"):
+        Fields(merged({}, {"fps": None}), "1.json").number("fps", 1, 2)
+
+
+def test_what_was_taken_away_can_be_said_again() -> None:
+    """By a file that is nearer still."""
+    fields = merged({"method": "ekf"}, {"method": None}, {"method": "map"})
+    assert fields == {"method": "map"} and fields.places == {"method": "2.json"}
+
+
+@pytest.mark.parametrize("pair", [*ALTERNATIVES, *(pair[::-1] for pair in ALTERNATIVES)])
+def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -> None:
+    """Whichever of the two it is; both in one place are both kept, and null takes nothing but itself."""
+    one, other = pair
+    assert merged({one: 1}, {other: 2}) == {other: 2}
+    assert merged({one: 1}, {one: 3, other: 2}) == {one: 3, other: 2}
+    assert merged({one: 1}, {other: None}) == {one: 1, other: None}
+    assert merged({"actor": {one: 1}}, {"actor": {other: 2}}) == {"actor": {other: 2}}
+
+
+def test_comments_are_left_out_at_any_level() -> None:
+    """They are no fields and take none away."""
+    assert merged({"//": 1, "camera": {"// lens": "?", "lens_mm": 1}}) == {"camera": {"lens_mm": 1}}
+
+
+def test_an_object_takes_the_place_of_what_is_none_and_the_other_way_round() -> None:
+    """As in a merge patch."""
+    assert merged({"distortion": [1, 2]}, {"distortion": {"k1": 3}}) == {"distortion": {"k1": 3}}
+    assert merged({"distortion": {"k1": 3}}, {"distortion": [1]}) == {"distortion": [1]}
+
+
+@pytest.mark.parametrize(
+    ("field", "said"),
+    [
+        ("lens_mm", rf"^{FAR}: camera: lens_mm is -1"),
+        ("sensor_width_mm", rf"^{NEAR}: camera: sensor_width_mm is 'x'"),
+        ("shift_x", rf"^{NEAR}: camera: shift_x is missing"),
+    ],
+)
+def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) -> None:
+    """And where nobody says it, the nearest."""
+    fields = Inherited().patched({"camera": {"lens_mm": -1}}, FAR)
+    fields = fields.patched({"camera": {"sensor_width_mm": "x"}}, NEAR)
+    with pytest.raises(InputError, match=said):
+        Fields(fields, NEAR).child("camera", "an object").number(field, 0, 1)
+
+
+def test_places_of_objects_read_well() -> None:
+    """The file, then the way in it."""
+    assert child_place("a.json", "camera") == "a.json: camera"
+    assert child_place("a.json: camera", "lens") == "a.json: camera.lens"
+    assert child_place("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
+
+
+VALUES = st.recursive(
+    st.none() | st.integers(0, 3) | st.lists(st.integers(0, 1), max_size=2),
+    lambda inner: st.dictionaries(st.sampled_from("abc"), inner, max_size=3),
+    max_leaves=6,
+)
+OBJECTS = st.dictionaries(st.sampled_from("abc"), VALUES, max_size=3)
+
+
+def patched(target: Any, patch: Any) -> Any:
+    """JSON Merge Patch as RFC 7396 writes it, section 2."""
+    if not isinstance(patch, dict):
+        return patch
+    result = dict(target) if isinstance(target, dict) else {}
+    for name, value in patch.items():
+        if value is None:
+            result.pop(name, None)
+        else:
+            result[name] = patched(result.get(name), value)
+    return result
+
+
+def without_nulls(value: Any) -> Any:
+    """A value whose objects have no fields that are null."""
+    if not isinstance(value, dict):
+        return value
+    return {name: without_nulls(item) for name, item in value.items() if item is not None}
+
+
+@given(st.lists(OBJECTS, max_size=4))
+def test_merging_is_that_of_a_merge_patch(patches: list[dict[str, Any]]) -> None:
+    """But for nulls that take nothing away, which stay to be seen."""
+    expected: Any = {}
+    for patch in patches:
+        expected = patched(expected, patch)
+    assert without_nulls(merged(*patches)) == expected

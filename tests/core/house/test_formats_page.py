@@ -1,0 +1,65 @@
+"""The page on files tells the truth: limits are the readers', and every schema has its row."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from keymark.core import MOST_PIXELS
+from keymark.core.body import posture_fields
+from keymark.core.files import json_file, safe_path
+from keymark.core.footage import camera_fields
+from keymark.core.footage.clips import image_sequence
+from keymark.core.library import library_file
+from keymark.core.shoot.finding import find_takes, take_list
+from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take
+
+MIB = 2**20
+LIMITS = {
+    f"{json_file.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
+    f"{take_list.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
+    f"{motion_file.LARGEST_BYTES // MIB} MiB": "`motion.json`",
+    f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
+    f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
+    f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
+    f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
+    f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
+    f"{safe_path.LONGEST} characters; {safe_path.LONGEST_PART} bytes": "a path; a name in it",
+    f"{find_takes.MOST_TAKES}": "takes of a shoot",
+    f"{take.MOST_FRAMES}": "frames of a take",
+    f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
+    f"{take.MOST_MARKERS}; {take.LONGEST_MARKER} characters": "markers of a take; a marker's name",
+    f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
+    f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
+    f"{posture_fields.FARTHEST_M:.0f} m": "places of keyframes, from the origin",
+    f"{camera_fields.FARTHEST_M:.0f} m": "places of cameras, from the origin",
+}
+
+
+@pytest.fixture(scope="module")
+def page(repository: Path) -> str:
+    """docs/formats.md."""
+    return (repository / "docs" / "formats.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("limit", "what"), LIMITS.items())
+def test_limits_are_those_of_the_readers(page: str, limit: str, what: str) -> None:
+    """A limit that changes there changes here."""
+    assert f"| {what} | {limit.strip()} |" in page
+
+
+def test_every_schema_has_its_row(page: str, repository: Path) -> None:
+    """And no row is without a schema."""
+    rows = page.split("## What is refused")[0]
+    named = set(re.findall(r"\| `([a-z]+)`(?:, each line)? \|", rows))
+    there = {
+        path.name.removesuffix(".schema.json") for path in (repository / "presets" / "schemas").iterdir()
+    }
+    assert named == there
+
+
+def test_the_settings_of_the_editor_name_schemas_that_are_there(page: str, repository: Path) -> None:
+    """By their ways in the repository."""
+    (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
+    for entry in json.loads(example)["json.schemas"]:
+        assert (repository / entry["url"].removeprefix("./keymark/")).is_file()

@@ -1,0 +1,206 @@
+"""The schemas say what the readers read: what a reader takes its schema takes, and both see mistakes."""
+
+import json
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _formats import Format, formats
+from _fuzz import FUZZ, changed
+from _synthetic_take import SIZE
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+from keymark.core.errors import InputError
+from keymark.core.files.json_file import parse_json
+from referencing import Registry, Resource
+
+NAMES = ("take", "keyframes", "shoot", "takes", "library", "motion", "conversion", "truth")
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
+    """Every format."""
+    return formats(tmp_path_factory.mktemp("formats"))
+
+
+@cache
+def schemas() -> dict[str, Any]:
+    """The schemas by name."""
+    folder = Path(__file__).parents[3] / "presets" / "schemas"
+    return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.schema.json")}
+
+
+@cache
+def validator(name: str, whole: bool = False) -> Draft202012Validator:
+    """What holds a value to a schema."""
+    resources = [(file, Resource.from_contents(schema)) for file, schema in schemas().items()]
+    part = "#/$defs/complete" if whole else ""
+    schema = {"$ref": f"{name}.schema.json{part}"}
+    return Draft202012Validator(schema, registry=Registry().with_resources(resources))
+
+
+def test_there_is_a_schema_for_every_format() -> None:
+    """Each is one of the draft, with a title and a description."""
+    assert set(schemas()) == {f"{name}.schema.json" for name in NAMES}
+    for schema in schemas().values():
+        Draft202012Validator.check_schema(schema)
+        assert schema["title"] and schema["description"]
+
+
+def fields_of(schema: Any) -> list[tuple[str, Any]]:
+    """Every field that a schema names, with its own schema."""
+    found: list[tuple[str, Any]] = []
+    if isinstance(schema, dict):
+        for name, one in schema.get("properties", {}).items():
+            found += [(name, one)] if isinstance(one, dict) else []
+        for name, one in schema.items():
+            found += fields_of(list(one.values()) if name in ("properties", "$defs") else one)
+    elif isinstance(schema, list):
+        for one in schema:
+            found += fields_of(one)
+    return found
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numbers_and_texts_have_limits(name: str) -> None:
+    """No number without a range, no text without a longest."""
+    for field, schema in fields_of(schemas()[f"{name}.schema.json"]):
+        kinds = schema.get("type", ())
+        kinds = {kinds} if isinstance(kinds, str) else set(kinds)
+        if kinds & {"number", "integer"} and "description" in schema:
+            assert "minimum" in schema and "maximum" in schema, field
+        if "string" in kinds and "$schema" not in field:
+            assert "maxLength" in schema or "pattern" in schema, field
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_valid_file_is_valid_to_both(known: dict[str, Format], name: str) -> None:
+    """The file from which all tests of the format begin."""
+    one = known[name]
+    validator(name, one.whole).validate(one.valid)
+    one.read(json.dumps(one.valid).encode())
+
+
+def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
+    """Every library, the demonstration, and the takes to develop with."""
+    for path in (repository / "presets" / "keyframes").glob("*.json"):
+        validator("library").validate(json.loads(path.read_text(encoding="utf-8")))
+    for take in [repository / "presets" / "demo" / "aerobic", *shared_takes.iterdir()]:
+        files = {
+            "take.json": ("take", True),
+            "keyframes.json": ("keyframes", False),
+            "truth.json": ("truth", False),
+        }
+        files["keyframes_noisy.json"] = ("keyframes", False)
+        for file, (name, whole) in files.items():
+            if (take / file).exists():
+                validator(name, whole).validate(json.loads((take / file).read_text(encoding="utf-8")))
+
+
+def refused_by_reader(one: Format, value: Any) -> bool:
+    """Whether the reader refuses a value."""
+    try:
+        one.read(json.dumps(value).encode())
+    except InputError:
+        return True
+    return False
+
+
+def as_read(value: Any) -> Any:
+    """A value as it comes out of a file, or None where it is none that JSON has."""
+    try:
+        return parse_json(json.dumps(value), "here")
+    except InputError:
+        return None
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.fuzz
+@settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_what_a_schema_refuses_the_reader_refuses(
+    known: dict[str, Format], name: str, data: st.DataObject
+) -> None:
+    """From a valid file outwards; so whatever the reader takes, the schema takes."""
+    one = known[name]
+    value = as_read(data.draw(changed(one.valid, 2)))
+    if value is not None and not validator(name, one.whole).is_valid(value):
+        assert refused_by_reader(one, value), next(validator(name, one.whole).iter_errors(value)).message
+
+
+Change = Callable[[Any], object]
+
+
+def at(*way: Any, to: Any) -> Change:
+    """A change of one value."""
+
+    def change(value: Any) -> None:
+        for key in way[:-1]:
+            value = value[key]
+        value[way[-1]] = to
+
+    return change
+
+
+MISTAKES: list[tuple[str, Change]] = [
+    ("take", lambda v: v.pop("fps")),
+    ("take", at("fps", to="30")),
+    ("take", at("fps", to=0)),
+    ("take", at("clip", to="../clip.mp4")),
+    ("take", at("clip", to="C:\\clip.mp4")),
+    ("take", at("camera", "lens_mm", to=True)),
+    ("take", at("camera", "resolution", to=[SIZE[0], 1.5])),
+    ("take", at("camera", "resolution", to=[10**9, 10**9])),
+    ("take", at("camera", "matrix_world", to=[[1, 0, 0, 0]] * 3)),
+    ("take", at("camera", "matrix_world", 0, 0, to=True)),
+    ("take", at("camera", "distortion", to=[1e300])),
+    ("take", at("markers", to={})),
+    ("take", at("markers", "tail", to={"color_srgb": [1, 2, 3], "segment": "tail"})),
+    ("take", at("markers", "trunk", "color_srgb", to=[1, 2])),
+    ("take", at("actor", "segments_m", "tail", to=0.3)),
+    ("take", at("method", to="magic")),
+    ("take", at("keyframes", to="/etc/passwd")),
+    ("keyframes", at("keyframes", 0, "frame", to=1.5)),
+    ("keyframes", at("keyframes", 0, "points", "head", to=[0, 1])),
+    ("keyframes", at("keyframes", 1, "posture", "tail.wag", to=0.1)),
+    ("keyframes", at("keyframes", 1, "matched", "confidence", to=1.1)),
+    ("keyframes", lambda v: v["keyframes"][0].pop("points")),
+    ("shoot", at("actr", to={})),
+    ("shoot", at("root", to=1)),
+    ("shoot", at("schema_version", to=2)),
+    ("takes", lambda v: v.pop("take")),
+    ("takes", at("take", to="../elsewhere")),
+    ("takes", at("clips", to="a.mp4")),
+    ("library", at("identifier", to="../up")),
+    ("library", at("postures", to=[])),
+    ("library", at("motions", 1, "travel", to={"x_m": 1, "y_m": 0, "heading_rad": 0})),
+    ("library", at("titel", to="x")),
+    ("motion", at("points", "head", 0, to=[0, 1])),
+    ("motion", at("points", "head", 0, 0, to="1.5")),
+    ("motion", at("time_s", 0, to=True)),
+    ("motion", at("diagnostics", "cost", 0, to="1")),
+    ("conversion", at("files", "../up", to="ab" * 32)),
+    ("conversion", at("files", "a", to="ab")),
+    ("conversion", at("confidence", to=1.5)),
+    ("truth", at("points", "head", 0, to=[0, None, 1])),
+]
+
+
+@pytest.mark.parametrize(("name", "change"), MISTAKES)
+def test_a_mistake_is_seen_by_both(known: dict[str, Format], name: str, change: Change) -> None:
+    """An editor that knows the schema marks what Keymark will refuse."""
+    one = known[name]
+    value = json.loads(json.dumps(one.valid))
+    change(value)
+    assert not validator(name, one.whole).is_valid(value)
+    assert refused_by_reader(one, value)
+
+
+def test_a_part_of_a_take_is_valid_where_a_shoot_says_the_rest(known: dict[str, Format]) -> None:
+    """`take.json` may hold as little as nothing; only a take that inherits nothing must be complete."""
+    assert validator("take").is_valid({}) and validator("take").is_valid({"camera": {"lens_mm": None}})
+    assert not validator("take", True).is_valid({})
+    assert validator("shoot").is_valid({"$schema": "shoot.schema.json", "//": 1})

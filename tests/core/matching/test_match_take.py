@@ -1,0 +1,257 @@
+"""Finding a library's postures in tracks that a performer of other proportions and habits leaves."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from keymark.core.body.actor import Actor
+from keymark.core.body.heading import headed
+from keymark.core.body.kinematics import Body
+from keymark.core.body.mirror import mirrored
+from keymark.core.body.posture import Posture
+from keymark.core.errors import InputError
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.reading import Reading
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.library.library import Library
+from keymark.core.library.library_file import read_library
+from keymark.core.library.motion_playback import course
+from keymark.core.matching.match_take import LibraryChoice, match_take, with_matches
+from keymark.core.observation.regions import MarkerPlacement, RegionModel
+from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import run
+from keymark.core.take.take import Take
+
+SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+BODY = Body(Actor.from_stature(1.62))
+FRAMES, FPS = 50, 25.0
+VIEW = np.array([[1.0, 0.0, 0.0], [0.0, 0.2, -0.98], [0.0, 0.98, 0.2]])
+
+
+def camera(frames: int = 0) -> Camera:
+    """A camera four metres before the performer, a little above; one that drifts where frames are given."""
+    rotation, _ = np.linalg.qr(VIEW)
+    rotation *= np.sign(np.diag(rotation.T @ VIEW))
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, (0.0, -4.5, 1.7)
+    if frames:
+        matrix = np.repeat(matrix[None], frames, axis=0)
+        matrix[:, 0, 3] = np.linspace(-0.3, 0.3, frames)
+    return Camera(40.0, 36.0, (640, 480), matrix)
+
+
+@pytest.fixture(scope="module")
+def walking(repository: Path) -> Library:
+    """The shipped library."""
+    return read_library(repository / "presets" / "keyframes" / "walking.json")
+
+
+@pytest.fixture(scope="module")
+def squatting(repository: Path) -> Library:
+    """Another shipped library."""
+    return read_library(repository / "presets" / "keyframes" / "squatting_lifting.json")
+
+
+def performed(library: Library, heading_rad: float, style_rad: float = 0.08, floor_m: float = 0.0) -> Posture:
+    """The library's first motion as this performer does it: a little faster, every joint turned a little."""
+    rng = np.random.default_rng(3)
+    time = 0.2 + 1.1 * np.arange(FRAMES) / FPS
+    led = course(library, library.motions[0], BODY, time)
+    style = rng.normal(0.0, style_rad, led.skeleton.dof_count)
+    style[:6] = 0.0
+    led = led.plus(style)
+    turn = np.array([[np.cos(heading_rad), -np.sin(heading_rad)], [np.sin(heading_rad), np.cos(heading_rad)]])
+    middle = led.translation[:, :2].mean(axis=0)
+    hips = np.column_stack([(led.translation[:, :2] - middle) @ turn.T, led.translation[:, 2] + floor_m])
+    return headed(led, np.full(FRAMES, heading_rad), hips)
+
+
+def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take, Reading]:
+    """A take and the tracks that the performance leaves in its picture, with noise of half a pixel."""
+    rng = np.random.default_rng(5)
+    frames = len(posture.translation)
+    model = RegionModel(BODY, seen_by, tuple(MarkerPlacement(segment) for segment in SEGMENTS))
+    shown = model.evaluate(BODY.pose(posture), np.arange(frames))
+    lost = (shown.visible < 0.1) | (rng.random(shown.visible.shape) < hidden)
+    centroid = np.where(lost[..., None], np.nan, shown.centroid + rng.normal(0.0, 0.5, shown.centroid.shape))
+    tracks = RegionTracks(
+        SEGMENTS,
+        centroid,
+        np.where(lost[..., None, None], np.nan, shown.second_moment),
+        np.where(lost, np.nan, shown.area),
+        np.where(lost, 0.0, np.clip(shown.visible, 0.0, 1.0)),
+        np.zeros_like(lost),
+        np.arange(frames) / FPS,
+        seen_by.resolution,
+    )
+    styles = tuple(MarkerStyle(name, name, (40 * i, 20, 200 - 30 * i)) for i, name in enumerate(SEGMENTS))
+    take = Take(Path("take"), Path("clip.mp4"), FPS, 1, frames, seen_by, BODY, styles, ())
+    return take, Reading(tracks)
+
+
+def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
+    """Mean distance of the points from the truth, with the hips aligned and absolutely."""
+    assert choice.match is not None
+    found, true = (BODY.points(BODY.pose(posture)) for posture in (choice.match.course, truth))
+    off = found - true
+    hips = (choice.match.course.translation - truth.translation)[:, None]
+    return (
+        float(np.linalg.norm(off - hips, axis=-1).mean()),
+        float(np.linalg.norm(off, axis=-1).mean()),
+    )
+
+
+@pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
+def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, heading_deg: float) -> None:
+    """Another body and other habits leave a few centimetres; the wrong leg in front would be some fifteen."""
+    truth = performed(walking, np.radians(heading_deg))
+    choice = run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0))
+    rooted, absolute = errors_m(choice, truth)
+    assert rooted < 0.06
+    assert absolute < 0.15
+    assert choice.match is not None
+    assert choice.match.fit > 0.8
+    assert [frame.index for frame in choice.match.frames][0::4] == [0, FRAMES - 1]
+    names = {posture.name for posture in walking.postures}
+    assert {one.name for frame in choice.match.frames for one in frame.candidates} <= names
+
+
+def test_walking_on_the_spot_is_walking(walking: Library) -> None:
+    """A cycle that travels is also known on a treadmill: the place does not creep after the motion's way."""
+    there = performed(walking, np.radians(35.0))
+    level = np.append(there.translation[:, :2].mean(axis=0), 0.0)
+    hips = level + there.translation * np.array([0.0, 0.0, 1.0])
+    truth = Posture(there.skeleton, hips, there.rotations, there.angles)
+    rooted, absolute = errors_m(run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0)), truth)
+    assert rooted < 0.07
+    assert absolute < 0.15
+
+
+def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) -> None:
+    """A tenth of all sightings is missing, and every frame has a pose of its own."""
+    truth = performed(walking, np.radians(60.0))
+    choice = run(match_take(*filmed(truth, camera(FRAMES), hidden=0.1), [walking]))
+    assert errors_m(choice, truth)[0] < 0.07
+
+
+def test_an_unknown_floor_is_found_by_the_sizes(walking: Library) -> None:
+    """Where the scene's floor is far below z = 0, that is noticed; within a few decimetres it is z = 0."""
+    truth = performed(walking, np.radians(35.0), floor_m=-1.0)
+    choice = run(match_take(*filmed(truth, camera()), [walking]))
+    assert choice.match is not None
+    assert choice.match.floor_m == pytest.approx(-1.0, abs=0.3)
+    assert errors_m(choice, truth)[0] < 0.07
+
+
+def test_a_mirrored_performance_is_told_from_the_library(squatting: Library) -> None:
+    """A motion that is not its own mirror image is matched as its mirror image, and says so."""
+    sided = next(motion for motion in squatting.motions if "kneel" in motion.name)
+    library = replace(
+        squatting,
+        motions=(sided,),
+        postures=tuple(
+            posture
+            for posture in squatting.postures
+            if posture.name in {step.posture for step in sided.steps}
+        ),
+    )
+    truth = mirrored(performed(library, 0.3, style_rad=0.03))
+    choice = run(match_take(*filmed(truth, camera()), [library], floor_m=0.0))
+    assert choice.match is not None
+    chosen = [frame.candidates[0].mirrored for frame in choice.match.frames]
+    assert sum(chosen) > len(chosen) / 2
+    assert errors_m(choice, truth)[0] < 0.07
+
+
+def test_the_right_library_is_chosen_and_the_reason_says_so(walking: Library, squatting: Library) -> None:
+    """Of two, each performance finds its own; probabilities are in order and sum to at most one."""
+    for own, other in ((walking, squatting), (squatting, walking)):
+        choice = run(match_take(*filmed(performed(own, 0.6), camera()), [other, own]))
+        assert choice.match is not None
+        assert choice.match.library is own
+        shares = [share for _, share in choice.ranking]
+        assert shares == sorted(shares, reverse=True)
+        assert 0.8 < sum(shares) <= 1.0 + 1e-9
+        assert own.title in choice.reason
+
+
+def test_footage_that_fits_none_says_so(walking: Library, squatting: Library) -> None:
+    """Limbs thrown about at random are neither walking nor squatting."""
+    rng = np.random.default_rng(11)
+    led = performed(walking, 0.0)
+    knots = rng.normal(0.0, 0.9, (6, led.skeleton.dof_count))
+    knots[:, :6] *= 0.3
+    moves = np.stack(
+        [np.interp(np.arange(FRAMES), np.linspace(0, FRAMES, 6), dof) for dof in knots.T], axis=1
+    )
+    choice = run(match_take(*filmed(led.plus(moves), camera()), [walking, squatting]))
+    assert choice.match is None
+    assert choice.reason.startswith("no library fits")
+
+
+def test_confidence_follows_what_is_explained(walking: Library, squatting: Library) -> None:
+    """A library that fits is believed more than one that is forced on the same footage."""
+    take, reading = filmed(performed(walking, 0.6), camera())
+    sure = []
+    for library in (walking, squatting):
+        match = run(match_take(take, reading, [library])).match
+        assert match is not None
+        sure.append(float(np.mean([frame.candidates[0].confidence for frame in match.frames])))
+        for frame in match.frames:
+            assert 1 <= len(frame.candidates) <= 6
+            assert all(0.0 <= one.confidence <= 1.0 for one in frame.candidates)
+    assert sure[0] > sure[1] + 0.2
+
+
+def test_posed_keyframes_steer_the_match(walking: Library) -> None:
+    """They tell of a floor that the footage does not, and where and how the performer stands."""
+    truth = performed(walking, np.radians(35.0), style_rad=0.15, floor_m=0.2)
+    take, reading = filmed(truth, camera())
+    ends = tuple(Keyframe(index, truth[index]) for index in (0, FRAMES - 1))
+    alone = run(match_take(take, reading, [walking]))
+    steered = run(match_take(replace(take, keyframes=ends), reading, [walking]))
+    assert alone.match is not None
+    assert steered.match is not None
+    assert alone.match.floor_m == 0.0
+    assert steered.match.floor_m == pytest.approx(0.2, abs=0.05)
+    assert errors_m(steered, truth)[1] < 0.8 * errors_m(alone, truth)[1]
+    for end in ends:
+        off = steered.match.course.translation[end.index] - end.posture.translation
+        assert np.linalg.norm(off) < 0.05
+
+
+def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:
+    """A matched keyframe comes where no posed one is near; what was matched before goes."""
+    take, reading = filmed(performed(walking, 0.6), camera())
+    match = run(match_take(take, reading, [walking])).match
+    assert match is not None
+    first = match.frames[0]
+    posed = Keyframe(first.index + 1, first.candidates[0].posture)
+    mixed = with_matches(replace(take, keyframes=(posed,)), match)
+    assert [one.index for one in mixed.keyframes] == [posed.index, *(f.index for f in match.frames[1:])]
+    assert mixed.keyframes[0].matched is None
+    said = mixed.keyframes[1].matched
+    assert said is not None
+    assert (said.library, said.posture) == ("walking", match.frames[1].candidates[0].name)
+    assert with_matches(mixed, match).keyframe_indices == mixed.keyframe_indices
+
+
+def test_matching_is_the_same_every_time(walking: Library) -> None:
+    """Nothing is drawn at random."""
+    take, reading = filmed(performed(walking, 0.6), camera())
+    first, second = (run(match_take(take, reading, [walking])).match for _ in range(2))
+    assert first is not None
+    assert second is not None
+    assert np.array_equal(first.course.to_vector(), second.course.to_vector())
+
+
+def test_what_cannot_be_matched_is_refused(walking: Library) -> None:
+    """No library, and no marker in sight."""
+    take, reading = filmed(performed(walking, 0.6), camera())
+    with pytest.raises(InputError, match="library"):
+        run(match_take(take, reading, []))
+    nothing = replace(reading.tracks, centroid=np.full_like(reading.tracks.centroid, np.nan))
+    with pytest.raises(InputError, match="no marker is seen"):
+        run(match_take(take, Reading(nothing), [walking]))

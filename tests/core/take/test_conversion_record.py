@@ -1,0 +1,106 @@
+"""`conversion.json`: read back as written, and never believed where it could not be true."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.take.conversion_record import NAME, ConversionRecord, is_finished, read_record, write_record
+
+RECORD = ConversionRecord(
+    digest="ab" * 16,
+    keymark="1.0.0",
+    take="walk",
+    method="map",
+    library="walking",
+    frames=8,
+    frame_start=1,
+    fps=29.97,
+    keyframes=(1, 5),
+    matched=(5,),
+    confidence=0.5,
+    weakest=None,
+    weak_frames=(3,),
+    notes=("A note.", "\u00c4rger \U0001f3ac"),
+    files={"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32},
+)
+
+
+def made(folder: Path, record: ConversionRecord = RECORD) -> Path:
+    """A folder with a record and its files."""
+    for name in record.files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+    write_record(folder, record)
+    return folder
+
+
+def test_a_record_is_read_back_as_it_was_written(tmp_path: Path) -> None:
+    """Every field, and the same bytes the second time."""
+    made(tmp_path)
+    assert read_record(tmp_path) == RECORD
+    before = (tmp_path / NAME).read_bytes()
+    write_record(tmp_path, read_record(tmp_path))
+    assert (tmp_path / NAME).read_bytes() == before
+
+
+def test_a_result_is_finished_with_its_digest_and_all_its_files(tmp_path: Path) -> None:
+    """And not with another digest, a file less, or no record."""
+    made(tmp_path)
+    assert is_finished(tmp_path, RECORD.digest)
+    assert not is_finished(tmp_path, "cd" * 16)
+    (tmp_path / "report" / "overlay.png").unlink()
+    assert not is_finished(tmp_path, RECORD.digest)
+    assert not is_finished(tmp_path / "none", RECORD.digest)
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff", b'{"schema_version": 1}'])
+def test_a_damaged_record_vouches_for_nothing(content: bytes, tmp_path: Path) -> None:
+    """The take is converted anew."""
+    made(tmp_path)
+    (tmp_path / NAME).write_bytes(content)
+    assert not is_finished(tmp_path, RECORD.digest)
+
+
+MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
+    (
+        lambda v: v.update(schema_version=2),
+        "version is 2, made by a newer Keymark; this one reads up to 1",
+    ),
+    (lambda v: v.pop("digest"), "digest is missing"),
+    (lambda v: v.update(take="x" * 2000), "take is 'xxx"),
+    (lambda v: v.update(frames=0), "frames is 0"),
+    (lambda v: v.update(fps=0), "fps is 0"),
+    (lambda v: v.update(keyframes=[1.0]), r"keyframes is \[1.0\]; it must be a list of"),
+    (lambda v: v.update(keyframes=[True]), r"keyframes is \[True\]"),
+    (lambda v: v.update(weak_frames=[10**9]), "weak_frames is"),
+    (lambda v: v.update(confidence=1.1), "confidence is 1.1; it must be a number from 0 to 1"),
+    (lambda v: v.update(notes=["x" * 20_000]), "notes is"),
+    (lambda v: v.update(notes="x"), "notes is 'x'"),
+    (lambda v: v.update(files={"../up": "ab" * 32}), r"'\.\./up'; it must be a file of this folder"),
+    (lambda v: v.update(files={"/up": "ab" * 32}), "'/up'"),
+    (lambda v: v.update(files={"a": "ab"}), "it must be a SHA-256"),
+    (lambda v: v.update(files={"a": None}), "it must be a SHA-256"),
+    (lambda v: v.update(files={f"{n}": "ab" * 32 for n in range(200)}), "names 200 files"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), MISTAKES)
+def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: str, tmp_path: Path) -> None:
+    """With file, field and value."""
+    made(tmp_path)
+    value = json.loads((tmp_path / NAME).read_text(encoding="utf-8"))
+    change(value)
+    (tmp_path / NAME).write_text(json.dumps(value), encoding="utf-8")
+    with pytest.raises(InputError, match=said) as caught:
+        read_record(tmp_path)
+    assert str(caught.value).startswith(str(tmp_path / NAME))
+
+
+def test_what_is_written_can_be_read(tmp_path: Path) -> None:
+    """Also where there is neither confidence nor library."""
+    bare = replace(RECORD, library=None, confidence=None, notes=(), files={}, keyframes=(), matched=())
+    assert read_record(made(tmp_path, bare)) == bare
