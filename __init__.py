@@ -1,4 +1,4 @@
-"""Keymark: an animated armature from one video of a performer wearing five coloured markers.
+"""Keymark: an animated armature from one video of a performer wearing five colored markers.
 
 The repository root is the Blender extension. Nothing of Blender is imported here before `register()`,
 so that the same tree serves as the ordinary Python package `keymark`.

@@ -28,7 +28,7 @@ ESTIMATES = ("ekf", "map")
 METHODS = (*INTERPOLATIONS, *ESTIMATES)
 MEASURES = ("mpjpe", "rooted", "depth", "worst_p95", "jitter", "skate", "coverage95")
 DRAWN = {"prior": "interpolation", "ekf": "ekf", "map": "map"}
-"""Methods whose error over time is drawn, and what of the charts' colours each has."""
+"""Methods whose error over time is drawn, and what of the charts' colors each has."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ LONG_REPEATS = 2
 load_project()
 
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.footage.colors.clip_colors import ClipColours  # noqa: E402
+from keymark.core.footage.colors.clip_colors import ClipColors  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.footage.markers import track_markers  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
@@ -97,22 +97,22 @@ def decode(path: Path) -> None:
 
 
 class LearningTime:
-    """How long the colours took to learn, as the extraction goes on; a context that measures all of it."""
+    """How long the colors took to learn, as the extraction goes on; a context that measures all of it."""
 
     def __enter__(self) -> "LearningTime":
         """Begin to measure."""
         self.seconds = 0.0
-        self._learn = ClipColours._learn
+        self._learn = ClipColors._learn
 
-        def learn(colours: ClipColours) -> None:
-            self.seconds += processor_time(lambda: self._learn(colours))
+        def learn(colors: ClipColors) -> None:
+            self.seconds += processor_time(lambda: self._learn(colors))
 
-        ClipColours._learn = learn
+        ClipColors._learn = learn
         return self
 
     def __exit__(self, *_: object) -> None:
         """Stop measuring."""
-        ClipColours._learn = self._learn
+        ClipColors._learn = self._learn
 
 
 def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:
@@ -134,7 +134,7 @@ def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:
     return [
         f"{take.name}, {tracks.frame_count} frames: decoding {alone:.2f} ms a frame, extraction with it "
         f"{total:.2f} ms, {total / alone:.2f} times as much; {(total - learnt) / alone:.2f} times without "
-        f"learning the colours, which takes {learnt:.2f} ms",
+        f"learning the colors, which takes {learnt:.2f} ms",
         *marker_rows(tracks, take, scale, left),
     ]
 

@@ -143,7 +143,7 @@ def times_table(times: dict[str, float]) -> str:
     values = (times["decode"], times["extract"], ratio, times["map"], times["ekf"])
     return "\n".join(
         [
-            "Processor time on one core [ms a frame], the shortest of three runs; with learning the colours.",
+            "Processor time on one core [ms a frame], the shortest of three runs; with learning the colors.",
             "",
             "| " + " | ".join(titles) + " |",
             "|---:" * len(titles) + "|",

@@ -55,7 +55,7 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, markers: the usual five, each with its colour from one click on the footage."""
+    """Step 2, markers: the usual five, each with its color from one click on the footage."""
     bpy.ops.keymark.add_usual_markers()
     for number, marker in enumerate(take.markers):
         take.active_marker = number

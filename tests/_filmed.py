@@ -12,14 +12,14 @@ NOISE_LEVELS = 3.0
 FINER = 3
 
 
-def part_colours(count: int) -> np.ndarray:
-    """(count + 1, 3) distinct colours; limbs look alike in pairs, the last is not used."""
+def part_colors(count: int) -> np.ndarray:
+    """(count + 1, 3) distinct colors; limbs look alike in pairs, the last is not used."""
     rng = np.random.default_rng(7)
     return rng.uniform(20.0, 235.0, size=(count + 1, 3))
 
 
 def background(rng: np.random.Generator) -> np.ndarray:
-    """(240, 320, 3) blocks of dull colours."""
+    """(240, 320, 3) blocks of dull colors."""
     blocks = rng.uniform(90.0, 200.0, size=(12, 16, 1)) + rng.uniform(-15.0, 15.0, size=(12, 16, 3))
     return np.kron(blocks, np.ones((20, 20, 1)))
 
@@ -31,13 +31,13 @@ def photograph(posture: Posture, shake_px: int = 0, seed: int = 3) -> Album:
     place = background(rng)
     model = ContourModel.average(BODY, CAMERA)
     parts = model.covers(BODY.pose(posture), np.arange(frames))
-    colours = part_colours(len(model.parts.segments))
+    colors = part_colors(len(model.parts.segments))
     album = Album()
     for frame in range(frames):
         shift = tuple(rng.integers(-shake_px, shake_px + 1, size=2))
         label = part_map(parts, frame, (320 * FINER, 240 * FINER), 1.0 / FINER)
         behind = np.kron(np.roll(place, shift, axis=(0, 1)), np.ones((FINER, FINER, 1)))
-        drawn = np.where(label[..., None] >= 0, colours[label], behind).astype(np.float32)
+        drawn = np.where(label[..., None] >= 0, colors[label], behind).astype(np.float32)
         image = cv2.resize(drawn, (320, 240), interpolation=cv2.INTER_AREA)
         image = image + rng.normal(0.0, NOISE_LEVELS, size=image.shape)
         album.add(frame, np.clip(np.round(image), 0, 255).astype(np.uint8))

@@ -162,7 +162,7 @@ def _visibility(masks: NDArray[np.bool_]) -> dict[str, dict[str, list]]:
 
 
 def _eyedropper(clip: Path, masks: NDArray[np.bool_]) -> tuple[MarkerStyle, ...]:
-    """One colour a marker, as found in the encoded footage: the median inside its region over the clip."""
+    """One color a marker, as found in the encoded footage: the median inside its region over the clip."""
     capture = cv2.VideoCapture(str(clip))
     images = np.stack([capture.read()[1] for _ in masks])[..., ::-1]
     styles = []

@@ -1,9 +1,9 @@
-"""Finding the edges of body parts in the pictures: along each contour sample's normal, where colours change.
+"""Finding the edges of body parts in the pictures: along each contour sample's normal, where colors change.
 
-At every place along the normal the part's colours compete with those of what lies behind it; an edge lies
+At every place along the normal the part's colors compete with those of what lies behind it; an edge lies
 where the part wins on the inner side and loses on the outer. Over all places this gives a distribution of
 the edge's distance, and its mean and variance are the measurement (as Hanek & Beetz 2004, *The contracting
-curve density algorithm*, fit curves to two sides' statistics): colours that do not differ measure nothing.
+curve density algorithm*, fit curves to two sides' statistics): colors that do not differ measure nothing.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ BELIEF = 3.0
 INNER, OUTER = 2.0, 2.5
 """Places inside and outside the contour that decide what is seen there."""
 MOST_EVIDENCE = 4.0
-"""No pixel's colours speak more than this for either side, as a log likelihood ratio."""
+"""No pixel's colors speak more than this for either side, as a log likelihood ratio."""
 
 
 @dataclass(frozen=True, eq=False)

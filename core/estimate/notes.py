@@ -53,7 +53,7 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
         if doubt > DOUBTED_MARKER:
             notes.append(
                 f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
-                "something else may have its colour"
+                "something else may have its color"
             )
     return tuple(notes)
 

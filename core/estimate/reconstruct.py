@@ -84,7 +84,7 @@ def reconstruct(
         The motion of every frame of the clip.
 
     Raises:
-        InputError: The clip cannot be used, a colour matches nothing in it, or the method is unknown.
+        InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
         ConversionError: No motion could be computed.
         ValueError: The reading is one of other markers.
     """

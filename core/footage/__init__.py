@@ -1,1 +1,1 @@
-"""What was seen: the camera, the clip, and the coloured markers found in it."""
+"""What was seen: the camera, the clip, and the colored markers found in it."""

@@ -1,9 +1,9 @@
-"""How the parts of a performer and the place behind him look: colour densities, learned from a clip itself.
+"""How the parts of a performer and the place behind him look: color densities, learned from a clip itself.
 
-A static camera sees the same background whenever the performer is not before it: a colour for each pixel,
+A static camera sees the same background whenever the performer is not before it: a color for each pixel,
 which a shadow darkens (Stauffer & Grimson 1999, *Adaptive background mixture models*, with one component
 and shadows as Horprasert, Harwood & Davis 1999 describe them). Each part of the body, and the background
-where it was never free, has the histogram of its colours instead.
+where it was never free, has the histogram of its colors instead.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ _LEVELS: Final = 1 << _BITS
 _CELLS: Final = _LEVELS**3
 _CELL_VOLUME: Final = (256 / _LEVELS) ** 3
 _UNSEEN: Final = 0.02
-"""Share of any surface's colours that a few frames do not show."""
+"""Share of any surface's colors that a few frames do not show."""
 _BLUR: Final = gaussian_filter1d(np.eye(_LEVELS), 1.0, axis=0, truncate=3.0)
 """Takes a histogram's levels along an axis to smoothed ones."""
 _STRANGE: Final = float(np.log(_UNSEEN / (_CELLS * _CELL_VOLUME)))
-"""Log density of a colour that was never seen on any surface."""
+"""Log density of a color that was never seen on any surface."""
 _MARGIN_PX: Final = 5
 """A predicted body may lie this far off: what is nearer to it is not taken for background."""
 _FEWEST_FREE: Final = 3
 _HIGHEST: Final = 255
 """In place of a level that was not free: put last."""
 _SPARSE: Final = 2
-"""Every so many-th row and column tell enough of the colours of all the background."""
+"""Every so many-th row and column tell enough of the colors of all the background."""
 _SMALLEST_DEVIATION, _LARGEST_DEVIATION = 3.0, 12.0
 """Bounds of a background pixel's standard deviation in levels."""
 _STEADY: Final = 6.0
@@ -49,23 +49,23 @@ _STEADY_SHARE: Final = 0.9
 _DARKEST, _BRIGHTEST, _LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light that falls on a background pixel, relative to its usual light."""
 _CHANGED: Final = 0.1
-"""Share of pixels that show something else than the background's usual colour."""
+"""Share of pixels that show something else than the background's usual color."""
 
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
-    """Log densities of colours, per level³.
+    """Log densities of colors, per level³.
 
     Attributes:
         parts: (O + 1, cells) of each part of the body and, last, of all the background.
-        colour: (rows, columns, 3) of the background.
-        deviation: (rows, columns) standard deviation of the background's colour, in levels.
+        color: (rows, columns, 3) of the background.
+        deviation: (rows, columns) standard deviation of the background's color, in levels.
         known: (rows, columns) whether the background was seen there often enough.
         steady: whether the background stands still, so that what differs from it is something else.
     """
 
     parts: FloatArray
-    colour: FloatArray
+    color: FloatArray
     deviation: FloatArray
     known: BoolArray
     steady: bool
@@ -83,7 +83,7 @@ class Appearance:
         anywhere = self.parts[-1, _cells(pixels)].astype(np.float64)
         deviation = self.deviation[row, column].astype(np.float64)
         # Channel by channel: sums over an axis of three are slow.
-        usual = [self.colour[..., channel][row, column].astype(np.float64) for channel in range(3)]
+        usual = [self.color[..., channel][row, column].astype(np.float64) for channel in range(3)]
         seen = [pixels[..., channel].astype(np.float64) for channel in range(3)]
         power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
         light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
@@ -109,15 +109,15 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
     body = np.stack([cv2.dilate((label != NOTHING).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
     counts = np.bincount(np.concatenate(seen), minlength=(parts + 1) * _CELLS).reshape(parts + 1, _CELLS)
-    colour, spread = _middle_and_spread(np.stack(images), ~body)
+    color, spread = _middle_and_spread(np.stack(images), ~body)
     known = np.count_nonzero(~body, axis=0) >= _FEWEST_FREE
     steady = bool(known.any() and np.mean(spread[known] < _STEADY) >= _STEADY_SHARE)
     deviation = np.clip(spread, _SMALLEST_DEVIATION, _LARGEST_DEVIATION)
-    return Appearance(_log_densities(counts), colour, deviation, known, steady)
+    return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 
 def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IntArray:
-    """Return the colour cells seen inside parts and well outside them, each part's after the last's."""
+    """Return the color cells seen inside parts and well outside them, each part's after the last's."""
     rows, columns = np.nonzero(_interior(label) & (label != NOTHING))
     inside = label[rows, columns].astype(np.intp) * _CELLS + _cells(image[rows, columns])
     sparse = slice(None, None, _SPARSE), slice(None, None, _SPARSE)
@@ -125,7 +125,7 @@ def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) ->
 
 
 def _cells(pixels: Image) -> IntArray:
-    """Return the colour cell of pixels (..., 3), coarser than those that tell markers apart."""
+    """Return the color cell of pixels (..., 3), coarser than those that tell markers apart."""
     reduced = (pixels >> (8 - _BITS)).astype(np.intp)
     return np.asarray((reduced[..., 0] << 2 * _BITS) | (reduced[..., 1] << _BITS) | reduced[..., 2])
 
@@ -149,11 +149,11 @@ def _log_densities(counts: IntArray) -> FloatArray:
 
 
 def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Return the median colour (rows, columns, 3) and the largest channel's deviation of free pixels."""
-    colour = _median(stack, free)
-    distance = _median(np.stack([cv2.absdiff(image, colour) for image in stack]), free)
+    """Return the median color (rows, columns, 3) and the largest channel's deviation of free pixels."""
+    color = _median(stack, free)
+    distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), free)
     largest = np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2])
-    return colour.astype(np.float32), 1.48 * largest.astype(np.float32)
+    return color.astype(np.float32), 1.48 * largest.astype(np.float32)
 
 
 def _median(stack: Image, free: BoolArray) -> Image:

@@ -1,6 +1,6 @@
 """Which regions are the marker: one path through a whole clip's regions, and the pieces that belong to it.
 
-All regions of a marker's colour are recorded in one pass over the clip as a few numbers each. The path is
+All regions of a marker's color are recorded in one pass over the clip as a few numbers each. The path is
 then the cheapest one through them: it pays for jumps, for regions unlike the marker, and for frames in which
 it is hidden. Costs are negative logarithms of likelihood ratios.
 """
@@ -28,7 +28,7 @@ _HIDING_COST: Final = 4.0
 _HIDDEN_COST: Final = 2.5
 """Cost of each hidden frame: once hidden, a marker stays so for a while."""
 _CERTAINTY_WEIGHT: Final = 3.0
-"""A region's pixels err together, but less than fully: its colour counts as a few independent witnesses."""
+"""A region's pixels err together, but less than fully: its color counts as a few independent witnesses."""
 _RESTART_COST: Final = 10.0
 _LONGEST_GAP: Final = 12
 """Frames over which the speed still bounds where a marker comes back."""
@@ -54,13 +54,13 @@ _RIVAL_AREA: Final = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """The regions of one marker's colour over a clip, N in all.
+    """The regions of one marker's color over a clip, N in all.
 
     Attributes:
         frame: (N,) frame index of each, ascending.
         moments: (N, 6) raw moments.
         box: (N, 4) left, top, right, bottom in px.
-        certainty: (N,) colour certainty in 0..1.
+        certainty: (N,) color certainty in 0..1.
         clipped: (N,) whether it touches the image's border.
         start: (F + 1,) where each frame's regions begin.
     """
@@ -83,16 +83,16 @@ class Candidates:
         return np.asarray(self.moments[:, 0])
 
 
-def candidates(regions: Sequence[Regions], colour: int, scale: float) -> Candidates:
-    """Gather the regions of one colour and take them to the image's own pixels.
+def candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
+    """Gather the regions of one color and take them to the image's own pixels.
 
     Args:
         regions: of each frame, what was found in it.
-        colour: which.
+        color: which.
         scale: pixels of the image that one of the measuring grid spans.
     """
-    frame = np.repeat(np.arange(len(regions)), [len(found.colour) for found in regions])
-    own = np.concatenate([found.colour for found in regions]) == colour
+    frame = np.repeat(np.arange(len(regions)), [len(found.color) for found in regions])
+    own = np.concatenate([found.color for found in regions]) == color
     frame = frame[own]
     return Candidates(
         frame=frame,
@@ -112,9 +112,9 @@ def typical_area(found: Candidates, clutter: BoolArray) -> float:
 
 
 def still_clutter(found: Candidates) -> BoolArray:
-    """Mark regions (N,) that stay in place for most of the clip while others of their colour move.
+    """Mark regions (N,) that stay in place for most of the clip while others of their color move.
 
-    A marker that itself rests is not marked: nothing else of its colour is seen at the same time.
+    A marker that itself rests is not marked: nothing else of its color is seen at the same time.
     """
     frames = len(found.start) - 1
     still = _still(found, frames)
@@ -198,7 +198,7 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
 def region_costs(
     found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
 ) -> FloatArray:
-    """Return the cost of taking each region for the marker, (N,), by area, colour, rest and expected place.
+    """Return the cost of taking each region for the marker, (N,), by area, color, rest and expected place.
 
     Args:
         found: the regions.
@@ -223,14 +223,14 @@ def rivals_costs(
     marker: int,
     rivals: Sequence[int],
 ) -> FloatArray:
-    """Return what each region costs more, (N,), because markers of the same colour may be what it is.
+    """Return what each region costs more, (N,), because markers of the same color may be what it is.
 
     Args:
         found: the regions.
         taken: (N,) regions that are a rival's already.
         expected: where the markers are expected.
         marker: whose cost it is.
-        rivals: the markers of its colour.
+        rivals: the markers of its color.
     """
     cost = np.where(taken, _TAKEN_COST, 0.0)
     own = _relative_offset(found, expected, marker)

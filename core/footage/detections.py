@@ -1,6 +1,6 @@
 """What one look at every frame finds, before anything says which region is which marker's.
 
-Where the markers are expected decides which regions are theirs, and has a say in what their colours are
+Where the markers are expected decides which regions are theirs, and has a say in what their colors are
 learned from. Sightings remember what was learned from, so that they serve other expectations too, wherever
 the same would be learned with those: exactly the same regions would be found again.
 """
@@ -21,7 +21,7 @@ Image = NDArray[np.uint8]
 
 @dataclass(frozen=True)
 class Lesson:
-    """Once that the colours were learned.
+    """Once that the colors were learned.
 
     Attributes:
         frames: the frames learned from.
@@ -34,13 +34,13 @@ class Lesson:
 
 @dataclass(frozen=True, eq=False)
 class Sightings:
-    """All regions of the markers' colours in a clip of F frames.
+    """All regions of the markers' colors in a clip of F frames.
 
     Attributes:
         regions: of each frame, what was found in it, in pixels of the measuring grid.
         time_s: (F,) time stamps of the frames in seconds.
         size: width and height of the clip's images in px.
-        lessons: how the colours were learned, in order.
+        lessons: how the colors were learned, in order.
         samples: the images that were learned from, (rows, columns, 3), by their frames.
     """
 

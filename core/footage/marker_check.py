@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from .association import Candidates, candidates
 from .clips.clip_samples import ClipSamples
-from .colors.clip_colors import ClipColours
-from .colors.color_model import ColourModel
-from .colors.color_overlap import colour_claims
+from .colors.clip_colors import ClipColors
+from .colors.color_model import ColorModel
+from .colors.color_overlap import color_claims
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
 from .region_assignment import DEAREST_PIECE, own_regions
@@ -50,18 +50,18 @@ class MarkerReadout:
 
 @dataclass(frozen=True, eq=False)
 class MarkerCheck:
-    """What a look at a clip's samples says of M markers in C colours.
+    """What a look at a clip's samples says of M markers in C colors.
 
     Attributes:
         readouts: one a marker.
-        model: the colours as they were learned, for previews.
-        groups: of each colour, the markers that bear it.
-        missing: of each marker whose colour is nowhere, by index, a sentence that begins with its name; the
+        model: the colors as they were learned, for previews.
+        groups: of each color, the markers that bear it.
+        missing: of each marker whose color is nowhere, by index, a sentence that begins with its name; the
             extraction refuses such a clip.
     """
 
     readouts: tuple[MarkerReadout, ...]
-    model: ColourModel
+    model: ColorModel
     groups: tuple[tuple[int, ...], ...]
     missing: Mapping[int, str]
 
@@ -71,7 +71,7 @@ def check_markers(
 ) -> Generator[float, None, MarkerCheck]:
     """Find the markers in sampled frames, with the extraction's own means but each frame by itself.
 
-    A colour that is nowhere does not keep the others from being looked at.
+    A color that is nowhere does not keep the others from being looked at.
 
     Args:
         samples: frames spread over the clip.
@@ -84,27 +84,25 @@ def check_markers(
     yield 0.0
     frames = len(samples.images)
     at_samples = None if expected is None else _at(expected, samples.indices)
-    colours = ClipColours(samples.path, samples.size, styles, at_samples)
-    colours.learn(samples.images)
+    colors = ClipColors(samples.path, samples.size, styles, at_samples)
+    colors.learn(samples.images)
     yield 0.5
     regions = []
     for done, image in enumerate(samples.images):
-        regions += find_regions([image], 0, colours.model)
+        regions += find_regions([image], 0, colors.model)
         yield 0.5 + 0.5 * done / frames
-    found = [
-        candidates(regions, colour, 2.0 ** halvings(samples.size)) for colour in range(len(colours.groups))
-    ]
-    own = own_regions(found, colours.groups, at_samples, _cheapest)
+    found = [candidates(regions, color, 2.0 ** halvings(samples.size)) for color in range(len(colors.groups))]
+    own = own_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
-    likenesses = _likenesses([style.name for style in styles], colours, found, areas)
-    complaints = colours.complaints()
+    likenesses = _likenesses([style.name for style in styles], colors, found, areas)
+    complaints = colors.complaints()
     readouts = [
         _readout(style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker))
         for marker, style in enumerate(styles)
     ]
     yield 1.0
-    groups = tuple(tuple(group) for group in colours.groups)
-    return MarkerCheck(tuple(readouts), colours.model, groups, complaints)
+    groups = tuple(tuple(group) for group in colors.groups)
+    return MarkerCheck(tuple(readouts), colors.model, groups, complaints)
 
 
 def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
@@ -124,25 +122,25 @@ def _cheapest(found: Candidates, cost: FloatArray, _length_px: float) -> IntArra
 
 
 def _likenesses(
-    names: Sequence[str], colours: ClipColours, found: Sequence[Candidates], areas: Sequence[FloatArray]
+    names: Sequence[str], colors: ClipColors, found: Sequence[Candidates], areas: Sequence[FloatArray]
 ) -> dict[int, Likeness]:
     """Return what else looks like each marker, by its index, from its area in every frame."""
-    claims = colour_claims(colours.model)
-    together = [" and ".join(names[marker] for marker in group) for group in colours.groups]
+    claims = color_claims(colors.model)
+    together = [" and ".join(names[marker] for marker in group) for group in colors.groups]
     likenesses = {}
-    for colour, group in enumerate(colours.groups):
-        coloured = float(found[colour].area.sum())
+    for color, group in enumerate(colors.groups):
+        colored = float(found[color].area.sum())
         theirs = sum(float(areas[marker].sum()) for marker in group)
-        clutter = max(coloured - theirs, 0.0) / max(coloured, 1.0)
+        clutter = max(colored - theirs, 0.0) / max(colored, 1.0)
         claimed = [
             (other, float(share))
-            for index, (other, share) in enumerate(zip(together, claims[colour, :-1], strict=True))
-            if index != colour
+            for index, (other, share) in enumerate(zip(together, claims[color, :-1], strict=True))
+            if index != color
         ]
         for marker in group:
             alike = [names[other] for other in group if other != marker]
             rivals = 1.0 - float(areas[marker].sum()) / max(theirs, 1.0)
-            likenesses[marker] = Likeness(alike, claimed, float(claims[colour, -1]), clutter, rivals)
+            likenesses[marker] = Likeness(alike, claimed, float(claims[color, -1]), clutter, rivals)
     return likenesses
 
 
@@ -153,7 +151,7 @@ def _readout(
     sampled, found = len(area), int(np.count_nonzero(area))
     if complaint is not None or not found:
         sentence = complaint or (
-            f"{name} is in none of the {sampled} frames looked at, or something larger has its colour; pick "
+            f"{name} is in none of the {sampled} frames looked at, or something larger has its color; pick "
             "it anew, or wear another"
         )
         return MarkerReadout(

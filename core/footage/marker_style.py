@@ -16,7 +16,7 @@ _ALIKE_DISTANCE: Final = 2.5
 
 @dataclass(frozen=True)
 class MarkerStyle:
-    """A coloured surface marker as the performer wears it.
+    """A colored surface marker as the performer wears it.
 
     Attributes:
         name: the marker's name.
@@ -29,8 +29,8 @@ class MarkerStyle:
     color_srgb: tuple[int, int, int]
 
 
-def colour_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
-    """Return the indices of the markers by colour; those that no colour tells apart are together."""
+def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
+    """Return the indices of the markers by color; those that no color tells apart are together."""
     groups: list[list[int]] = []
     for index, style in enumerate(styles):
         for group in groups:

@@ -1,4 +1,4 @@
-"""What may go wrong with a marker's colour, in sentences for the person who can still change it."""
+"""What may go wrong with a marker's color, in sentences for the person who can still change it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FEW: Final = 0.6
 _ENOUGH: Final = 6
 """Frames that must be looked at to tell a marker that is seldom found from one that was hidden just then."""
 _MUCH: Final = 0.2
-"""Share of its colour that others may have before it is worth a word."""
+"""Share of its color that others may have before it is worth a word."""
 _SMALL_PX: Final = 40.0
 """Pixels of the measuring grid below which a region is hardly more than its border."""
 
@@ -19,11 +19,11 @@ class Likeness(NamedTuple):
     """What else looks like a marker.
 
     Attributes:
-        alike: names of markers that no colour tells from it.
-        claimed: names of the other colours' markers, each with the share of its pixels taken for them.
+        alike: names of markers that no color tells from it.
+        claimed: names of the other colors' markers, each with the share of its pixels taken for them.
         background: share of its pixels taken for the background.
-        clutter: share of what has its colour that is no marker.
-        rivals: share of the markers of its colour that is not it.
+        clutter: share of what has its color that is no marker.
+        rivals: share of the markers of its color that is not it.
     """
 
     alike: Sequence[str]
@@ -47,23 +47,23 @@ def marker_warnings(
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
-        f"{name} and {other} have colours too alike: {_percent(share)} of {name} would pass for {other}"
+        f"{name} and {other} have colors too alike: {_percent(share)} of {name} would pass for {other}"
         for other, share in likeness.claimed
         if share >= _MUCH
     ]
     if likeness.background >= _MUCH:
         sentences.append(
-            f"the background wears the colour of {name}: {_percent(likeness.background)} of the marker would "
+            f"the background wears the color of {name}: {_percent(likeness.background)} of the marker would "
             "pass for it"
         )
     if likeness.clutter >= _MUCH:
         sentences.append(
-            f"{_percent(likeness.clutter)} of what has the colour of {name} is something else in the picture"
+            f"{_percent(likeness.clutter)} of what has the color of {name} is something else in the picture"
         )
     if sampled >= _ENOUGH and found < _FEW * sampled:
         sentences.append(
             f"{name} is found in only {found} of {sampled} frames; where it is not hidden, pick its "
-            "colour in one that misses it"
+            "color in one that misses it"
         )
     if grid_area < _SMALL_PX:
         sentences.append(
@@ -73,11 +73,11 @@ def marker_warnings(
 
 
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
-    """Return a sentence on markers that no colour tells from one, where there are any."""
+    """Return a sentence on markers that no color tells from one, where there are any."""
     if not alike:
         return []
     return [
-        f"{name} has almost the same colour as {' and '.join(alike)}; only keyframes and paths tell which is "
+        f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell which is "
         "which"
     ]
 

@@ -1,4 +1,4 @@
-"""Finding the coloured markers of a clip: from one colour sample each to tracks of their image regions."""
+"""Finding the colored markers of a clip: from one color sample each to tracks of their image regions."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from .association import candidates, main_path
 from .clips.clip import Clip
-from .colors.clip_colors import ClipColours
+from .colors.clip_colors import ClipColors
 from .detections import Sightings
-from .marker_style import MarkerStyle, colour_groups
+from .marker_style import MarkerStyle, color_groups
 from .pieces import region_quality
 from .region_assignment import own_regions
 from .region_tracks import ExpectedRegions, RegionTracks
@@ -24,7 +24,7 @@ from .segmentation.working_image import halvings, measuring_image
 FloatArray = NDArray[np.float64]
 
 _STRETCH_BYTES: Final = 100_000_000
-"""Memory for the images that wait until the colours are learned: five seconds of video and more."""
+"""Memory for the images that wait until the colors are learned: five seconds of video and more."""
 _TOGETHER: Final = 4
 """Images that are looked at together: enough to make little of the cost of every step."""
 
@@ -34,7 +34,7 @@ def track_markers(
 ) -> Generator[float, None, RegionTracks]:
     """Follow the markers through a clip.
 
-    One pass over the clip in constant memory records the regions of each marker's colour; the marker is then
+    One pass over the clip in constant memory records the regions of each marker's color; the marker is then
     told from clutter of like hue over the whole clip at once.
 
     Args:
@@ -49,7 +49,7 @@ def track_markers(
         The markers' regions in every frame.
 
     Raises:
-        InputError: a marker's colour matches nothing in the clip, or a frame cannot be read.
+        InputError: a marker's color matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
     seen = yield from sight_markers(clip, styles, expected)
@@ -60,32 +60,30 @@ def track_markers(
 def sight_markers(
     clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> Generator[float, None, Sightings]:
-    """Find all regions of the markers' colours in a clip, in one pass; see `track_markers`."""
-    colours = ClipColours(clip.path, clip.size, styles, expected)
-    regions, time_s = yield from _all_regions(clip, colours)
-    colours.check_found()
-    return Sightings(tuple(regions), time_s, clip.size, tuple(colours.lessons), colours.samples)
+    """Find all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
+    colors = ClipColors(clip.path, clip.size, styles, expected)
+    regions, time_s = yield from _all_regions(clip, colors)
+    colors.check_found()
+    return Sightings(tuple(regions), time_s, clip.size, tuple(colors.lessons), colors.samples)
 
 
 def still_hold(seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
     """Tell whether exactly the same would be found in the clip with the markers expected elsewhere."""
-    colours = ClipColours(Path(), seen.size, styles, expected)
-    return colours.learn_again(seen)
+    colors = ClipColors(Path(), seen.size, styles, expected)
+    return colors.learn_again(seen)
 
 
 def tell_markers(
     seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
     """Tell which of the regions that were found are the markers'; see `track_markers`."""
-    return _tracks(seen.regions, styles, colour_groups(styles), expected, seen.time_s, seen.size)
+    return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
 
 
-def _all_regions(
-    clip: Clip, colours: ClipColours
-) -> Generator[float, None, tuple[list[Regions], FloatArray]]:
+def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple[list[Regions], FloatArray]]:
     """Find the regions of every frame, and the frames' times.
 
-    The images of the clip's first stretch wait, reduced, until the colours are learned from them; later ones
+    The images of the clip's first stretch wait, reduced, until the colors are learned from them; later ones
     are looked at as they come.
     """
     times = halvings(clip.size)
@@ -99,29 +97,29 @@ def _all_regions(
             waiting.append(measuring_image(image, times))
         else:
             if index == longest:
-                yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+                yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
             waiting.append(image)
-            colours.watch(index, image)
+            colors.watch(index, image)
             if len(waiting) == _TOGETHER:
-                regions += find_regions(waiting, times, colours.model, regions[-1])
+                regions += find_regions(waiting, times, colors.model, regions[-1])
                 waiting.clear()
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
     if len(time_s) <= longest:
-        yield from _regions_of_stretch(waiting, colours, regions, clip.frame_count)
+        yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
     elif waiting:
-        regions += find_regions(waiting, times, colours.model, regions[-1])
+        regions += find_regions(waiting, times, colors.model, regions[-1])
     return regions, np.array(time_s)
 
 
 def _regions_of_stretch(
-    waiting: list[NDArray[np.uint8]], colours: ClipColours, regions: list[Regions], frame_count: int
+    waiting: list[NDArray[np.uint8]], colors: ClipColors, regions: list[Regions], frame_count: int
 ) -> Generator[float, None, None]:
-    """Learn the colours from images on the measuring grid; append their regions and let go of them."""
-    colours.learn(waiting)
+    """Learn the colors from images on the measuring grid; append their regions and let go of them."""
+    colors.learn(waiting)
     stretch = len(waiting)
     while waiting:
         before = regions[-1] if regions else NO_REGIONS
-        regions += find_regions(waiting[:_TOGETHER], 0, colours.model, before)
+        regions += find_regions(waiting[:_TOGETHER], 0, colors.model, before)
         del waiting[:_TOGETHER]
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
@@ -135,7 +133,7 @@ def _tracks(
     size: tuple[int, int],
 ) -> RegionTracks:
     """Tell which regions are the markers', over the whole clip at once."""
-    found = [candidates(regions, colour, 2.0 ** halvings(size)) for colour in range(len(groups))]
+    found = [candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
     joined = own_regions(found, groups, expected, main_path)
     rows = [joined[marker] for marker in range(len(styles))]
     moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
@@ -158,7 +156,7 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
     """Say which markers look alike."""
     how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
     return tuple(
-        f"markers {' and '.join(styles[marker].name for marker in group)} have almost the same colour; {how}"
+        f"markers {' and '.join(styles[marker].name for marker in group)} have almost the same color; {how}"
         for group in groups
         if len(group) > 1
     )

@@ -20,12 +20,12 @@ _CLIPPED_QUALITY: Final = 0.4
 
 
 class OwnRegion(NamedTuple):
-    """What of the regions of its colour is a marker's, in each of F frames.
+    """What of the regions of its color is a marker's, in each of F frames.
 
     Attributes:
         moments: (F, 6) raw moments, zero where hidden.
         clipped: (F,) whether it touches the image's border.
-        certainty: (F,) of its colour, in 0..1.
+        certainty: (F,) of its color, in 0..1.
         share: (F,) share of its largest piece in its area.
     """
 
@@ -67,7 +67,7 @@ def region_quality(own: OwnRegion) -> FloatArray:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
     The product of the area against the full area seen in frames around, of clipping by the image's border, of
-    the colour's certainty, and of the scatter of its pieces.
+    the color's certainty, and of the scatter of its pieces.
     """
     area = own.moments[:, 0]
     if not np.any(area > 0.0):

@@ -33,7 +33,7 @@ def read_clip(
         with_album: whether pictures are wanted.
         kept: what was read before, of whatever clip. Where it still holds, the clip is not gone through: as a
             whole if all it was read from is as it was, and but for which regions are the markers' if only
-            these are expected elsewhere and that changes nothing of the colours learned.
+            these are expected elsewhere and that changes nothing of the colors learned.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -42,7 +42,7 @@ def read_clip(
         The same, to the last digit, as without what was kept.
 
     Raises:
-        InputError: nothing is to be seen in the clip, a marker's colour matches nothing, or a frame cannot be
+        InputError: nothing is to be seen in the clip, a marker's color matches nothing, or a frame cannot be
             read.
     """
     yield 0.0

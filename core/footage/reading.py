@@ -17,7 +17,7 @@ class Reading:
     Attributes:
         tracks: the markers' regions in every frame.
         album: a small picture of every frame; None where nothing is to be looked for but markers.
-        sightings: all regions of the markers' colours; None where they were not kept.
+        sightings: all regions of the markers' colors; None where they were not kept.
         notes: sentences on what may be wrong with the clip.
         key: of what it was read from and how, see `reading_key`; empty where nobody knows.
         noticed: what is to be known of the frames themselves.

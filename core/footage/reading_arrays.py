@@ -75,7 +75,7 @@ def _text(lines: tuple[str, ...]) -> NDArray[Any]:
 
 def _sightings_arrays(seen: Sightings) -> Arrays:
     """Regions one after the other with where each frame's begin, lessons likewise."""
-    counts = [len(found.colour) for found in seen.regions]
+    counts = [len(found.color) for found in seen.regions]
     learned = [len(lesson.frames) for lesson in seen.lessons]
     frames = sorted(seen.samples)
     return {

@@ -1,4 +1,4 @@
-"""Which of the regions of its colour are each marker's: what extraction and a look at samples share."""
+"""Which of the regions of its color are each marker's: what extraction and a look at samples share."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def own_regions(
     """Return what is each marker's in every frame, by the marker's index.
 
     Args:
-        found: of each colour, its regions.
-        groups: of each colour, the markers that bear it.
+        found: of each color, its regions.
+        groups: of each color, the markers that bear it.
         expected: where the markers are expected.
-        choose: from a colour's regions, their costs (N,) and the marker's length in px, the index of its main
+        choose: from a color's regions, their costs (N,) and the marker's length in px, the index of its main
             region in each frame, (F,); -1 where it is hidden.
     """
     alone = [len(group) == 1 for group in groups]
@@ -43,12 +43,12 @@ def own_regions(
     usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
     reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
     own = {}
-    for colour, group in enumerate(groups):
-        one = found[colour]
-        length = _length(one, clutter[colour], usual[colour])
+    for color, group in enumerate(groups):
+        one = found[color]
+        length = _length(one, clutter[color], usual[color])
         taken = np.zeros(len(one.frame), dtype=np.bool_)
         for marker in group:
-            cost = region_costs(one, clutter[colour], usual[colour], expected, marker)
+            cost = region_costs(one, clutter[color], usual[color], expected, marker)
             cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
             path = choose(one, cost, length)
             own[marker] = join_pieces(one, path, cost, reach, DEAREST_PIECE)

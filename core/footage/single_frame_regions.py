@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import InputError
 from .clips.clip import Clip
 from .clips.frame_reader import FrameReader
-from .colors.clip_colors import ClipColours
+from .colors.clip_colors import ClipColors
 from .detections import Sightings
 from .marker_style import MarkerStyle
 from .markers import tell_markers
@@ -23,26 +23,26 @@ _SAMPLED_FRAMES = 12
 def regions_of_frame(
     clip: Clip, time_s: float, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Find the markers in one frame, by colours learned from frames spread over the clip.
+    """Find the markers in one frame, by colors learned from frames spread over the clip.
 
     Args:
         clip: the footage.
         time_s: time of the frame in seconds from the first.
         styles: the markers, M of them, in the order of the result.
-        expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its colour.
+        expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its color.
 
     Returns:
         Tracks of one frame.
 
     Raises:
-        InputError: a marker's colour matches nothing in the clip, or there is no such frame.
+        InputError: a marker's color matches nothing in the clip, or there is no such frame.
     """
     image = FrameReader(clip).image_at(time_s)
     if image is None:
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
-    colours = ClipColours(clip.path, clip.size, styles)
-    colours.learn([measuring_image(sample, times) for _, sample in clip.sample(_SAMPLED_FRAMES)])
-    colours.check_found()
-    regions = find_regions([image], times, colours.model)
+    colors = ClipColors(clip.path, clip.size, styles)
+    colors.learn([measuring_image(sample, times) for _, sample in clip.sample(_SAMPLED_FRAMES)])
+    colors.check_found()
+    regions = find_regions([image], times, colors.model)
     return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

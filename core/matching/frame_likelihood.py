@@ -24,7 +24,7 @@ MIDDLE_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "gir
 """How far a marker lies from where the same moment of another performer's motion has it, the hips aligned."""
 LIMB_STD_M = {"upper_arm": 0.07, "forearm": 0.11, "hand": 0.14, "thigh": 0.05, "shin": 0.09, "foot": 0.12}
 ROOT_STD_M = 0.025
-"""How far off a marker's extent is: clothes, the colour's ends, a limb turned by a few degrees."""
+"""How far off a marker's extent is: clothes, the color's ends, a limb turned by a few degrees."""
 LEAST_QUALITY = 0.05
 DOUBTED = 0.15
 """Share of its weight that a marker keeps in finding the place, where another performer holds that limb

@@ -93,7 +93,7 @@ def match_take(
         Progress.
 
     Returns:
-        The choice. Where the first match shows that another thing of its colour was taken for a marker, the
+        The choice. Where the first match shows that another thing of its color was taken for a marker, the
         clip is read again (from what was seen, see `read_footage`) and matched once more.
 
     Raises:
@@ -156,7 +156,7 @@ def _matches(sought: Sought, prepared: Sequence[Prepared], floor_m: float | None
 def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Reading | None]:
     """The clip read once more, each marker sought where a match has it; None where that makes no difference.
 
-    Without keyframes a thing of a marker's colour may have been taken for it. A marker that is merely lost
+    Without keyframes a thing of a marker's color may have been taken for it. A marker that is merely lost
     where the match has it stays what it was: an arm may do something that the library does not.
     """
     if reading.sightings is None or match.fit > WELL:

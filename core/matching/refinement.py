@@ -91,7 +91,7 @@ class Refinement:
     def _sizes(self, chain: Whole, values: Array) -> Array:
         """(M,) how much larger each marker is than on an average body, over the clip.
 
-        Clothes and where a colour ends are the same in all frames: taken as news in each they would say more
+        Clothes and where a color ends are the same in all frames: taken as news in each they would say more
         of the distance than the floor does.
         """
         _, _, root, whole, *_ = self._seen

@@ -43,7 +43,7 @@ class MarkerPlacement:
 
     segment: str
     first: float = 0.05
-    """Share of the segment at which the colour begins."""
+    """Share of the segment at which the color begins."""
     last: float = 0.95
     """Share at which it ends."""
     lateral_m: float = 0.0
@@ -55,11 +55,11 @@ class MarkerPlacement:
 
     @classmethod
     def usual(cls, segment: str) -> "MarkerPlacement":
-        """Where garments of one colour usually sit on a segment."""
+        """Where garments of one color usually sit on a segment."""
         return cls(segment, **USUAL.get(segment.split(".")[0], {}))
 
     def pieces(self, body: Body) -> tuple[Piece, ...]:
-        """The volume that wears the colour."""
+        """The volume that wears the color."""
         parts = [segment_piece(body, name) for name in marker_parts(self.segment)]
         lengths = np.array([np.linalg.norm(part.end - part.start) for part in parts])
         edges = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
@@ -108,7 +108,7 @@ class RegionModel:
 
     @cached_property
     def _pieces(self) -> PieceStack:
-        """The volumes that wear a colour, Q of them, marker after marker."""
+        """The volumes that wear a color, Q of them, marker after marker."""
         return PieceStack.of(piece for placement in self.placements for piece in placement.pieces(self.body))
 
     @cached_property

@@ -158,7 +158,7 @@ def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Si
 
 
 def _shaded(color: Single, lit: Single) -> Single:
-    """Colours (N, 3) where so much light (N,) falls, -1 to 1."""
+    """Colors (N, 3) where so much light (N,) falls, -1 to 1."""
     brightness = DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit)
     return np.asarray(1.12 * color * brightness[:, None] + SHEEN * np.clip(lit, 0.0, 1.0)[:, None] ** 12)
 

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 TRUNK: Color = (186, 182, 180)
 BAND: Color = (235, 232, 230)
-"""Of the rings around the right limbs: colour is not the only thing that tells them from the left ones."""
+"""Of the rings around the right limbs: color is not the only thing that tells them from the left ones."""
 SHOE = 0.72
 """Brightness of feet beside that of legs."""
 SWELLING = {"upper_arm": 0.10, "forearm": 0.16, "thigh": 0.06, "shin": 0.22}

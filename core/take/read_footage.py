@@ -36,7 +36,7 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
         The same as without `kept`.
 
     Raises:
-        InputError: The clip cannot be used, or a colour matches nothing in it.
+        InputError: The clip cannot be used, or a color matches nothing in it.
     """
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)

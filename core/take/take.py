@@ -376,7 +376,7 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
         if twin != style.name:
             raise InputError(
                 f"{markers.where}: {shown(twin)} and {shown(style.name)} have the same color_srgb "
-                f"{list(style.color_srgb)}; each marker needs a colour of its own"
+                f"{list(style.color_srgb)}; each marker needs a color of its own"
             )
     return styles
 

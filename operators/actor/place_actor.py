@@ -58,7 +58,7 @@ def performers_place(
     if frame.styles:
         try:
             regions = frame.regions()
-        except InputError:  # a colour that is nowhere yet is no reason not to build
+        except InputError:  # a color that is nowhere yet is no reason not to build
             regions = None
     seen = regions is not None and bool(regions.visible.any())
     return posed_standing(frame, body, regions), seen

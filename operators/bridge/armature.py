@@ -20,7 +20,7 @@ from ...core.body.skeleton import JointKind, Skeleton
 from .bones import BoneModel, bone_models, rest_matrices, usual_mode
 
 COLLECTIONS = {"L": ("Left", "THEME01"), "R": ("Right", "THEME04"), "": ("Middle", "THEME09")}
-"""Bone collection and colour of each side."""
+"""Bone collection and color of each side."""
 CONNECTED_M = 1e-6
 
 

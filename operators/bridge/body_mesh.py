@@ -1,4 +1,4 @@
-"""A simple body on the armature's bones: one tapered, rounded limb a segment, markers in their colours."""
+"""A simple body on the armature's bones: one tapered, rounded limb a segment, markers in their colors."""
 
 from collections.abc import Sequence
 
@@ -27,7 +27,7 @@ def build_body_mesh(
 ) -> bpy.types.Object:
     """Add a mesh that the armature moves, each vertex with one bone.
 
-    The shaft of a marker's segment has the marker's colour, without shading from lights or view transform
+    The shaft of a marker's segment has the marker's color, without shading from lights or view transform
     beyond what the renderer adds; caps and all other segments are a plain skin.
 
     Args:
@@ -42,19 +42,19 @@ def build_body_mesh(
         InputError: The armature lacks bones.
     """
     materials = [_material(SKIN_NAME, SKIN_SRGB)]
-    colour_of: dict[str, int] = {}
-    coloured_caps: dict[str, set[int]] = {}
+    color_of: dict[str, int] = {}
+    colored_caps: dict[str, set[int]] = {}
     for marker in markers:
         parts = marker_parts(marker.segment)
         for part in parts:
-            colour_of[part] = len(materials)
-            # Where two parts of one marker meet, the joint between them is coloured as well.
-            coloured_caps[part] = ({1} if part != parts[-1] else set()) | ({0} if part != parts[0] else set())
+            color_of[part] = len(materials)
+            # Where two parts of one marker meet, the joint between them is colored as well.
+            colored_caps[part] = ({1} if part != parts[-1] else set()) | ({0} if part != parts[0] else set())
         materials.append(_material(marker.name, marker.color_srgb))
     axes = {model.name: model for model in skeleton_bones(armature_object, body.skeleton)}
     vertices: list[Array] = []
     faces: list[NDArray[np.intp]] = []
-    colours: list[int] = []
+    colors: list[int] = []
     groups: dict[str, range] = {}
     count = 0
     for piece in body_pieces(body):
@@ -67,20 +67,20 @@ def build_body_mesh(
         quads = _quads(len(rings))
         vertices.append(placed)
         faces.append(quads.reshape(-1, 4) + count)
-        bands = _coloured_bands(coloured_caps.get(piece.segment, set()))
-        material = colour_of.get(piece.segment, 0)
-        colours += [
+        bands = _colored_bands(colored_caps.get(piece.segment, set()))
+        material = color_of.get(piece.segment, 0)
+        colors += [
             material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
         ]
         groups[piece.segment] = range(count, count + len(placed))
         count += len(placed)
-    mesh = _mesh(armature_object.name, np.concatenate(vertices), np.concatenate(faces), colours)
+    mesh = _mesh(armature_object.name, np.concatenate(vertices), np.concatenate(faces), colors)
     for material_data in materials:
         mesh.materials.append(material_data)
     return _skinned(armature_object, mesh, groups)
 
 
-def _coloured_bands(caps: set[int]) -> range:
+def _colored_bands(caps: set[int]) -> range:
     """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
     first = 0 if 0 in caps else RINGS_OF_CAP
     return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
@@ -114,10 +114,10 @@ def _quads(rings: int) -> NDArray[np.intp]:
     return np.stack(corners, axis=-1)
 
 
-def _mesh(name: str, vertices: Array, faces: NDArray[np.intp], colours: list[int]) -> bpy.types.Mesh:
+def _mesh(name: str, vertices: Array, faces: NDArray[np.intp], colors: list[int]) -> bpy.types.Mesh:
     mesh = bpy.data.meshes.new(f"{name} Body")
     mesh.from_pydata(vertices.tolist(), [], faces.tolist())
-    mesh.polygons.foreach_set("material_index", np.array(colours, np.int32))
+    mesh.polygons.foreach_set("material_index", np.array(colors, np.int32))
     mesh.polygons.foreach_set("use_smooth", np.ones(len(faces), bool))
     mesh.update()
     return mesh

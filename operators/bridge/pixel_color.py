@@ -1,4 +1,4 @@
-"""The colour of the footage under a pixel, as an eyedropper on the file itself gives it."""
+"""The color of the footage under a pixel, as an eyedropper on the file itself gives it."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,7 @@ REACH_PX = 2
 
 
 def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
-    """The colour at a pixel of the frame that the scene shows now.
+    """The color at a pixel of the frame that the scene shows now.
 
     Args:
         footage: The clip in its scene.

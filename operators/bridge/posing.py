@@ -60,10 +60,10 @@ class FrameInFootage:
         """The markers' regions in the frame: what was read, else found now.
 
         Args:
-            expected: Where they are expected, (1, M), which tells markers of like colour apart.
+            expected: Where they are expected, (1, M), which tells markers of like color apart.
 
         Raises:
-            InputError: A colour is nowhere in the clip, or the clip cannot be read.
+            InputError: A color is nowhere in the clip, or the clip cannot be read.
         """
         if self.reading is not None:
             return self.reading.tracks.frame(self.index)

@@ -25,7 +25,7 @@ from .footage_to_scene import load_footage, show_footage
 from .frame_times import scene_frames
 
 VIEW_TRANSFORM = "Standard"
-"""Shows colours as they are given, so that markers look as in the footage; the default, AgX, does not."""
+"""Shows colors as they are given, so that markers look as in the footage; the default, AgX, does not."""
 
 BVH_ORDER = "ZXY"
 """One order of rotation channels for all joints: some readers take the first joint's for all."""
@@ -35,7 +35,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
     """Write a motion as a .blend and, if asked for, as a BVH.
 
     The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
-    colours, and the camera with the clip behind it; the clip's path is relative where the drives allow.
+    colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
     Each file is written beside its place and moved there when complete.
 
     Args:
@@ -78,7 +78,7 @@ def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.
 
 
 def _set_look(scene: bpy.types.Scene) -> None:
-    """Workbench in material colours, which every Blender has, and light for the other engines."""
+    """Workbench in material colors, which every Blender has, and light for the other engines."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.display.shading.color_type = "MATERIAL"
     scene.view_settings.view_transform = VIEW_TRANSFORM

@@ -70,7 +70,7 @@ def read_scene_take(
     """
     path = footage.path
     if not markers:
-        raise InputError("there are no markers; add one for each coloured sleeve the performer wears")
+        raise InputError("there are no markers; add one for each colored sleeve the performer wears")
     frames = yield from clip_frames(footage)
     body = read_body(armature_object, HUMAN)
     take = Take(

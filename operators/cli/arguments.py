@@ -9,7 +9,7 @@ from .line_parser import Commands, LineParser, UsageError, add_command, program_
 from .shoot_arguments import add_shoot_commands
 from .version import version
 
-DESCRIPTION = "Turns one video of a performer wearing coloured markers into an animated armature."
+DESCRIPTION = "Turns one video of a performer wearing colored markers into an animated armature."
 EXAMPLES = """\
 examples:
   {program} demo

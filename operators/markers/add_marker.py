@@ -1,4 +1,4 @@
-"""Add coloured markers."""
+"""Add colored markers."""
 
 import bpy
 

@@ -106,14 +106,14 @@ def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
 def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
     from ...core.footage.clips.frame_reader import FrameReader
     from ...core.footage.segmentation.mask_outlines import mask_outlines
-    from ...core.footage.segmentation.regions import colour_masks
+    from ...core.footage.segmentation.regions import color_masks
 
     if preview.reader is None:
         preview.reader = FrameReader(footage.open())
     image = preview.reader.image_at(footage.shown_s)
     if image is None:
         return ()
-    coverages = colour_masks(image, preview.check.model)
+    coverages = color_masks(image, preview.check.model)
     return tuple(
         ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
         for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)

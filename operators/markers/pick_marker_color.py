@@ -1,4 +1,4 @@
-"""Pick a marker's colour from the footage, and see at once how well it is found."""
+"""Pick a marker's color from the footage, and see at once how well it is found."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING

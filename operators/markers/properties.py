@@ -1,4 +1,4 @@
-"""A coloured marker as the scene stores it."""
+"""A colored marker as the scene stores it."""
 
 import bpy
 
@@ -43,7 +43,7 @@ def _segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context
 
 
 class KEYMARK_PG_marker(bpy.types.PropertyGroup):
-    """One coloured marker, and what a look at the footage found of it."""
+    """One colored marker, and what a look at the footage found of it."""
 
     name: bpy.props.StringProperty(name="Name", description="The marker's name", update=_changed)
     segment: bpy.props.EnumProperty(

@@ -1,4 +1,4 @@
-"""Remove a coloured marker."""
+"""Remove a colored marker."""
 
 import bpy
 

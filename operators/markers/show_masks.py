@@ -1,4 +1,4 @@
-"""Show or hide what has the markers' colours."""
+"""Show or hide what has the markers' colors."""
 
 import bpy
 

@@ -103,7 +103,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         choice = yield from stretch(match_take(posed, reading, libraries, floor_m, count), READ, 1.0)
         found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
         matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
-        # The match may have found that another thing of its colour had been taken for a marker.
+        # The match may have found that another thing of its color had been taken for a marker.
         return Outcome(identifier, frames, choice.reading or reading, choice, matched, notes)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:

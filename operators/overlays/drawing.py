@@ -1,6 +1,6 @@
 """Drawing into a region: lines, filled shapes and words, and pictures to draw, on Blender 4.5 to 5.2.
 
-To be called from a draw function of `registry`, which has switched blending on. Colours are red, green, blue
+To be called from a draw function of `registry`, which has switched blending on. Colors are red, green, blue
 and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first call: without a window a
 Blender has no shaders.
 """
@@ -38,7 +38,7 @@ def ui_scale() -> float:
 
 
 def faded(color: Sequence[float], opacity: float) -> Color:
-    """A colour of three or four numbers with its alpha multiplied by `opacity`."""
+    """A color of three or four numbers with its alpha multiplied by `opacity`."""
     red, green, blue, *alpha = color
     return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
 

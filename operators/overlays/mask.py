@@ -1,7 +1,7 @@
-"""What has the markers' colours, over the footage in the camera view and the Movie Clip editor.
+"""What has the markers' colors, over the footage in the camera view and the Movie Clip editor.
 
-Everything else is darkened, so that a mask shows on a marker of its very colour; an outline and the marker's
-name say the same to eyes that see the colours alike.
+Everything else is darkened, so that a mask shows on a marker of its very color; an outline and the marker's
+name say the same to eyes that see the colors alike.
 """
 
 from collections.abc import Sequence
@@ -59,7 +59,7 @@ def draw(context: bpy.types.Context) -> None:
 
 
 def draw_masks(preview: Preview, view: FootageView) -> None:
-    """Draw what has the markers' colours, in the region of a view."""
+    """Draw what has the markers' colors, in the region of a view."""
     _picture(_texture(preview), view)
     for mask in preview.masks:
         _outlines(mask, view)

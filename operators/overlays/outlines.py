@@ -37,7 +37,7 @@ def observed_outlines(
         review: What there is to see.
         index: Place of the frame.
         to_region: Takes footage pixels (..., 2) to the region.
-        colors: Each marker's colour.
+        colors: Each marker's color.
         style: How to draw.
     """
     places = to_region(review.observed[index])

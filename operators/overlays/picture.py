@@ -87,7 +87,7 @@ def _kind(item: Item) -> tuple[object, ...]:
 
 
 def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:
-    """Places one after the other, and a colour for each."""
+    """Places one after the other, and a color for each."""
     places = np.concatenate([place for place, _ in parts])
     colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(place), 4)) for place, color in parts]
     return places, np.concatenate(colors)

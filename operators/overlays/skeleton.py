@@ -54,7 +54,7 @@ def skeleton(
 
 
 def _limbs(names: tuple[str, ...], places: Array, style: Style) -> list[Item]:
-    """Lines with sides' colours; those on the right have a dark core."""
+    """Lines with sides' colors; those on the right have a dark core."""
     at = dict(zip(names, places, strict=True))
     at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
     at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])

@@ -1,4 +1,4 @@
-"""How what is drawn looks: colours, sizes, dashes. All sizes are of a plain screen [px]."""
+"""How what is drawn looks: colors, sizes, dashes. All sizes are of a plain screen [px]."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ LIMB = 2.4
 METRE, SMALLEST = 160.0, 0.35
 """A body of which a metre is smaller than this is drawn with finer marks, down to a share of the usual."""
 PALER = 0.5
-"""How far towards white the prediction's colour is moved, so that dashes show over a solid line."""
+"""How far towards white the prediction's color is moved, so that dashes show over a solid line."""
 HALO = 0.9
 
 
@@ -40,7 +40,7 @@ class Style:
     """How much smaller than usual what belongs to the body is drawn, as it is far away."""
 
     def color(self, color: Color | tuple[float, float, float]) -> Color:
-        """A colour with the chosen opacity."""
+        """A color with the chosen opacity."""
         return faded(color, self.opacity)
 
     def size(self, plain: float) -> float:
@@ -61,11 +61,11 @@ def body_scale(pixels_per_metre: NDArray[np.float64], scale: float) -> float:
 
 
 def side_color(name: str) -> Color:
-    """The colour of a point by the side of the body in its name."""
+    """The color of a point by the side of the body in its name."""
     return SIDES[name.partition(".")[2]]
 
 
 def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
-    """A colour nearer to white."""
+    """A color nearer to white."""
     red, green, blue = (PALER + (1.0 - PALER) * np.asarray(color, dtype=np.float64)).tolist()
     return (red, green, blue)

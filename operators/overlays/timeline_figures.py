@@ -71,7 +71,7 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
         height: Height of a bar of confidence 1.
 
     Returns:
-        Bars (N, 4, 2) and their opaque colours (N, 4).
+        Bars (N, 4, 2) and their opaque colors (N, 4).
     """
     middles = 0.5 * (x[1:] + x[:-1])
     reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
@@ -90,7 +90,7 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
 
 
 def believed_color(confidence: Array) -> Array:
-    """Colours (N, 3) of confidences (N,)."""
+    """Colors (N, 3) of confidences (N,)."""
     share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
     stops = np.stack([UNSURE, HALFWAY, SURE])
     return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)

@@ -131,7 +131,7 @@ def _draw(body: Body, posture: Posture, camera: Camera) -> np.ndarray:
     worn = [(piece, style) for style in STYLES for piece in MarkerPlacement.usual(style.segment).pieces(body)]
     for limb in body_pieces(body):
         garments = [(piece, style.color_srgb) for piece, style in worn if piece.segment == limb.segment]
-        for piece, colour in [(limb, (60, 60, 60)), *garments]:
+        for piece, color in [(limb, (60, 60, 60)), *garments]:
             rims = [
                 pose.place(piece.joint, centre + side * width * across)
                 for centre, widths in ((piece.start, piece.half_widths[0]), (piece.end, piece.half_widths[1]))
@@ -140,7 +140,7 @@ def _draw(body: Body, posture: Posture, camera: Camera) -> np.ndarray:
             ]
             pixels, _ = camera.project(np.stack(rims))
             outline = cv2.convexHull(np.round(16.0 * pixels - 8.0).astype(np.int32))
-            cv2.fillConvexPoly(image, outline, colour[::-1], cv2.LINE_AA, shift=4)
+            cv2.fillConvexPoly(image, outline, color[::-1], cv2.LINE_AA, shift=4)
     return image
 
 

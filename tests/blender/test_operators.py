@@ -32,7 +32,7 @@ def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
 
 
 def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Footage, actor of the right sizes, markers with their colours, keyframes on the actor."""
+    """Footage, actor of the right sizes, markers with their colors, keyframes on the actor."""
     settings = active_take(opened)
     assert opened.active_clip.frame_duration == 13
     lengths = read_body(settings.armature, HUMAN).actor.segments_m
@@ -130,8 +130,8 @@ def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
     assert bpy.ops.keymark.jump_to_proposal(direction="PREVIOUS") == {"CANCELLED"}
 
 
-def test_a_colour_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Where the trunk is, the active marker gets nearly the colour that was drawn."""
+def test_a_color_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Where the trunk is, the active marker gets nearly the color that was drawn."""
     settings = active_take(opened)
     settings.active_marker = 0
     settings.markers[0].color = (0.0, 0.0, 0.0)

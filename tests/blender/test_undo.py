@@ -22,7 +22,7 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
     ops = bpy.ops.keymark
 
     def pick() -> None:
-        """Give every marker the colour that it was drawn in."""
+        """Give every marker the color that it was drawn in."""
         for marker, style in zip(active_take(bpy.context.scene).markers, take.markers, strict=True):
             marker.color = [value / 255.0 for value in style.color_srgb]
 

@@ -111,10 +111,10 @@ def test_a_seed_decides_a_performance(performances: dict[str, Performance], name
 
 
 def test_takes_differ_from_each_other() -> None:
-    """No two takes share colours, camera or seed, and there are two sizes of image at least."""
+    """No two takes share colors, camera or seed, and there are two sizes of image at least."""
     described = list(TAKES.values())
-    colours = {tuple(take.look.painted[marker] for marker in MARKERS) for take in described}
-    assert len(colours) == len({take.seed for take in described}) == len(described)
+    colors = {tuple(take.look.painted[marker] for marker in MARKERS) for take in described}
+    assert len(colors) == len({take.seed for take in described}) == len(described)
     assert len({take.camera.resolution for take in described}) > 1
     assert len({take.camera.matrix_world.tobytes() for take in described}) == len(described)
 

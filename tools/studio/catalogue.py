@@ -26,7 +26,7 @@ JOG = Described(
     perform=performed(jog.plan, actor(1.88, trunk=0.97, thigh=1.03, forearm=1.05), 100, -8.0),
     camera=look_from(38.0, 3.6, 1.75, (0.0, -0.05, 0.98), 40.0, SMALL, tilt_deg=-3.0),
     look=Look(
-        colours={"trunk": (214, 96, 30), "forearm.L": (40, 150, 190), "forearm.R": (190, 40, 96),
+        colors={"trunk": (214, 96, 30), "forearm.L": (40, 150, 190), "forearm.R": (190, 40, 96),
                  "shin.L": (60, 150, 60),
                  "shin.R": (96, 70, 190), "skin": (122, 84, 62), "hair": (22, 18, 16)},
         girths={"thigh": 0.93, "shin": 0.94, "upper_arm": 0.9, "forearm": 0.92, "trunk": 0.95},
@@ -42,7 +42,7 @@ KICK = Described(
     perform=performed(kick.plan, actor(1.70, upper_arm=0.95, shin=0.97, hip_width=1.1), 100, 12.0),
     camera=look_from(58.0, 4.8, 1.1, (0.05, -0.25, 0.98), 55.0, SMALL, tilt_deg=2.0),
     look=Look(
-        colours={"trunk": (28, 130, 120), "forearm.L": (220, 170, 30), "forearm.R": (200, 60, 160),
+        colors={"trunk": (28, 130, 120), "forearm.L": (220, 170, 30), "forearm.R": (200, 60, 160),
                  "shin.L": (60, 90, 210), "shin.R": (200, 60, 40), "cloth": (196, 192, 184), "skin": (226,
                                                                                                       180,
     150)},
@@ -57,7 +57,7 @@ BOX = Described(
     perform=performed(box.plan, actor(1.80, forearm=1.04, shoulder_width=1.08), 108, 4.0),
     camera=look_from(24.0, 4.2, 1.45, (0.0, -0.05, 0.98), 50.0, SMALL),
     look=Look(
-        colours={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50),
+        colors={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50),
                  "shin.L": (60, 160, 90),
                  "shin.R": (150, 60, 180), "skin": (170, 120, 92)},
         girths={"upper_arm": 1.15, "forearm": 1.1, "trunk": 1.04},
@@ -75,7 +75,7 @@ JUMP = Described(
     perform=performed(jump.plan, actor(1.62, trunk=1.04, thigh=0.97), 92, -14.0),
     camera=look_from(-12.0, 3.3, 0.8, (0.0, 0.0, 1.19), 30.0, SMALL, tilt_deg=1.5),
     look=Look(
-        colours={"trunk": (120, 60, 170), "forearm.L": (60, 170, 70), "forearm.R": (220, 110, 30),
+        colors={"trunk": (120, 60, 170), "forearm.L": (60, 170, 70), "forearm.R": (220, 110, 30),
                  "shin.L": (200, 40, 70),
                  "shin.R": (50, 130, 200), "skin": (214, 160, 134), "hair": (120, 84, 40)},
         girths={"thigh": 1.06, "shin": 1.05, "trunk": 0.93, "upper_arm": 0.92, "forearm": 0.92},
@@ -89,7 +89,7 @@ SPIN = Described(
     perform=performed(spin.plan, actor(1.74, thigh=1.02, upper_arm=1.05), 96, -20.0, tempo=0.92),
     camera=look_from(-24.0, 3.4, 2.2, (0.0, 0.0, 0.93), 35.0, SMALL),
     look=Look(
-        colours={
+        colors={
             "trunk": (190, 178, 40),
             "forearm.L": (190, 50, 130),
             "forearm.R": (40, 110, 200),
@@ -126,7 +126,7 @@ LIFT = Described(
     perform=performed(lift.plan, actor(1.93, trunk=1.02, shoulder_width=1.05), 110, 6.0),
     camera=look_from(72.0, 4.7, 1.3, (-0.15, -0.05, 0.98), 48.0, SMALL, tilt_deg=-1.0),
     look=Look(
-        colours={
+        colors={
             "trunk": (70, 140, 60),
             "forearm.L": (210, 50, 50),
             "forearm.R": (60, 80, 200),
@@ -150,7 +150,7 @@ DANCE = Described(
     perform=performed(dance.plan, actor(1.67, shin=1.03, trunk=0.97, hip_width=1.06), 120, 10.0),
     camera=look_from(14.0, 4.4, 1.5, (0.0, 0.0, 0.95), 47.0, SMALL),
     look=Look(
-        colours={
+        colors={
             "trunk": (40, 90, 190),
             "forearm.L": (206, 44, 44),
             "forearm.R": (60, 160, 60),
@@ -182,7 +182,7 @@ STROLL = Described(
     perform=performed(stroll.plan, actor(1.78, thigh=1.04, forearm=0.96), 90),
     camera=look_from(6.0, 4.1, 1.55, (0.0, 0.0, 0.98), 32.0, SMALL),
     look=Look(
-        colours={
+        colors={
             "trunk": (196, 54, 44),
             "forearm.L": (36, 140, 130),
             "forearm.R": (150, 70, 190),
@@ -210,7 +210,7 @@ THROW = Described(
     perform=performed(throw.plan, actor(1.86, forearm=1.03, upper_arm=1.02), 66, -25.0, tempo=0.9),
     camera=look_from(20.0, 4.8, 1.6, (0.0, -0.05, 0.98), 42.0, WIDE),
     look=Look(
-        colours={
+        colors={
             "trunk": (236, 196, 40),
             "forearm.L": (160, 50, 170),
             "forearm.R": (220, 70, 36),
@@ -230,7 +230,7 @@ STAR_JUMPS = Described(
     perform=performed(star_jumps.plan, actor(1.56, trunk=1.05, thigh=0.95, upper_arm=0.95), 90, 15.0),
     camera=look_from(10.0, 5.0, 1.0, (0.0, 0.0, 1.10), 40.0, (640, 360), tilt_deg=-2.5),
     look=Look(
-        colours={
+        colors={
             "trunk": (60, 60, 180),
             "forearm.L": (220, 150, 30),
             "forearm.R": (200, 50, 120),
@@ -254,7 +254,7 @@ STAR_JUMPS = Described(
     samples=1,
     shadow_per_height=(-0.9, 0.9, 0.0),
 )
-"""A ball of nearly a marker's colour rolls past behind."""
+"""A ball of nearly a marker's color rolls past behind."""
 
 TAKES = {
     described.name: described

@@ -1,11 +1,11 @@
-"""How a performer looks: colours worn, girths, and how the clothes hang."""
+"""How a performer looks: colors worn, girths, and how the clothes hang."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-Colour = tuple[int, int, int]
+Color = tuple[int, int, int]
 
-CLOTHES: dict[str, Colour] = {
+CLOTHES: dict[str, Color] = {
     "trunk": (44, 92, 200),
     "forearm.L": (214, 44, 52),
     "forearm.R": (52, 166, 78),
@@ -17,7 +17,7 @@ CLOTHES: dict[str, Colour] = {
     "shoe": (206, 206, 202),
     "eye": (40, 30, 28),
 }
-"""Colours as painted (sRGB); light and camera change them."""
+"""Colors as painted (sRGB); light and camera change them."""
 MARKERS = tuple(CLOTHES)[:5]
 CLOTH_M = {"trunk": 0.005, "forearm": 0.003, "shin": 0.006}
 
@@ -27,18 +27,18 @@ class Look:
     """A performer's appearance.
 
     Attributes:
-        colours: Those that differ from `CLOTHES`, by name.
+        colors: Those that differ from `CLOTHES`, by name.
         girths: Factors of the limbs' and the trunk's thickness, by kind of segment, where they are not 1.
         cloth_m: How far each garment stands off, by kind of segment.
         folds: Share by which a garment's distance from the body varies: its wrinkles.
     """
 
-    colours: Mapping[str, Colour] = field(default_factory=dict)
+    colors: Mapping[str, Color] = field(default_factory=dict)
     girths: Mapping[str, float] = field(default_factory=dict)
     cloth_m: Mapping[str, float] = field(default_factory=lambda: CLOTH_M)
     folds: float = 0.0
 
     @property
-    def painted(self) -> dict[str, Colour]:
-        """Every colour, by name, markers first."""
-        return {**CLOTHES, **self.colours}
+    def painted(self) -> dict[str, Color]:
+        """Every color, by name, markers first."""
+        return {**CLOTHES, **self.colors}

@@ -1,4 +1,4 @@
-"""The performer as one smooth mesh that bends at its joints, dressed in five colours."""
+"""The performer as one smooth mesh that bends at its joints, dressed in five colors."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.spatial import cKDTree
 
 from .limbs import arm_rotations
-from .look import Colour, Look
+from .look import Color, Look
 from .performance import Performance
 from .performer_shape import body_parts, movers, part_mesh
 
@@ -153,7 +153,7 @@ def _weights(mesh: bpy.types.Mesh, places: Array, samples: list[Array]) -> Array
 def _paint(
     mesh: bpy.types.Mesh,
     body: Body,
-    colours: dict[str, Colour],
+    colors: dict[str, Color],
     places: Array,
     weights: Array,
     names: tuple[str, ...],
@@ -166,9 +166,9 @@ def _paint(
         rotation, origin = placed[name][0][0], placed[name][1][0]
         here = holder == name
         dressed[here] = _dress(name, body, (places[here] - origin) @ rotation)
-    order = list(colours)
-    for material, colour in colours.items():
-        mesh.materials.append(_material(material, colour))
+    order = list(colors)
+    for material, color in colors.items():
+        mesh.materials.append(_material(material, color))
     corners = np.empty(4 * len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("vertices", corners)
     index = np.array([order.index(name) for name in dressed], np.int32)[corners.reshape(-1, 4)]
@@ -207,12 +207,12 @@ def _dress(name: str, body: Body, local: Array) -> NDArray[np.str_]:
     return worn
 
 
-def _material(name: str, colour: Colour) -> bpy.types.Material:
+def _material(name: str, color: Color) -> bpy.types.Material:
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*((np.array(colour) / 255.0) ** 2.2), 1.0)
+    shader.inputs["Base Color"].default_value = (*((np.array(color) / 255.0) ** 2.2), 1.0)
     shader.inputs["Roughness"].default_value = 0.55 if name in ("skin", "shoe") else 0.85
     if name not in ("skin", "eye"):
         noise, bump = nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeBump")

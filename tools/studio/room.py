@@ -76,7 +76,7 @@ def build_room(room: Room) -> BuiltRoom:
 
 def _thing(thing: Thing) -> bpy.types.Object:
     place = tuple(float(value) for value in thing.place(0.0))
-    material = _matt("Thing", thing.colour, uneven=0.1, scale=4.0)
+    material = _matt("Thing", thing.color, uneven=0.1, scale=4.0)
     if thing.round:
         return _ball(place, 0.5 * thing.size[0], material)
     return _box("Thing", place, thing.size, material)
@@ -87,8 +87,8 @@ def _floor(planks: tuple[Triple, Triple, Triple]) -> None:
     material = floor.data.materials[0]
     nodes, links = material.node_tree.nodes, material.node_tree.links
     bricks, place = nodes.new("ShaderNodeTexBrick"), nodes.new("ShaderNodeTexCoord")
-    for name, colour in zip(("Color1", "Color2", "Mortar"), planks, strict=True):
-        bricks.inputs[name].default_value = (*colour, 1.0)
+    for name, color in zip(("Color1", "Color2", "Mortar"), planks, strict=True):
+        bricks.inputs[name].default_value = (*color, 1.0)
     for name, value in (("Scale", 1.0), ("Brick Width", 1.6), ("Row Height", 0.16), ("Mortar Size", 0.004)):
         bricks.inputs[name].default_value = value
     links.new(place.outputs["Object"], bricks.inputs["Vector"])
@@ -137,19 +137,19 @@ def _box(name: str, place: Triple, size: Triple, material: bpy.types.Material) -
     return thing
 
 
-def _matt(name: str, colour: Triple, uneven: float = 0.0, scale: float = 1.5) -> bpy.types.Material:
+def _matt(name: str, color: Triple, uneven: float = 0.0, scale: float = 1.5) -> bpy.types.Material:
     """A matt material; `uneven` is how much its brightness varies from place to place."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*colour, 1.0)
+    shader.inputs["Base Color"].default_value = (*color, 1.0)
     shader.inputs["Roughness"].default_value = 0.8
     if uneven:
         noise, ramp = nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeValToRGB")
         noise.inputs["Scale"].default_value = scale
         for element, factor in zip(ramp.color_ramp.elements, (1.0 - uneven, 1.0 + uneven), strict=True):
-            element.color = (*(min(1.0, factor * value) for value in colour), 1.0)
+            element.color = (*(min(1.0, factor * value) for value in color), 1.0)
         links.new(noise.outputs["Fac"], ramp.inputs["Fac"])
         links.new(ramp.outputs["Color"], shader.inputs["Base Color"])
     return material
@@ -157,7 +157,7 @@ def _matt(name: str, colour: Triple, uneven: float = 0.0, scale: float = 1.5) ->
 
 def _light(lamp: Lamp) -> None:
     light = bpy.data.lights.new("Window", "AREA")
-    light.size, light.energy, light.color = lamp.size, lamp.power, lamp.colour
+    light.size, light.energy, light.color = lamp.size, lamp.power, lamp.color
     thing = bpy.data.objects.new("Window", light)
     thing.location = lamp.place
     towards = Vector((0.2, 0.0, 1.0)) - Vector(lamp.place)

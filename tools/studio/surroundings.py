@@ -18,13 +18,13 @@ class Lamp:
         place: Its middle [m].
         size: Of an edge [m]; small ones throw hard shadows.
         power: Watts.
-        colour: Red, green and blue, linear.
+        color: Red, green and blue, linear.
     """
 
     place: Triple
     size: float
     power: float
-    colour: Triple
+    color: Triple
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ class Thing:
 
     Attributes:
         size: Edges [m]; a ball has three equal ones and is `round`.
-        colour: Red, green and blue, linear.
+        color: Red, green and blue, linear.
         path: Its place [m] by frame, through which it moves evenly; a single one stands still.
         round: Whether it is a ball.
     """
 
     size: Triple
-    colour: Triple
+    color: Triple
     path: Mapping[float, Triple]
     round: bool = False
 
@@ -61,8 +61,8 @@ class Room:
     Attributes:
         lamps: The lamps, the brightest first.
         sky: Red, green, blue and strength of the light from everywhere.
-        wall: Colour of the walls, linear.
-        planks: Colours of the floor's planks and of the gaps between them, linear.
+        wall: Color of the walls, linear.
+        planks: Colors of the floor's planks and of the gaps between them, linear.
         furnished: Whether wall bars, pictures, a bench and a ball are there.
         things: What else is there and may move or hide the performer.
     """

@@ -24,7 +24,7 @@ _QUALITY: Final = 90
 
 @dataclass(eq=False)
 class Album:
-    """Small pictures of the frames read so far, on the grid that colours are learned on.
+    """Small pictures of the frames read so far, on the grid that colors are learned on.
 
     Attributes:
         factor: pixels of the clip to a pixel of the pictures, along either axis.
@@ -85,7 +85,7 @@ class Album:
         return np.stack(seen), known
 
     def picture(self, index: int) -> Image:
-        """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that colour decides.
+        """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that color decides.
 
         Raises:
             KeyError: the frame was never read, or nothing is to be seen in it.

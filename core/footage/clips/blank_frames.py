@@ -18,7 +18,7 @@ _STRAY: Final = 0.005
 
 
 def is_blank(image: Image) -> bool:
-    """Tell whether a picture (rows, columns, 3) shows one even colour and nothing else."""
+    """Tell whether a picture (rows, columns, 3) shows one even color and nothing else."""
     step = max(min(image.shape[:2]) // _LOOKED_AT, 1)
     looked_at = image[step // 2 :: step, step // 2 :: step]
     # Channel by channel: the first tells of almost every picture, and partitions along an axis are slow.

@@ -1,4 +1,4 @@
-"""Frames spread over a clip, kept as small pictures, so that colours can be tried on them at once."""
+"""Frames spread over a clip, kept as small pictures, so that colors can be tried on them at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .clip import Clip
 Image = NDArray[np.uint8]
 
 SAMPLED_FRAMES: Final = 24
-"""Twice as many as colours are learned from, so that most are judged by colours learned elsewhere."""
+"""Twice as many as colors are learned from, so that most are judged by colors learned elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,14 +22,14 @@ _COMBED_EVERY: Final = 15
 _COMBED, _COMBED_MORE = 5e-4, 10.0
 """Share of an interlaced picture that is combed, and how much more than by columns. Sixteen clips
 that are not interlaced stay below 1.2e-4 and three times as much; three made so have 1e-2 and more."""
-_COLOURLESS: Final = 10
+_COLORLESS: Final = 10
 """Levels between the channels of grey, but for what compression adds."""
 _CUT: Final = 10.0
 """Levels by which half of the picture changes at once where the scene does."""
 _CUT_MORE: Final = 5.0
 """How many times what it usually changes."""
 _FEW_PIXELS: Final = 4
-"""So many of a small picture may have colours by accident."""
+"""So many of a small picture may have colors by accident."""
 _NAMED: Final = 3
 
 
@@ -80,7 +80,7 @@ class FrameWatch:
         """Begin; no frame was seen."""
         self._frames = 0
         self._blank: list[int] = []
-        self._colour = 0
+        self._color = 0
         self._combed: list[tuple[float, float]] = []
         self._last: Image | None = None
         self._changes: dict[int, float] = {}
@@ -93,7 +93,7 @@ class FrameWatch:
             return False
         step = max(min(image.shape[:2]) // _SIDE, 1)
         small = image[step // 2 :: step, step // 2 :: step].copy()
-        self._colour = max(self._colour, _colourfulness(small))
+        self._color = max(self._color, _colorfulness(small))
         if index % _COMBED_EVERY == 0:
             self._combed.append(combing(image))
         if self._last is not None:
@@ -108,9 +108,9 @@ class FrameWatch:
     def nothing_seen(self) -> str | None:
         """Say why no marker can be found in the clip; None where that is not known."""
         if len(self._blank) == self._frames:
-            return "nothing is to be seen in any frame: all are black, or of one colour"
-        if self._colour < _COLOURLESS:
-            return "the clip has no colours, by which markers are found; it must be filmed in colour"
+            return "nothing is to be seen in any frame: all are black, or of one color"
+        if self._color < _COLORLESS:
+            return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
 
     def _interlaced(self) -> bool:
@@ -124,7 +124,7 @@ class FrameWatch:
         return tuple(index for index, one in self._changes.items() if one > max(_CUT, _CUT_MORE * usual))
 
 
-def _colourfulness(image: Image) -> int:
+def _colorfulness(image: Image) -> int:
     """Levels between the channels of all but a few pixels, at most."""
     blue, green, red = cv2.split(image)
     brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)

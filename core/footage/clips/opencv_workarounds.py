@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 
 _DEEP_YUV420: Final = b"Y3\x0b"
-"""How FFmpeg names planar YCbCr with colours at half the resolution in more than eight bits; the depth
+"""How FFmpeg names planar YCbCr with colors at half the resolution in more than eight bits; the depth
 follows."""
 _BLOCK: Final = 16
 """Coded pictures have so many rows or a multiple."""

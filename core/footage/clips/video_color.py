@@ -9,7 +9,7 @@ from typing import Final
 _NAMES: Final = {16: "PQ", 18: "HLG"}
 """Transfer characteristics of ITU-T H.273."""
 _MP4: Final = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
-"""The box of colours in MP4 and QuickTime: primaries, then the transfer, two bytes each."""
+"""The box of colors in MP4 and QuickTime: primaries, then the transfer, two bytes each."""
 _MATROSKA: Final = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
 _MATROSKA_BEGINS: Final = b"\x1a\x45\xdf\xa3"
 _HEAD: Final = 2**16

@@ -33,6 +33,6 @@ def _range_notes(path: Path) -> tuple[str, ...]:
     if transfer is None:
         return ()
     return (
-        f"{path.name} is of high dynamic range ({transfer}): read as it is, its colours are pale and markers "
-        "harder to tell apart; film in standard range or convert it, and pick the markers' colours anew",
+        f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and markers "
+        "harder to tell apart; film in standard range or convert it, and pick the markers' colors anew",
     )

@@ -1,1 +1,1 @@
-"""Colours: spaces, distributions and models, learned from a clip."""
+"""Colors: spaces, distributions and models, learned from a clip."""

@@ -1,4 +1,4 @@
-"""The markers' colours, learned from a clip while it is being read."""
+"""The markers' colors, learned from a clip while it is being read."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...files.digest import digest
 from ..detections import Lesson, Sightings
-from ..marker_style import MarkerStyle, colour_groups
+from ..marker_style import MarkerStyle, color_groups
 from ..region_tracks import ExpectedRegions
 from ..segmentation.working_image import halvings, learning_image, measuring_image
-from .color_learning import LearnedColours, learn_colours
-from .color_model import ColourModel
-from .color_names import nearest_colours, share_of_colour
+from .color_learning import LearnedColors, learn_colors
+from .color_model import ColorModel
+from .color_names import nearest_colors, share_of_color
 
 Image = NDArray[np.uint8]
 
@@ -31,16 +31,16 @@ _WIDEST_SPACING: Final = 96
 _FEWEST_LEARNED: Final = 12
 _FAR: Final = 10000
 """Pixels beyond which no circle that is drawn begins or ends."""
-_COMMON_COLOUR: Final = 0.02
-"""Share of the picture with which a colour is a wall's or a floor's."""
+_COMMON_COLOR: Final = 0.02
+"""Share of the picture with which a color is a wall's or a floor's."""
 
 
-class ClipColours:
-    """The colours of a clip's markers: learned from its first stretch, and anew as more of it is seen.
+class ClipColors:
+    """The colors of a clip's markers: learned from its first stretch, and anew as more of it is seen.
 
     Attributes:
-        groups: of each colour, the markers that bear it; more than one where samples are alike.
-        lessons: how the colours were learned so far.
+        groups: of each color, the markers that bear it; more than one where samples are alike.
+        lessons: how the colors were learned so far.
         samples: the images that were learned from, by their frames.
     """
 
@@ -57,20 +57,20 @@ class ClipColours:
             path: the clip, for messages.
             size: width and height of its images in px.
             styles: the markers, M of them.
-            expected: where they may be, to learn from the marker rather than from clutter of its colour.
+            expected: where they may be, to learn from the marker rather than from clutter of its color.
         """
-        self.groups = colour_groups(styles)
+        self.groups = color_groups(styles)
         self._path, self._styles, self._expected = path, styles, expected
         self._size, self._times = size, halvings(size)
         self._samples: list[tuple[int, Image]] = []
         self._spacing = 1
-        self._learned: LearnedColours | None = None
+        self._learned: LearnedColors | None = None
         self._most_found = np.zeros(len(self.groups), dtype=np.int64)
         self.lessons: list[Lesson] = []
         self.samples: dict[int, Image] = {}
 
     @property
-    def model(self) -> ColourModel:
+    def model(self) -> ColorModel:
         """What has been learned so far."""
         if self._learned is None:
             raise ValueError("nothing has been learned yet")
@@ -91,7 +91,7 @@ class ClipColours:
     def watch(self, index: int, image: Image) -> None:
         """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
 
-        Colours are learned anew with three times as many samples as at first; every third one then stays.
+        Colors are learned anew with three times as many samples as at first; every third one then stays.
         """
         if index - self._samples[-1][0] < self._spacing:
             return
@@ -111,10 +111,10 @@ class ClipColours:
         return bool(earlier.lessons)
 
     def check_found(self) -> None:
-        """Refuse colours that were found nowhere.
+        """Refuse colors that were found nowhere.
 
         Raises:
-            InputError: a marker's colour matches nothing in the clip; the sentence names colours that are
+            InputError: a marker's color matches nothing in the clip; the sentence names colors that are
                 there, or says that the surroundings have it too.
         """
         for sentence in self.complaints().values():
@@ -127,8 +127,8 @@ class ClipColours:
         counts = self._learned.background_counts
         return {
             marker: _complaint(self._styles[marker], counts)
-            for colour in self._missing.tolist()
-            for marker in self.groups[colour]
+            for color in self._missing.tolist()
+            for marker in self.groups[color]
         }
 
     @property
@@ -137,13 +137,13 @@ class ClipColours:
 
     def _learn(self) -> None:
         """Learn from the samples at hand."""
-        samples = [_mean_colour([self._styles[marker] for marker in group]) for group in self.groups]
+        samples = [_mean_color([self._styles[marker] for marker in group]) for group in self.groups]
         allowed = None
         if self._expected is not None:
             allowed = [
                 self._allowed(index, image.shape[:2], self._expected) for index, image in self._samples
             ]
-        self._learned = learn_colours([image for _, image in self._samples], samples, allowed)
+        self._learned = learn_colors([image for _, image in self._samples], samples, allowed)
         self._most_found = np.maximum(self._most_found, self._learned.found)
         model = self._learned.model
         taught = digest(model.label, model.probability, self._learned.found)
@@ -153,7 +153,7 @@ class ClipColours:
     def _allowed(
         self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions
     ) -> NDArray[np.uint8] | None:
-        """Return where each colour may be looked for on the learning grid, (C, rows, columns)."""
+        """Return where each color may be looked for on the learning grid, (C, rows, columns)."""
         if frame >= len(expected.centre):
             return None
         places = np.zeros((len(self.groups), *shape), dtype=np.uint8)
@@ -170,22 +170,22 @@ class ClipColours:
         return places
 
 
-def _mean_colour(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
+def _mean_color(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
     red, green, blue = np.round(np.mean([style.color_srgb for style in styles], axis=0)).astype(int).tolist()
     return red, green, blue
 
 
 def _complaint(style: MarkerStyle, counts: NDArray[np.float64]) -> str:
-    """Say why a colour cannot be found among the background's, (CELL_COUNT,) pixels of each colour cell."""
-    colour = list(style.color_srgb)
-    share = share_of_colour(counts, style.color_srgb)
-    if share > _COMMON_COLOUR:
+    """Say why a color cannot be found among the background's, (CELL_COUNT,) pixels of each color cell."""
+    color = list(style.color_srgb)
+    share = share_of_color(counts, style.color_srgb)
+    if share > _COMMON_COLOR:
         return (
-            f"{style.name} has the colour {colour}, which {100.0 * share:.0f} % of the picture around the "
-            "markers have too, so nothing tells it from them; wear a colour that the surroundings do not have"
+            f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
+            "markers have too, so nothing tells it from them; wear a color that the surroundings do not have"
         )
-    nearest = ", ".join(str(list(near)) for near in nearest_colours(counts, style.color_srgb))
+    nearest = ", ".join(str(list(near)) for near in nearest_colors(counts, style.color_srgb))
     return (
-        f"{style.name} has the colour {colour}, which matches nothing in the clip; "
-        f"pick it on the marker in a frame (the nearest colours found are {nearest})"
+        f"{style.name} has the color {color}, which matches nothing in the clip; "
+        f"pick it on the marker in a frame (the nearest colors found are {nearest})"
     )

@@ -1,4 +1,4 @@
-"""Learning the markers' colours over a clip, from one sample each and a few of the clip's own frames."""
+"""Learning the markers' colors over a clip, from one sample each and a few of the clip's own frames."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .color_model import ColourDistribution, ColourModel, colour_model
+from .color_model import ColorDistribution, ColorModel, color_model
 from .color_space import chromaticity
-from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColours
+from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -36,28 +36,28 @@ _STEEPEST_SLOPE: Final = 0.25
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedColours:
+class LearnedColors:
     """What the sampled frames teach.
 
     Attributes:
-        model: the colour cells' labels, with the background weighed in.
-        found: (M,) pixels found of each marker over the sampled frames; 0 where its colour matches nothing.
-        background_counts: (CELL_COUNT,) background pixels per colour cell.
+        model: the color cells' labels, with the background weighed in.
+        found: (M,) pixels found of each marker over the sampled frames; 0 where its color matches nothing.
+        background_counts: (CELL_COUNT,) background pixels per color cell.
     """
 
-    model: ColourModel
+    model: ColorModel
     found: NDArray[np.int64]
     background_counts: FloatArray
 
 
-def learn_colours(
+def learn_colors(
     images: Sequence[Image],
     samples_srgb: Sequence[tuple[int, int, int]],
     allowed: Sequence[NDArray[np.uint8] | None] | None = None,
-) -> LearnedColours:
-    """Learn each marker's distribution of colour and the background's colours.
+) -> LearnedColors:
+    """Learn each marker's distribution of color and the background's colors.
 
-    Regions near each sample's colour are found, the distribution is fitted to what they hold, and all that
+    Regions near each sample's color are found, the distribution is fitted to what they hold, and all that
     lies clear of them is counted as background; the next round finds the regions again by weighing the two,
     and so on.
 
@@ -66,7 +66,7 @@ def learn_colours(
         samples_srgb: one (red, green, blue) in 0..255 per marker.
         allowed: per image, (M, rows, columns) 1 where each marker may be looked for, or None for everywhere.
     """
-    sampled = SampledColours(images)
+    sampled = SampledColors(images)
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     core = labels = sampled.near(initial)
@@ -75,21 +75,21 @@ def learn_colours(
         if turn:
             labels = sampled.weighed(distributions, np.maximum(found, 1), background)
         masks = sampled.regions(labels, core, len(initial))
-        # Clutter of a marker's very colour is kept out of the background too, or it would cost us the marker.
+        # Clutter of a marker's very color is kept out of the background too, or it would cost us the marker.
         background = sampled.background_counts(masks)
         if allowed is not None:
             masks = [_allowed(own, places) for own, places in zip(masks, allowed, strict=True)]
         found = np.array([sum(own[marker].area for own in masks) for marker in range(len(initial))])
         for marker, start in enumerate(initial):
-            chroma, luma = sampled.colours([own[marker] for own in masks])
+            chroma, luma = sampled.colors([own[marker] for own in masks])
             own = _near_sample(chroma, luma, start)
             if np.count_nonzero(own) >= _FEWEST_PIXELS:
                 distributions[marker] = fit_distribution(chroma[own], luma[own], start)
-    return LearnedColours(colour_model(distributions, np.maximum(found, 1), background), found, background)
+    return LearnedColors(color_model(distributions, np.maximum(found, 1), background), found, background)
 
 
-def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution:
-    """Return what one sample (red, green, blue) tells of a surface's colour before looking at the clip."""
+def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
+    """Return what one sample (red, green, blue) tells of a surface's color before looking at the clip."""
     chroma, luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     saturation = float(np.linalg.norm(chroma))
     radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
@@ -97,10 +97,10 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColourDistribution
     extent = max(saturation, _LEAST_SATURATION)
     covariance = (_SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
     covariance += (_HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
-    return ColourDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
+    return ColorDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
 
 
-def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> ColourDistribution:
+def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColorDistribution) -> ColorDistribution:
     """Fit a distribution to a surface's pixels, robustly, and never narrower than pixel noise.
 
     Args:
@@ -134,12 +134,12 @@ def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColourDistribu
     return fitted if _within_reach(fitted, start) else start
 
 
-def _within_reach(fitted: ColourDistribution, start: ColourDistribution) -> bool:
+def _within_reach(fitted: ColorDistribution, start: ColorDistribution) -> bool:
     offset = fitted.mean - start.mean
     return float(offset @ np.linalg.solve(start.covariance, offset)) <= _FARTHEST
 
 
-def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColourDistribution) -> NDArray[np.bool_]:
+def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColorDistribution) -> NDArray[np.bool_]:
     """Mark the pixels (N,) to learn from.
 
     What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it

@@ -1,4 +1,4 @@
-"""How a marker's colour is distributed over a clip, and which colour belongs to which marker or to none."""
+"""How a marker's color is distributed over a clip, and which color belongs to which marker or to none."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .color_space import (
 )
 
 FloatArray = NDArray[np.float64]
-ColourArray = NDArray[np.float64] | NDArray[np.float32]
+ColorArray = NDArray[np.float64] | NDArray[np.float32]
 
 NOISE_LEVELS: Final = 5.0
-"""Standard deviation of a decoded, lightly smoothed colour difference in levels: sensor and compression."""
+"""Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
 OUTLIER_DISTANCE: Final = 16.0
-"""Squared distance past which no colour is a marker's, even one the background never shows: 99.9 % of χ²."""
+"""Squared distance past which no color is a marker's, even one the background never shows: 99.9 % of χ²."""
 _GROUP_MARGIN: Final = 2.0
 """How much farther than a group's middle one of its cells may seem."""
 BACKGROUND: Final = 255
@@ -33,10 +33,10 @@ BACKGROUND: Final = 255
 
 
 @dataclass(frozen=True, eq=False)
-class ColourDistribution:
-    """Colour of one surface under changing light: log luma is normal, and so is chromaticity given it.
+class ColorDistribution:
+    """Color of one surface under changing light: log luma is normal, and so is chromaticity given it.
 
-    Chromaticity may drift with luma (tone mapping takes colour from bright pixels), so its mean is a line in
+    Chromaticity may drift with luma (tone mapping takes color from bright pixels), so its mean is a line in
     it.
 
     Attributes:
@@ -44,7 +44,7 @@ class ColourDistribution:
         log_luma_deviation: its standard deviation.
         mean: (2,) chromaticity at the mean luma.
         slope: (2,) change of chromaticity per unit of log luma.
-        covariance: (2, 2) of the chromaticity, without the pixel noise of dark colours.
+        covariance: (2, 2) of the chromaticity, without the pixel noise of dark colors.
     """
 
     log_luma: float
@@ -54,14 +54,14 @@ class ColourDistribution:
     covariance: FloatArray
 
     def distance(
-        self, chroma: ColourArray, luma: ColourArray, noise_levels: float = NOISE_LEVELS
+        self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the squared Mahalanobis distance and the log density of colours.
+        """Return the squared Mahalanobis distance and the log density of colors.
 
         Args:
             chroma: (..., 2) chromaticity.
             luma: (...) offset luma in levels, as `chromaticity` gives it.
-            noise_levels: standard deviation of a pixel's colour difference in levels.
+            noise_levels: standard deviation of a pixel's color difference in levels.
 
         Returns:
             Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
@@ -79,8 +79,8 @@ class ColourDistribution:
         normaliser = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
         return squared, -0.5 * (squared + normaliser)
 
-    def within_reach(self, chroma: ColourArray, luma: ColourArray) -> NDArray[np.intp]:
-        """Return the indices of all N colours nearer than OUTLIER_DISTANCE, and of some beyond.
+    def within_reach(self, chroma: ColorArray, luma: ColorArray) -> NDArray[np.intp]:
+        """Return the indices of all N colors nearer than OUTLIER_DISTANCE, and of some beyond.
 
         No part of a distance is more than the whole of it, and a part is quickly had.
         """
@@ -92,17 +92,17 @@ class ColourDistribution:
 
 
 @dataclass(frozen=True, eq=False)
-class ColourModel:
-    """Which colours belong to which marker, learned for one clip.
+class ColorModel:
+    """Which colors belong to which marker, learned for one clip.
 
     Attributes:
         distributions: one a marker.
-        label: (CELL_COUNT,) uint8, index of the likeliest marker of each colour cell, BACKGROUND where it is
+        label: (CELL_COUNT,) uint8, index of the likeliest marker of each color cell, BACKGROUND where it is
             none's.
         probability: (CELL_COUNT,) uint8, how surely in 1/255.
     """
 
-    distributions: tuple[ColourDistribution, ...]
+    distributions: tuple[ColorDistribution, ...]
     label: NDArray[np.uint8]
     probability: NDArray[np.uint8]
 
@@ -116,13 +116,13 @@ class ColourModel:
         return np.take(self.label, cell_index(image))
 
 
-def colour_model(
-    distributions: Sequence[ColourDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
-) -> ColourModel:
-    """Weigh every colour cell between the markers, the background and the unknown.
+def color_model(
+    distributions: Sequence[ColorDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
+) -> ColorModel:
+    """Weigh every color cell between the markers, the background and the unknown.
 
     Args:
-        distributions: the markers' colours.
+        distributions: the markers' colors.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
         background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighbouring cells.
     """
@@ -134,13 +134,13 @@ def colour_model(
     probability = np.zeros(CELL_COUNT, dtype=np.uint8)
     label[near] = np.where(sureness >= 0.5, likeliest, BACKGROUND)
     probability[near] = np.round(255.0 * sureness)
-    return ColourModel(tuple(distributions), label, probability)
+    return ColorModel(tuple(distributions), label, probability)
 
 
-def _cells_near(distributions: Sequence[ColourDistribution]) -> NDArray[np.int32]:
+def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]:
     """Return the cells, ascending, that any of the distributions could claim: those not too far from it.
 
-    Groups of cells are looked at first: colours change little within one of two by two by two.
+    Groups of cells are looked at first: colors change little within one of two by two by two.
     """
     side = CELLS_PER_CHANNEL // 2
     group = np.arange(side**3, dtype=np.int32)
@@ -157,16 +157,16 @@ def _cells_near(distributions: Sequence[ColourDistribution]) -> NDArray[np.int32
 
 
 def weigh(
-    distributions: Sequence[ColourDistribution],
+    distributions: Sequence[ColorDistribution],
     pixel_counts: ArrayLike,
     background_counts: ArrayLike,
-    chroma: ColourArray,
-    luma: ColourArray,
+    chroma: ColorArray,
+    luma: ColorArray,
 ) -> tuple[NDArray[np.intp], FloatArray]:
-    """Return the likeliest marker of each of N colour cells, (N,), and its posterior probability, (N,).
+    """Return the likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
 
     Args:
-        distributions: the markers' colours.
+        distributions: the markers' colors.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
         background_counts: (N,) background pixels in each cell.
         chroma: (N, 2) chromaticity of the cells' middles.

@@ -1,33 +1,33 @@
-"""Colours of a clip that lie near a given one, to help a person whose sample fits nothing."""
+"""Colors of a clip that lie near a given one, to help a person whose sample fits nothing."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .color_space import cell_colours, chromaticity
+from .color_space import cell_colors, chromaticity
 
 _HOW_MANY = 3
 _APART = 0.08
-"""Chromaticity that two colours must differ by to be named both."""
+"""Chromaticity that two colors must differ by to be named both."""
 _LIKE_LOG_LUMA = 0.25
 """Difference in the logarithm of luma up to which two greys look alike."""
 _SHARE = 2e-5
-"""Share of the clip's pixels that a colour must have, to be more than noise."""
+"""Share of the clip's pixels that a color must have, to be more than noise."""
 
 
-def nearest_colours(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """Return up to three colours (red, green, blue) found in the clip, the nearest to the sample first.
+def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
+    """Return up to three colors (red, green, blue) found in the clip, the nearest to the sample first.
 
     Args:
-        counts: (CELL_COUNT,) pixels of each colour cell.
-        sample_srgb: the sought colour in 0..255.
+        counts: (CELL_COUNT,) pixels of each color cell.
+        sample_srgb: the sought color in 0..255.
     """
     count = np.asarray(counts, dtype=np.float64)
     common = np.flatnonzero(count > max(_SHARE * count.sum(), 0.5))
-    colours = cell_colours()[common]
+    colors = cell_colors()[common]
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
-    chroma, luma = chromaticity(colours)
+    chroma, luma = chromaticity(colors)
     distance = np.linalg.norm(chroma - wanted, axis=1) + 0.1 * np.abs(np.log(luma / wanted_luma))
     chosen: list[int] = []
     for index in np.argsort(distance):
@@ -35,20 +35,20 @@ def nearest_colours(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> lis
             chosen.append(int(index))
         if len(chosen) == _HOW_MANY:
             break
-    return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colours[chosen])]
+    return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colors[chosen])]
 
 
-def share_of_colour(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
-    """Return the share of the clip's pixels that look like a colour.
+def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
+    """Return the share of the clip's pixels that look like a color.
 
     Args:
-        counts: (CELL_COUNT,) pixels of each colour cell.
-        sample_srgb: the colour, (red, green, blue) in 0..255.
+        counts: (CELL_COUNT,) pixels of each color cell.
+        sample_srgb: the color, (red, green, blue) in 0..255.
     """
     count = np.asarray(counts, dtype=np.float64)
     present = np.flatnonzero(count)
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
-    chroma, luma = chromaticity(cell_colours(present.astype(np.int32)))
+    chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
     like = (np.linalg.norm(chroma - wanted, axis=1) < _APART / 2.0) & (
         np.abs(np.log(luma / wanted_luma)) < _LIKE_LOG_LUMA
     )

@@ -1,4 +1,4 @@
-"""How well the learned colours tell the markers from one another and from the background."""
+"""How well the learned colors tell the markers from one another and from the background."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .color_model import ColourModel
+from .color_model import ColorModel
 from .color_space import cell_chromaticity, cell_volume
 
 FloatArray = NDArray[np.float64]
@@ -16,26 +16,26 @@ _LEAST: Final = 1e-300
 """A density that vanishes everywhere stays zero."""
 
 
-def colour_claims(model: ColourModel) -> FloatArray:
-    """Return for what the pixels of each colour would be taken, (C, C + 1): each colour, then none of them.
+def color_claims(model: ColorModel) -> FloatArray:
+    """Return for what the pixels of each color would be taken, (C, C + 1): each color, then none of them.
 
-    A pixel drawn from a colour's learned density is weighed as the extraction weighs it, by the posterior
+    A pixel drawn from a color's learned density is weighed as the extraction weighs it, by the posterior
     probability of its cell; rows sum to 1.
 
     Args:
-        model: C colours learned for a clip, with its background weighed in.
+        model: C colors learned for a clip, with its background weighed in.
     """
     cells = np.arange(len(model.label), dtype=np.int32)
     chroma, luma = cell_chromaticity(cells)
     count = len(model.distributions)
     claims = np.zeros((count, count + 1))
-    for colour, distribution in enumerate(model.distributions):
+    for color, distribution in enumerate(model.distributions):
         near = distribution.within_reach(chroma, luma)
         _, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
         share = np.exp(log_density) * cell_volume(luma.take(near))
         share = share / max(float(share.sum()), _LEAST)
         sureness = model.probability.take(near) / 255.0
         label = np.minimum(model.label.take(near), count)
-        claims[colour] = np.bincount(label, share * sureness, minlength=count + 1)
-        claims[colour, count] = 1.0 - claims[colour, :count].sum()
+        claims[color] = np.bincount(label, share * sureness, minlength=count + 1)
+        claims[color, count] = 1.0 - claims[color, :count].sum()
     return claims

@@ -1,4 +1,4 @@
-"""Colours without their shading: opponent chromaticity, and the cells that colours are counted in.
+"""Colors without their shading: opponent chromaticity, and the cells that colors are counted in.
 
 A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the
 light to a good approximation; chroma over luma therefore names the surface and luma alone the light that
@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
 CELL_BITS: Final = 6
-"""Bits kept of each channel: 64³ cells hold a colour to within two levels, less than compression noise."""
+"""Bits kept of each channel: 64³ cells hold a color to within two levels, less than compression noise."""
 CELLS_PER_CHANNEL: Final = 1 << CELL_BITS
 CELL_COUNT: Final = CELLS_PER_CHANNEL**3
 CELL_WIDTH: Final = 256 // CELLS_PER_CHANNEL
@@ -32,7 +32,7 @@ _RED_SCALE: Final = 0.713
 
 
 def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Split colours into chromaticity and luma.
+    """Split colors into chromaticity and luma.
 
     Args:
         bgr: (..., 3) in 0..255, blue, green, red, gamma-encoded.
@@ -41,12 +41,12 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
         Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in
         levels.
     """
-    colour = np.asarray(bgr, dtype=np.float64)
+    color = np.asarray(bgr, dtype=np.float64)
     # Written out: for so short a product, libraries of linear algebra wake up threads that then wait.
-    luma = colour[..., 0] * _LUMA_BGR[0] + colour[..., 1] * _LUMA_BGR[1] + colour[..., 2] * _LUMA_BGR[2]
+    luma = color[..., 0] * _LUMA_BGR[0] + color[..., 1] * _LUMA_BGR[1] + color[..., 2] * _LUMA_BGR[2]
     offset_luma = luma + LUMA_OFFSET
     differences = np.stack(
-        [(colour[..., 0] - luma) * _BLUE_SCALE, (colour[..., 2] - luma) * _RED_SCALE], axis=-1
+        [(color[..., 0] - luma) * _BLUE_SCALE, (color[..., 2] - luma) * _RED_SCALE], axis=-1
     )
     return differences / offset_luma[..., None], offset_luma
 
@@ -69,7 +69,7 @@ def cell_index(image: NDArray[np.uint8]) -> NDArray[np.intp]:
     return index.astype(np.intp)
 
 
-def cell_colours(cells: IntArray | None = None) -> FloatArray:
+def cell_colors(cells: IntArray | None = None) -> FloatArray:
     """Return the middles of cells, (..., 3) blue, green, red in levels; of all where none are named."""
     index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
     last = CELLS_PER_CHANNEL - 1
@@ -80,7 +80,7 @@ def cell_colours(cells: IntArray | None = None) -> FloatArray:
 def cell_chromaticity(cells: IntArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return chromaticity (N, 2) and offset luma (N,) of the middles of cells.
 
-    Half the usual digits are plenty for a colour and take half the time.
+    Half the usual digits are plenty for a color and take half the time.
     """
     levels = np.arange(CELLS_PER_CHANNEL, dtype=np.float32) * CELL_WIDTH + (CELL_WIDTH - 1) / 2
     last = CELLS_PER_CHANNEL - 1

@@ -1,4 +1,4 @@
-"""The sampled frames of a clip that colours are learned from: what lies where, and how often it occurs."""
+"""The sampled frames of a clip that colors are learned from: what lies where, and how often it occurs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..segmentation.working_image import smooth
-from .color_model import ColourDistribution, weigh
+from .color_model import ColorDistribution, weigh
 from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
 
 FloatArray = NDArray[np.float64]
@@ -19,7 +19,7 @@ Labels = NDArray[np.uint8]
 _Number = TypeVar("_Number", bound=np.generic)
 
 _CORE_DISTANCE: Final = 7.8
-"""Squared distance of a sample's near colours: 95 % of a chi-squared with 3 degrees of freedom."""
+"""Squared distance of a sample's near colors: 95 % of a chi-squared with 3 degrees of freedom."""
 LEARNING_NOISE_LEVELS: Final = 2.5
 """Noise of what is learned from: pixels that only noise could have made so teach nothing."""
 _NO_MARKER: Final = 255
@@ -61,11 +61,11 @@ class PlacedMask(NamedTuple):
         return image[self.top : self.top + rows, self.left : self.left + columns]
 
 
-class SampledColours:
-    """The sampled frames as indices into the table of the colours that occur in them."""
+class SampledColors:
+    """The sampled frames as indices into the table of the colors that occur in them."""
 
     def __init__(self, images: Sequence[Image]) -> None:
-        """Count the colours of images (rows, columns, 3) uint8."""
+        """Count the colors of images (rows, columns, 3) uint8."""
         cells = [cell_index(smooth(image)) for image in images]
         present = np.zeros(CELL_COUNT, dtype=np.bool_)
         for cell in cells:
@@ -76,8 +76,8 @@ class SampledColours:
         rank[self._table] = np.arange(len(self._table))
         self._images = [rank.take(cell) for cell in cells]
 
-    def near(self, distributions: Sequence[ColourDistribution]) -> Labels:
-        """Label each colour of the table by the distribution in whose core it lies; 255 for none."""
+    def near(self, distributions: Sequence[ColorDistribution]) -> Labels:
+        """Label each color of the table by the distribution in whose core it lies; 255 for none."""
         pairs = [
             distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
             for distribution in distributions
@@ -87,21 +87,21 @@ class SampledColours:
         return np.where(distance < _CORE_DISTANCE, nearest, _NO_MARKER).astype(np.uint8)
 
     def weighed(
-        self, distributions: Sequence[ColourDistribution], pixels: NDArray[np.int64], background: FloatArray
+        self, distributions: Sequence[ColorDistribution], pixels: NDArray[np.int64], background: FloatArray
     ) -> Labels:
-        """Label each colour of the table by its likeliest marker; 255 where the background is likelier."""
+        """Label each color of the table by its likeliest marker; 255 where the background is likelier."""
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
         return np.where(probability >= 0.5, label, _NO_MARKER).astype(np.uint8)
 
     def regions(self, labels: Labels, core: Labels, markers: int) -> list[list[PlacedMask]]:
-        """Return for each frame and marker its connected regions with enough of its core colour."""
+        """Return for each frame and marker its connected regions with enough of its core color."""
         result = []
         for image in self._images:
             label = labels.take(image)
             result.append([_with_core(label, image, core, marker) for marker in range(markers)])
         return result
 
-    def colours(self, masks: Sequence[PlacedMask]) -> tuple[FloatArray, FloatArray]:
+    def colors(self, masks: Sequence[PlacedMask]) -> tuple[FloatArray, FloatArray]:
         """Return chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
         inside = [
             mask.cut(image)[mask.interior().view(np.bool_)]
@@ -112,7 +112,7 @@ class SampledColours:
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
     def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> FloatArray:
-        """Count the colours clear of all masks by cells, (CELL_COUNT,), spread over neighbouring cells."""
+        """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighbouring cells."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
             covered = np.zeros(image.shape, dtype=np.uint8)
@@ -138,7 +138,7 @@ def _spread(counts: FloatArray) -> FloatArray:
 
 
 def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int) -> PlacedMask:
-    """Keep regions of which enough is of the core colour and which are not most of the image."""
+    """Keep regions of which enough is of the core color and which are not most of the image."""
     mask = np.equal(label, marker).view(np.uint8)
     left, top, columns, rows = cv2.boundingRect(mask)
     part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
@@ -146,8 +146,8 @@ def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int
         return PlacedMask(0, 0, part, 0)
     count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(part)
-    colour = image[top : top + rows, left : left + columns].take(pixel)
-    strong = np.bincount(np.asarray(number).take(pixel[core.take(colour) == marker]), minlength=count)
+    color = image[top : top + rows, left : left + columns].take(pixel)
+    strong = np.bincount(np.asarray(number).take(pixel[core.take(color) == marker]), minlength=count)
     area = stats[:, cv2.CC_STAT_AREA]
     good = (strong >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * label.size)
     good[0] = False

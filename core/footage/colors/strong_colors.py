@@ -1,4 +1,4 @@
-"""The strong colours that clips show, for a person who looks for those of the markers among them."""
+"""The strong colors that clips show, for a person who looks for those of the markers among them."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..segmentation.working_image import learning_image, smooth
-from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colours, cell_index, chromaticity
+from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 MOST: Final = 12
-"""So many colours are named: five markers, skin, and what else is about."""
+"""So many colors are named: five markers, skin, and what else is about."""
 _LEAST_STRENGTH: Final = 0.2
-"""Chromaticity below which a colour is a dull one: wood and pale skin."""
+"""Chromaticity below which a color is a dull one: wood and pale skin."""
 _DARKEST: Final = 25.0
-"""Luma in levels below which a colour is too uncertain to name."""
+"""Luma in levels below which a color is too uncertain to name."""
 _APART: Final = 0.10
-"""Chromaticity within which colours are those of one surface."""
+"""Chromaticity within which colors are those of one surface."""
 _STEP: Final = 0.04
 _LEAST_SHARE: Final = 2e-4
 """Share of the picture below which nothing is worth naming."""
@@ -42,8 +42,8 @@ _HUES: Final = (
 
 
 @dataclass(frozen=True)
-class StrongColour:
-    """A colour that stands out.
+class StrongColor:
+    """A color that stands out.
 
     Attributes:
         color_srgb: (red, green, blue) in 0..255, the median of its pixels.
@@ -61,31 +61,31 @@ class StrongColour:
         return next(name for end, name in _HUES if degrees <= end)
 
 
-def strong_colours(images: Iterable[Image]) -> tuple[StrongColour, ...]:
-    """Return the strongest colours of images on the measuring grid, those first that stand out most."""
+def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
+    """Return the strongest colors of images on the measuring grid, those first that stand out most."""
     counts = np.zeros(CELL_COUNT)
     for image in images:
         cells = cell_index(smooth(learning_image(image)))
         counts += np.bincount(cells.ravel(), minlength=CELL_COUNT)
     present = np.flatnonzero(counts).astype(np.int32)
-    colours = cell_colours(present)
-    chroma, luma = chromaticity(colours)
+    colors = cell_colors(present)
+    chroma, luma = chromaticity(colors)
     strong = (np.linalg.norm(chroma, axis=1) > _LEAST_STRENGTH) & (luma > _DARKEST + LUMA_OFFSET)
-    colours, chroma = colours[strong], chroma[strong]
+    colors, chroma = colors[strong], chroma[strong]
     left, least = counts[present][strong], _LEAST_SHARE * counts.sum()
-    found: list[tuple[float, StrongColour]] = []
+    found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
         centre = _densest(chroma, left)
         near = np.linalg.norm(chroma - centre, axis=1) < _APART
         share = float(left[near].sum() / counts.sum())
         if share > _LEAST_SHARE:
-            blue, green, red = _median(colours[near], left[near])
+            blue, green, red = _median(colors[near], left[near])
             # Blends at borders are many and dull; a marker is small and strong.
             standing_out = float(np.linalg.norm(centre)) * share**0.25
-            found.append((standing_out, StrongColour((red, green, blue), share)))
+            found.append((standing_out, StrongColor((red, green, blue), share)))
         left[near] = 0.0
     found.sort(key=lambda one: -one[0])
-    return tuple(colour for _, colour in found[:MOST])
+    return tuple(color for _, color in found[:MOST])
 
 
 def _densest(chroma: FloatArray, weight: FloatArray) -> FloatArray:
@@ -96,10 +96,10 @@ def _densest(chroma: FloatArray, weight: FloatArray) -> FloatArray:
     return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))
 
 
-def _median(colours: FloatArray, weight: FloatArray) -> list[int]:
+def _median(colors: FloatArray, weight: FloatArray) -> list[int]:
     """Return the weighted median of each channel, three whole numbers."""
     middle = []
-    for channel in colours.T:
+    for channel in colors.T:
         order = np.argsort(channel)
         reached = np.searchsorted(np.cumsum(weight[order]), 0.5 * weight.sum())
         middle.append(round(float(channel[order[reached]])))

@@ -1,1 +1,1 @@
-"""From pixels to regions: where in an image a colour is, and the moments of it."""
+"""From pixels to regions: where in an image a color is, and the moments of it."""

@@ -1,7 +1,7 @@
 """How much of each pixel a region covers: its border to a fraction of a pixel.
 
-A border pixel mixes the region's colour and its surroundings'; encoded colours mix linearly to a good
-approximation. The share follows from the colours just inside and just outside, which makes areas unbiased
+A border pixel mixes the region's color and its surroundings'; encoded colors mix linearly to a good
+approximation. The share follows from the colors just inside and just outside, which makes areas unbiased
 where a threshold would grow a region over dark neighbours and shrink it before bright ones.
 """
 
@@ -18,7 +18,7 @@ _WEIGHT: Final = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 _SUM: Final = np.ones((1, 3), dtype=np.float32)
 _CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _REACH: Final = (5, 5)
-"""Sides, in halved pixels, of the squares that local colours are averaged over."""
+"""Sides, in halved pixels, of the squares that local colors are averaged over."""
 
 
 class Coverage(NamedTuple):
@@ -46,14 +46,14 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     first = cv2.erode(mask, _CROSS)
     second = cv2.erode(first, _CROSS)
     grown = cv2.dilate(mask, _CROSS, iterations=2)
-    # The deeper inside, the purer the colour: squared depth, as the sum of the first odd numbers.
+    # The deeper inside, the purer the color: squared depth, as the sum of the first odd numbers.
     depth = np.asarray(cv2.add(cv2.addWeighted(first, 3.0, second, 5.0, 0.0), mask), dtype=np.uint8)
-    colour = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
-    inner, has_inner = _local_mean(colour, depth)
-    outer, has_outer = _local_mean(colour, np.bitwise_xor(grown, 1).astype(np.uint8))
+    color = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
+    inner, has_inner = _local_mean(color, depth)
+    outer, has_outer = _local_mean(color, np.bitwise_xor(grown, 1).astype(np.uint8))
     axis = cv2.subtract(inner, outer)
     gain = cv2.transform(axis, _WEIGHT)
-    length = cv2.transform(cv2.multiply(axis, gain), _SUM) + 1.0  # one squared level: less is the same colour
+    length = cv2.transform(cv2.multiply(axis, gain), _SUM) + 1.0  # one squared level: less is the same color
     gain = cv2.divide(gain, cv2.merge([length] * 3))
     start = cv2.transform(cv2.multiply(outer, gain), _SUM)
     start[~(has_inner & has_outer)] = np.nan
@@ -61,20 +61,20 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     pixel = np.flatnonzero(grown.view(np.bool_))
     row = pixel // mask.shape[1]
     near = (row >> 1) * start.shape[1] + ((pixel - row * mask.shape[1]) >> 1)
-    product = colour.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
+    product = color.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
     along = product[:, 0] + product[:, 1] + product[:, 2] - start.take(near)
-    mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no colour, it is not a number
+    mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no color, it is not a number
     share = np.where(mixed, np.minimum(np.maximum(along, 0.0), 1.0), mask.take(pixel))
     return Coverage(pixel, share)
 
 
 def _local_mean(
-    colour: NDArray[np.float32], weight: NDArray[np.uint8]
+    color: NDArray[np.float32], weight: NDArray[np.uint8]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the weighted mean colour about every two by two pixels, and where there was any weight."""
+    """Return the weighted mean color about every two by two pixels, and where there was any weight."""
     factor = weight.astype(np.float32)
     half = (weight.shape[1] // 2, weight.shape[0] // 2)
-    weighted = cv2.resize(cv2.multiply(colour, cv2.merge([factor] * 3)), half)
+    weighted = cv2.resize(cv2.multiply(color, cv2.merge([factor] * 3)), half)
     weighted, total = cv2.blur(weighted, _REACH), cv2.blur(cv2.resize(factor, half), _REACH)
     divisor = np.maximum(total, 1e-6)
     return np.asarray(cv2.divide(weighted, cv2.merge([divisor] * 3)), dtype=np.float32), total > 1e-6

@@ -1,4 +1,4 @@
-"""All regions of one image that have a marker's colour, measured to a fraction of a pixel."""
+"""All regions of one image that have a marker's color, measured to a fraction of a pixel."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..colors.color_model import ColourModel
+from ..colors.color_model import ColorModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
-from .search_windows import MARGIN, Box, boxes_to_measure, coloured_boxes
+from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
 from .window_sheet import Sheet, Window, lay_out
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
@@ -23,26 +23,26 @@ BoolArray = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 
 MOST_REGIONS: Final = 8
-"""Regions kept of each colour in a frame, the largest; a clip's memory is bounded by it."""
+"""Regions kept of each color in a frame, the largest; a clip's memory is bounded by it."""
 _SURE: Final = 230
-"""A region must hold pixels this sure (in 1/255) to be more than a blend of other colours."""
+"""A region must hold pixels this sure (in 1/255) to be more than a blend of other colors."""
 _FEWEST_PIXELS: Final = 6
 _CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _SQUARE: Final = np.ones((3, 3), dtype=np.uint8)
 
 
 class Regions(NamedTuple):
-    """R connected regions of markers' colours in one image, by colour and from large to small.
+    """R connected regions of markers' colors in one image, by color and from large to small.
 
     Attributes:
-        colour: (R,) which colour each has.
+        color: (R,) which color each has.
         moments: (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid.
         box: (R, 4) left, top, right, bottom in its pixels.
-        certainty: (R,) mean probability of the pixels' colour in 0..1.
+        certainty: (R,) mean probability of the pixels' color in 0..1.
         clipped: (R,) whether it touches the image's border.
     """
 
-    colour: IntArray
+    color: IntArray
     moments: FloatArray
     box: IntArray
     certainty: FloatArray
@@ -52,7 +52,7 @@ class Regions(NamedTuple):
         """Return the regions from `first` to before `end`."""
         some = slice(first, end)
         return Regions(
-            self.colour[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
+            self.color[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
         )
 
 
@@ -66,9 +66,9 @@ NO_REGIONS: Final = Regions(
 
 
 def find_regions(
-    images: Sequence[Image], times: int, model: ColourModel, before: Regions = NO_REGIONS
+    images: Sequence[Image], times: int, model: ColorModel, before: Regions = NO_REGIONS
 ) -> list[Regions]:
-    """Return the regions of the markers' colours in each of some successive images.
+    """Return the regions of the markers' colors in each of some successive images.
 
     A coarse look at the whole image tells where to measure; only the windows there, and those in which there
     were regions just before, are looked at closely. Some images together take less time than one by one.
@@ -76,45 +76,45 @@ def find_regions(
     Args:
         images: (rows, columns, 3), all of one size, to be halved `times` to become the measuring grid.
         times: how often.
-        model: the markers' colours.
+        model: the markers' colors.
         before: the regions of the frame before.
     """
     grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
     factor = searching_factor(grid)
     label = model.labels(np.concatenate([searching_image(image, factor << times) for image in images]))
     followed: list[list[Box]] = [[] for _ in model.distributions]
-    for colour, (left, top, right, bottom) in zip(before.colour.tolist(), before.box.tolist(), strict=True):
-        followed[colour].append((left, top, right, bottom))
+    for color, (left, top, right, bottom) in zip(before.color.tolist(), before.box.tolist(), strict=True):
+        followed[color].append((left, top, right, bottom))
     windows: list[Window] = []
     for number, part in enumerate(np.split(label, len(images))):
-        for colour, boxes in enumerate(followed):
-            seen = coloured_boxes(part, colour, factor)
+        for color, boxes in enumerate(followed):
+            seen = colored_boxes(part, color, factor)
             for left, top, right, bottom in boxes_to_measure(seen, boxes):
                 box = (left - MARGIN, top - MARGIN, right + MARGIN, bottom + MARGIN)
-                windows.append(Window(number, times, colour, *box))
+                windows.append(Window(number, times, color, *box))
     if not windows:
         return [NO_REGIONS] * len(images)
     return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
 
 
-def colour_masks(image: Image, model: ColourModel) -> NDArray[np.float32]:
-    """Return the coverage of each pixel of the measuring grid by each colour, (C, rows, columns) in 0..1.
+def color_masks(image: Image, model: ColorModel) -> NDArray[np.float32]:
+    """Return the coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
-    For previews: it is what the extraction measures, clutter of the markers' colours included.
+    For previews: it is what the extraction measures, clutter of the markers' colors included.
 
     Args:
         image: (rows, columns, 3) of the clip's size.
-        model: the markers' colours, C of them.
+        model: the markers' colors, C of them.
     """
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
     masks = np.zeros((len(model.distributions), *grid.shape[:2]), dtype=np.float32)
-    for colour, mask in enumerate(masks):
-        left, top, columns, rows = cv2.boundingRect(np.equal(label, colour).view(np.uint8))
+    for color, mask in enumerate(masks):
+        left, top, columns, rows = cv2.boundingRect(np.equal(label, color).view(np.uint8))
         if not columns:
             continue
         around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
-        sheet = lay_out([grid], [Window(0, 0, colour, *around)])
+        sheet = lay_out([grid], [Window(0, 0, color, *around)])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
@@ -129,7 +129,7 @@ class _Components(NamedTuple):
     Attributes:
         number: (rows, columns) uint16, which region each pixel is in, from 1; 0 for none.
         box: (K, 4) left, top, right, bottom on the sheet.
-        certainty: (K,) mean probability of the pixels' colour in 0..1.
+        certainty: (K,) mean probability of the pixels' color in 0..1.
     """
 
     number: NDArray[np.uint16]
@@ -137,14 +137,14 @@ class _Components(NamedTuple):
     certainty: FloatArray
 
 
-def _components(sheet: Sheet, model: ColourModel) -> _Components:
-    """Find each panel's regions of its colour, without one-pixel holes.
+def _components(sheet: Sheet, model: ColorModel) -> _Components:
+    """Find each panel's regions of its color, without one-pixel holes.
 
     Specks and regions without a sure core are left out.
     """
     label, probability = model.classify(smooth(sheet.picture))
     used = np.arange(len(label))[:, None] < sheet.height
-    mask = ((label == sheet.colour) & used).view(np.uint8)
+    mask = ((label == sheet.color) & used).view(np.uint8)
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, _CROSS)
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
@@ -162,15 +162,15 @@ def _components(sheet: Sheet, model: ColourModel) -> _Components:
 
 
 def _measure(
-    sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColourModel
+    sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColorModel
 ) -> list[Regions]:
     """Measure the regions on a sheet, in pixels of the grid that images of a shape halved `times` make."""
     found = _components(sheet, model)
     covered = coverage(sheet.picture, np.minimum(found.number, 1).astype(np.uint8))
     # What lies in the band beyond the edges belongs to the region beside it.
     owner = np.asarray(cv2.dilate(found.number, _CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
-    row = covered.pixel // len(sheet.colour)
-    column = covered.pixel - row * len(sheet.colour)
+    row = covered.pixel // len(sheet.color)
+    column = covered.pixel - row * len(sheet.color)
     x, y = column + sheet.shift[0].take(column), row + sheet.shift[1].take(column)
     limits = np.array([shape[1], shape[0], shape[1], shape[0]])
     right, bottom = limits[:2, None] // sheet.scale
@@ -182,11 +182,11 @@ def _measure(
     limits = limits >> times
     box = np.clip((found.box + np.tile(sheet.shift[:, first].T, 2)) * scale[:, None], 0, limits)
     clipped = (box[:, :2] <= 0).any(axis=1) | (box[:, 2:] > limits[2:] - scale[:, None]).any(axis=1)
-    image, colour = sheet.image[first], sheet.colour[first].astype(np.int64)
-    order = np.lexsort((-moments[:, 0], colour, image))
+    image, color = sheet.image[first], sheet.color[first].astype(np.int64)
+    order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= _FEWEST_PIXELS]
-    order = order[_rank(256 * image[order] + colour[order]) < MOST_REGIONS]
-    every = Regions(colour[order], moments[order], box[order], found.certainty[order], clipped[order])
+    order = order[_rank(256 * image[order] + color[order]) < MOST_REGIONS]
+    every = Regions(color[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
     return [every.part(a, b) for a, b in itertools.pairwise(start)]
 

@@ -1,4 +1,4 @@
-"""Where in a picture the markers may be: windows about whatever has their colours on a coarse grid."""
+"""Where in a picture the markers may be: windows about whatever has their colors on a coarse grid."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 Box = tuple[int, int, int, int]
 
 _MOST_BOXES: Final = 12
-"""Boxes kept of each colour in a frame, those with most of it."""
+"""Boxes kept of each color in a frame, those with most of it."""
 MARGIN: Final = 6
-"""Pixels about a box when it is measured: border band, and background enough to know its colour."""
+"""Pixels about a box when it is measured: border band, and background enough to know its color."""
 
 
-def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[Box]:
-    """Return boxes (left, top, right, bottom) about all of a colour in pixels of the measuring grid.
+def colored_boxes(label: NDArray[np.uint8], color: int, factor: int) -> list[Box]:
+    """Return boxes (left, top, right, bottom) about all of a color in pixels of the measuring grid.
 
     Args:
-        label: (rows, columns) colour of each pixel of the coarse grid.
-        colour: which one.
+        label: (rows, columns) color of each pixel of the coarse grid.
+        color: which one.
         factor: pixels of the measuring grid that one of the coarse grid spans.
     """
-    mask = np.equal(label, colour).view(np.uint8)
+    mask = np.equal(label, color).view(np.uint8)
     x, y, columns, rows = cv2.boundingRect(mask)
     if not columns:
         return []
@@ -43,10 +43,10 @@ def coloured_boxes(label: NDArray[np.uint8], colour: int, factor: int) -> list[B
 def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
     """Return boxes about what is to be measured; what would overlap with its margin shares one.
 
-    So no pixel is measured twice for a colour.
+    So no pixel is measured twice for a color.
 
     Args:
-        seen: where the colour is seen.
+        seen: where the color is seen.
         followed: where it was just before; of use where the coarse grid slips through what is left of it.
     """
     pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]

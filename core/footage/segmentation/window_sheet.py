@@ -17,16 +17,16 @@ from .working_image import measuring_image
 
 Image = NDArray[np.uint8]
 
-NO_COLOUR = 254
-"""Colour of the columns between panels; no pixel bears it."""
+NO_COLOR = 254
+"""Color of the columns between panels; no pixel bears it."""
 
 
 class Window(NamedTuple):
-    """A part of one of some images in which a colour is looked for, in pixels of the image halved `times`."""
+    """A part of one of some images in which a color is looked for, in pixels of the image halved `times`."""
 
     image: int
     times: int
-    colour: int
+    color: int
     left: int
     top: int
     right: int
@@ -39,7 +39,7 @@ class Sheet(NamedTuple):
     Attributes:
         picture: (rows, columns, 3) uint8, both numbers even.
         image: (columns,) int64, the image that each column is of.
-        colour: (columns,) uint8, the colour that it serves; NO_COLOUR where panels meet.
+        color: (columns,) uint8, the color that it serves; NO_COLOR where panels meet.
         height: (columns,) rows in use.
         shift: (2, columns) what takes a column, and the rows in it, to the halved image.
         scale: (columns,) pixels of the image that one of the sheet spans.
@@ -47,7 +47,7 @@ class Sheet(NamedTuple):
 
     picture: Image
     image: NDArray[np.int64]
-    colour: NDArray[np.uint8]
+    color: NDArray[np.uint8]
     height: NDArray[np.int64]
     shift: NDArray[np.int64]
     scale: NDArray[np.int64]
@@ -63,7 +63,7 @@ def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))
     picture = np.zeros((height, width, 3), dtype=np.uint8)
-    colour = np.full(width, NO_COLOUR, dtype=np.uint8)
+    color = np.full(width, NO_COLOR, dtype=np.uint8)
     image, used = np.zeros((2, width), dtype=np.int64)
     shift, scale = np.zeros((2, width), dtype=np.int64), np.ones(width, dtype=np.int64)
     start = 0
@@ -72,12 +72,12 @@ def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
         end = start + columns
         picture[:, start : end + 1] = _cut(images[window.image], window, height)
         # Smoothing mixes the first column with the panel to its left.
-        colour[start + 1 : end] = window.colour
+        color[start + 1 : end] = window.color
         panel = slice(start, end + 1)
         image[panel], used[panel], scale[panel] = window.image, rows, 1 << window.times
         shift[0, panel], shift[1, panel] = window.left - start, window.top
         start = end + 1
-    return Sheet(picture, image, colour, used, shift, scale)
+    return Sheet(picture, image, color, used, shift, scale)
 
 
 def _cut(image: Image, window: Window, height: int) -> Image:

@@ -1,4 +1,4 @@
-"""The grids that markers are searched and measured on, and the light smoothing all colour decisions share.
+"""The grids that markers are searched and measured on, and the light smoothing all color decisions share.
 
 A camera's picture is halved until it is fine enough to measure on and no finer: halving is what processors
 average fastest. Markers are searched on a coarse grid of a part of its pixels.
@@ -37,7 +37,7 @@ def measuring_image(image: Image, times: int) -> Image:
 
 
 def learning_image(measuring: Image) -> Image:
-    """Return a measuring image as colours are learned from it."""
+    """Return a measuring image as colors are learned from it."""
     return measuring_image(measuring, _halvings(max(measuring.shape[:2]), _LEARNING_COLUMNS))
 
 

@@ -23,7 +23,7 @@ SIGNS = {
     Verdict.UNJUDGED: "–",
     Verdict.WAITING: "…",
 }
-"""Beside the word and the colour."""
+"""Beside the word and the color."""
 REPORT = "report/"
 LARGER = f"{REPORT}overlay.png"
 WANTED = (".blend", ".bvh", ".json")

@@ -28,7 +28,7 @@ DARK = {
     "good": "#5fcfa6",
     "wash": "#33201f",
 }
-"""Colours by what they are for; words never stand on anything but paper, card and wash."""
+"""Colors by what they are for; words never stand on anything but paper, card and wash."""
 
 
 def _variables(colors: dict[str, str]) -> str:

@@ -16,7 +16,7 @@ from ...take.take import Take, check_size, rate_note
 from .findings import Findings
 
 ENOUGH = SAMPLED_FRAMES // 2
-"""So many frames without a marker's colour tell that the conversion will not find it either."""
+"""So many frames without a marker's color tell that the conversion will not find it either."""
 MOST_EXPECTED = 5000
 """Frames of the longest clip for which it is worked out where keyframes put the markers."""
 ASTRAY = 0.8
@@ -78,7 +78,7 @@ def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[
     refused = _refused(check, samples)
     if len(refused) == len(take.markers) > 1:
         said.problem(
-            f"{take.clip}: the colour of no marker is in any of {len(samples.images)} frames looked at; "
+            f"{take.clip}: the color of no marker is in any of {len(samples.images)} frames looked at; "
             + ("there is too little light" if dark else "is it a clip of this performer?")
         )
         return check.readouts
@@ -95,7 +95,7 @@ def _check_light(samples: ClipSamples, said: Findings) -> bool:
         count = int(np.count_nonzero(bright < limit))
         if count >= max(FEW * len(bright), 1):
             said.warn(
-                f"{count} of {len(bright)} frames looked at are {word}; colours are hard to tell there, more "
+                f"{count} of {len(bright)} frames looked at are {word}; colors are hard to tell there, more "
                 "light is worth most"
             )
             return True
@@ -103,7 +103,7 @@ def _check_light(samples: ClipSamples, said: Findings) -> bool:
 
 
 def _refused(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
-    """Sentences on colours that are nowhere, as far as enough was looked at to know it."""
+    """Sentences on colors that are nowhere, as far as enough was looked at to know it."""
     enough = len(samples.images) >= min(ENOUGH, samples.indices[-1] + 1)
     return tuple(check.missing.values()) if enough else ()
 

@@ -11,7 +11,7 @@ _CAMERA = {
     "sensor_width_mm": "the sensor's width in millimetres, 36 where lens_mm is that of full frame",
     "matrix_world": "where the camera stood, four rows of four numbers",
 }
-_COLOUR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
+_COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
 _HEIGHT = "the performer's height in metres"
 
 
@@ -30,7 +30,7 @@ def unfilled(fields: Fields) -> tuple[str, ...]:
     for name in markers.values:
         marker = _child(markers, name)
         if "color_srgb" in marker.values and not marker.has("color_srgb"):
-            said.append(_sentence(marker, "color_srgb", _COLOUR))
+            said.append(_sentence(marker, "color_srgb", _COLOR))
     actor = _child(fields, "actor")
     if "height_m" in actor.values and not actor.has("height_m") and not actor.has("segments_m"):
         said.append(_sentence(actor, "height_m", _HEIGHT))

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...footage.clips.clip import Clip
 from ...footage.clips.spread_frames import glance
-from ...footage.colors.strong_colors import StrongColour, strong_colours
+from ...footage.colors.strong_colors import StrongColor, strong_colors
 from ...progress import run
 from ...take.description import KEYFRAMES, OWN, beside
 from ..shoot import Shoot, ShootTake
 
 Image = NDArray[np.uint8]
 
-COLOURED_CLIPS = 6
-"""Clips whose colours are looked at; they share one performer."""
-COLOURED_FRAMES = 4
+COLORED_CLIPS = 6
+"""Clips whose colors are looked at; they share one performer."""
+COLORED_FRAMES = 4
 """Frames of each."""
 
 
@@ -48,8 +48,8 @@ class ClipSurvey:
     """Names of takes that have a description of their own."""
     unreadable: tuple[str, ...]
     """A sentence on each clip that cannot be opened."""
-    colours: tuple[StrongColour, ...] = ()
-    """The strong colours that some of the clips show."""
+    colors: tuple[StrongColor, ...] = ()
+    """The strong colors that some of the clips show."""
 
     @property
     def sizes(self) -> Counter[tuple[int, int]]:
@@ -93,12 +93,12 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
         posed = beside(take.place, KEYFRAMES).exists()
         seen.append(SeenClip(take.name, clip.size, fps, clip.frame_count, posed))
     images: list[Image] = []
-    chosen = opened[:: max(len(opened) // COLOURED_CLIPS, 1)][:COLOURED_CLIPS]
+    chosen = opened[:: max(len(opened) // COLORED_CLIPS, 1)][:COLORED_CLIPS]
     for done, clip in enumerate(chosen):
         yield 0.8 + 0.2 * done / len(chosen)
-        images += run(glance(clip, COLOURED_FRAMES)).images
+        images += run(glance(clip, COLORED_FRAMES)).images
     yield 1.0
-    return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colours(images))
+    return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(images))
 
 
 def _is_described(take: ShootTake) -> bool:

@@ -114,12 +114,12 @@ def _markers(survey: ClipSurvey) -> dict[str, Any]:
             "the performer's own left. Take out markers that were not worn.",
         ]
     }
-    if survey.colours:
+    if survey.colors:
         said["//seen"] = [
-            "Strong colours that some of the clips show; which is on which limb is for you to say:",
+            "Strong colors that some of the clips show; which is on which limb is for you to say:",
             *(
-                f"{colour.hue} {list(colour.color_srgb)}, {100.0 * colour.share:.2f} % of the picture"
-                for colour in survey.colours
+                f"{color.hue} {list(color.color_srgb)}, {100.0 * color.share:.2f} % of the picture"
+                for color in survey.colors
             ),
         ]
     return said | {name: {"color_srgb": None} for name in MARKERS}

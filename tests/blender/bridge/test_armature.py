@@ -89,7 +89,7 @@ def test_limits_guide_inverse_kinematics_without_constraints(actor: bpy.types.Ob
     assert not any(len(bone.constraints) for bone in actor.pose.bones)
 
 
-def test_sides_have_collections_and_colours(actor: bpy.types.Object) -> None:
+def test_sides_have_collections_and_colors(actor: bpy.types.Object) -> None:
     """Every bone is in the collection of its side."""
     members = {c.name: {bone.name for bone in c.bones} for c in actor.data.collections}
     assert members["Left"] == {bone.name for bone in actor.data.bones if bone.name.endswith(".L")}

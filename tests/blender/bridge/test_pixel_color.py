@@ -1,4 +1,4 @@
-"""The colour of a pixel of the frame that the scene shows."""
+"""The color of a pixel of the frame that the scene shows."""
 
 import bpy
 import numpy as np
@@ -9,7 +9,7 @@ from keymark.operators.bridge.footage_to_scene import show_footage
 from keymark.operators.bridge.pixel_color import footage_color
 
 
-def test_another_frame_has_another_colour_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
+def test_another_frame_has_another_color_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
     """The frame that the scene shows is the one that is read."""
     shown = show_footage(bpy.context.scene, camera, tiny_take.clip, tiny_take.fps, 1, 13)
     footage = Footage(bpy.context.scene, bpy.context.scene.active_clip, shown)

@@ -46,8 +46,8 @@ def test_the_file_has_footage_behind_its_camera(written: Path) -> None:
     assert scene.active_clip == clip
 
 
-def test_the_body_wears_the_markers_colours(written: Path) -> None:
-    """One material a marker, in its colour, on a mesh that the armature moves."""
+def test_the_body_wears_the_markers_colors(written: Path) -> None:
+    """One material a marker, in its color, on a mesh that the armature moves."""
     bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
     mesh = next(o for o in bpy.data.objects if o.type == "MESH")
     assert [m.name for m in mesh.data.materials][1:] == [

@@ -117,8 +117,8 @@ def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: 
     assert (nowhere.found, nowhere.area, nowhere.distinctness) == (0, 0.0, 0.0)
     assert "matches nothing in the clip" in nowhere.warning
     assert trunk.found == right.found == 13 and not trunk.warning
-    assert "almost the same colour as shin.R" in twins[0].warning
-    assert "almost the same colour as shin.L" in twins[1].warning
+    assert "almost the same color as shin.R" in twins[0].warning
+    assert "almost the same color as shin.L" in twins[1].warning
 
 
 def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:

@@ -49,7 +49,7 @@ def drawn() -> Drawn:
 ORANGE = (1.0, 0.5, 0.0, 1.0)
 
 
-def test_a_line_has_its_colour_and_its_dark_edge(drawn: Drawn) -> None:
+def test_a_line_has_its_color_and_its_dark_edge(drawn: Drawn) -> None:
     """Both lie where they belong."""
     line = np.array([[[8.0, 32.0], [88.0, 32.0]]])
     picture = drawn(lambda: drawing.lines(line, ORANGE, 6.0, halo=1.0))
@@ -59,8 +59,8 @@ def test_a_line_has_its_colour_and_its_dark_edge(drawn: Drawn) -> None:
     assert picture[42, 48, 3] == 0.0
 
 
-def test_each_segment_may_have_a_colour(drawn: Drawn) -> None:
-    """Two lines, two colours, one call."""
+def test_each_segment_may_have_a_color(drawn: Drawn) -> None:
+    """Two lines, two colors, one call."""
     pair = np.array([[[8.0, 16.0], [88.0, 16.0]], [[8.0, 48.0], [88.0, 48.0]]])
     colors = [(1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)]
     picture = drawn(lambda: drawing.lines(pair, colors, 4.0))
@@ -69,7 +69,7 @@ def test_each_segment_may_have_a_colour(drawn: Drawn) -> None:
 
 
 def test_polygons_are_filled_and_unfinished_ones_left_out(drawn: Drawn) -> None:
-    """The colours stay with their polygons."""
+    """The colors stay with their polygons."""
     boxes = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]) + np.array(
         [[[5.0, 5.0]], [[np.nan, 5.0]], [[60.0, 30.0]]]
     )
@@ -118,7 +118,7 @@ def test_nothing_to_draw_is_no_failure(drawn: Drawn) -> None:
 
 
 def test_fading_keeps_the_hue() -> None:
-    """A marker's colour has no alpha of its own."""
+    """A marker's color has no alpha of its own."""
     assert drawing.faded((0.2, 0.4, 0.6), 0.5) == (0.2, 0.4, 0.6, 0.5)
     assert drawing.faded((0.2, 0.4, 0.6, 0.5), 0.5) == (0.2, 0.4, 0.6, 0.25)
 

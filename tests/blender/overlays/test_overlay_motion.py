@@ -100,7 +100,7 @@ def test_the_frame_that_the_scene_shows_is_drawn(scene: bpy.types.Scene) -> None
     assert motion.shown(scene) is None
 
 
-def test_outlines_have_their_markers_colours_and_lie_on_the_footage(scene: bpy.types.Scene) -> None:
+def test_outlines_have_their_markers_colors_and_lie_on_the_footage(scene: bpy.types.Scene) -> None:
     """By name, whatever the order in the list; the picture's top left corner is where the region has it."""
     switch(scene, "observed")
     scene.frame_set(5)
@@ -232,7 +232,7 @@ def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
 
 
 def test_neighbours_that_are_alike_are_drawn_at_once() -> None:
-    """With their own colours, in their order; different ones are not mixed."""
+    """With their own colors, in their order; different ones are not mixed."""
     line = np.zeros((2, 2, 2))
     red, blue = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
     thin = [Stroke(line, red, 1.0), Stroke(line + 1.0, [blue, red], 1.0)]

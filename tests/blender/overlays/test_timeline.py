@@ -78,7 +78,7 @@ def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -
     assert diamond.corners[0, :, 1].mean() == pytest.approx(VIEW.floor)
 
 
-def test_confidence_is_told_by_height_and_colour(take: bpy.types.PropertyGroup) -> None:
+def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -> None:
     """The lowest bar stands in the middle, where the review is least sure."""
     keep_review(take, made_up_review())
     bpy.context.scene.keymark.timeline.show_speed = False
@@ -129,7 +129,7 @@ def test_figures_keep_gaps() -> None:
     assert np.isnan(area).any((1, 2)).all()
 
 
-def test_colours_and_heights_stay_in_range() -> None:
+def test_colors_and_heights_stay_in_range() -> None:
     """Also for values beyond what is usual."""
     colors = believed_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
     assert colors.min() >= 0.0 and colors.max() <= 1.0

@@ -1,4 +1,4 @@
-"""Two performers in one clip, each in colours of their own, as two takes of one scene."""
+"""Two performers in one clip, each in colors of their own, as two takes of one scene."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -65,7 +65,7 @@ def clip(tmp_path: Path, body: Body, camera: Camera, performances: list[Posture]
     return path
 
 
-def test_each_is_found_by_their_own_colours(
+def test_each_is_found_by_their_own_colors(
     clip: Path,
     body: Body,
     camera: Camera,

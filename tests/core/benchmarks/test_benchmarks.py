@@ -143,7 +143,7 @@ def test_a_point_is_as_far_off_as_all_points_are_on_average(trial: Trial) -> Non
 
 
 def test_a_chart_shows_its_curves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The picture has the curve's colour where the values are, on a logarithmic axis."""
+    """The picture has the curve's color where the values are, on a logarithmic axis."""
     monkeypatch.setattr(charts, "OUTPUT", tmp_path)
     x = np.array([2.0, 4.0, 8.0])
     curve = charts.Curve("map", x, np.array([30.0, 20.0, 10.0]), charts.LEFT, "full")

@@ -121,7 +121,7 @@ BEHIND = [[-1.0, 0, 0, 0], [0, 0, 1.0, -4.0], [0, 1.0, 0, 1.0], [0, 0, 0, 1.0]]
         (said_of_take(camera={"matrix_world_frames": 5 * [MATRIX_WORLD]}), "matrix_world_frames has 5 poses"),
         (said_of_take(frame_count=12), "frame_count is 12"),
         (said_of_take(library="walkin"), "is 'walking' meant?"),
-        (said_of_take(markers={"shin.L": {"color_srgb": [0, 255, 255]}}), "marker shin.L has the colour"),
+        (said_of_take(markers={"shin.L": {"color_srgb": [0, 255, 255]}}), "marker shin.L has the color"),
         (said_of_take(actor={"height_m": 17}), "height_m is 17"),
     ],
 )

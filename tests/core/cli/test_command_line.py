@@ -173,7 +173,7 @@ def no_video(take: Path) -> None:
 
 
 def no_marker(take: Path) -> None:
-    """A clip in which nothing has a marker's colour."""
+    """A clip in which nothing has a marker's color."""
     for file in (take / "frames").iterdir():
         cv2.imwrite(str(file), np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8))
 
@@ -203,7 +203,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
         edit("take.json", turn_camera_away),
         "keyframe 1 has the point .* behind the camera",
     ),
-    "colours not there": (no_marker, "colour"),
+    "colors not there": (no_marker, "color"),
 }
 
 

@@ -48,7 +48,7 @@ def worn() -> RegionTracks:
     return film(MOTION, 0.2, model=RegionModel(BODY, CAMERA, TRUE))
 
 
-def test_known_postures_tell_where_the_colour_begins_and_how_thick_the_limb_is(worn: RegionTracks) -> None:
+def test_known_postures_tell_where_the_color_begins_and_how_thick_the_limb_is(worn: RegionTracks) -> None:
     """With exact keyframes the placements come back, and predict far better than average ones."""
     found = read(MOTION[POSED], worn).model
     for ours, true in zip(found.placements, TRUE, strict=True):

@@ -90,7 +90,7 @@ def test_what_is_believed_exactly_stays() -> None:
 
 
 def test_a_marker_that_no_posture_explains_is_named() -> None:
-    """The left shin's colour is seen in the far corner of the picture."""
+    """The left shin's color is seen in the far corner of the picture."""
     tracks = film(TRUTH)
     centroid = np.array(tracks.centroid)
     centroid[20, 3] = (4.0, 4.0)

@@ -25,11 +25,11 @@ def walk_by(shake: int = 0, stays: bool = False) -> Appearance:
 
 
 def test_the_background_is_what_shows_when_nobody_is_before_it() -> None:
-    """Every pixel is known although the block crossed most of them, and has its own colour."""
+    """Every pixel is known although the block crossed most of them, and has its own color."""
     learned = walk_by()
     assert learned.steady
     assert learned.known.all()
-    assert np.abs(learned.colour - PLACE).max() < 8.0
+    assert np.abs(learned.color - PLACE).max() < 8.0
 
 
 def test_what_a_performer_who_stays_hides_is_not_known() -> None:
@@ -45,7 +45,7 @@ def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
     assert not walk_by(shake).steady
 
 
-def test_colours_are_likelier_as_what_they_are() -> None:
+def test_colors_are_likelier_as_what_they_are() -> None:
     """The block's red is the part's; a background pixel is the background's, in shadow too."""
     learned = walk_by()
     part, row, column = np.array(0), np.array(5), np.array(5)
@@ -57,7 +57,7 @@ def test_colours_are_likelier_as_what_they_are() -> None:
 
 
 @pytest.mark.parametrize("frames", [1, 2, 5, 12, 31, 32])
-def test_the_usual_colour_is_the_lower_median_of_what_is_free(frames: int) -> None:
+def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> None:
     """Of any number of pictures, as plain sorting finds it, pixel by pixel."""
     rng = np.random.default_rng(frames)
     images = rng.integers(0, 255, size=(frames, 8, 64, 3), dtype=np.uint8)
@@ -67,4 +67,4 @@ def test_the_usual_colour_is_the_lower_median_of_what_is_free(frames: int) -> No
     for column, free in ((5, images[1:]), (50, images)):
         if len(free):
             expected = np.sort(free[:, 3, column], axis=0)[(len(free) - 1) // 2]
-            np.testing.assert_array_equal(learned.colour[3, column], expected)
+            np.testing.assert_array_equal(learned.color[3, column], expected)

@@ -90,7 +90,7 @@ def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) ->
     ],
     ids=["grey", "16 bit", "alpha", "16 bit grey"],
 )
-def test_every_depth_and_channel_count_becomes_eight_bit_colour(tmp_path: Path, image: np.ndarray) -> None:
+def test_every_depth_and_channel_count_becomes_eight_bit_color(tmp_path: Path, image: np.ndarray) -> None:
     """A level of 200 stays 200 in three channels."""
     cv2.imwrite(str(tmp_path / "a1.png"), image)
     _, _, frame = next(Clip.open(tmp_path).frames())

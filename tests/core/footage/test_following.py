@@ -1,4 +1,4 @@
-"""Following markers through a clip longer than the stretch that their colours are learned from."""
+"""Following markers through a clip longer than the stretch that their colors are learned from."""
 
 import cv2
 import numpy as np
@@ -12,7 +12,7 @@ from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.matting import coverage
 from keymark.core.footage.segmentation.search_windows import boxes_to_measure
-from keymark.core.footage.segmentation.window_sheet import NO_COLOUR, Window, lay_out
+from keymark.core.footage.segmentation.window_sheet import NO_COLOR, Window, lay_out
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9
@@ -20,14 +20,14 @@ STRETCH = 9
 
 @pytest.fixture
 def short_stretch(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the colours be learned from the first nine frames of a drawn clip."""
+    """Let the colors be learned from the first nine frames of a drawn clip."""
     monkeypatch.setattr(markers, "_STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
 
 
 def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The same centroids and areas whether the whole clip waits for its colours or a fifth of it."""
+    """The same centroids and areas whether the whole clip waits for its colors or a fifth of it."""
     rng = np.random.default_rng(1)
     images = [draw(moving(index), rng) for index in range(42)]
     whole = finish(track_markers(clip_of(images), STYLES))
@@ -93,12 +93,12 @@ def test_two_pieces_about_an_arm_are_one_marker_after_the_stretch_too() -> None:
 
 
 def alike(index: int) -> list[tuple[float, float]]:
-    """Where two markers of one colour are: their paths cross in height, and the second rests at first."""
+    """Where two markers of one color are: their paths cross in height, and the second rests at first."""
     return [(60.0 + 4.0 * index, 60.0 + 2.0 * index), (240.0 - max(4.0 * (index - 10), 0.0), 140.0)]
 
 
-def test_the_expected_places_tell_markers_of_almost_one_colour_apart() -> None:
-    """Either keeps to its own path, and one note says that their colours do not tell them apart."""
+def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
+    """Either keeps to its own path, and one note says that their colors do not tell them apart."""
     rng = np.random.default_rng(6)
     other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
     styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))
@@ -113,26 +113,26 @@ def test_the_expected_places_tell_markers_of_almost_one_colour_apart() -> None:
     assert tracks.visible[apart].all()
     assert np.abs(tracks.centroid[apart] - truth[apart]).max() < 0.5
     assert len(tracks.notes) == 1
-    assert "left and right have almost the same colour; the keyframes tell" in tracks.notes[0]
+    assert "left and right have almost the same color; the keyframes tell" in tracks.notes[0]
 
 
-def test_markers_of_different_colours_need_no_note() -> None:
+def test_markers_of_different_colors_need_no_note() -> None:
     """Red and blue are told apart by what they are."""
     rng = np.random.default_rng(7)
     assert finish(track_markers(clip_of([draw(moving(i), rng) for i in range(12)]), STYLES)).notes == ()
 
 
-def test_a_marker_of_the_walls_colour_is_refused_with_the_reason() -> None:
-    """The sentence says that the surroundings have the colour, not that it was found nowhere."""
+def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
+    """The sentence says that the surroundings have the color, not that it was found nowhere."""
     wall = (200, 190, 176)
     rng = np.random.default_rng(8)
     images = [draw([(wall, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
-    with pytest.raises(InputError, match=r"marker sleeve has the colour .* [67]\d % of the picture .* too"):
+    with pytest.raises(InputError, match=r"marker sleeve has the color .* [67]\d % of the picture .* too"):
         finish(track_markers(clip_of(images), (MarkerStyle("sleeve", "forearm.L", wall),)))
 
 
 def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> None:
-    """Of two images, one of them halved; columns between panels serve no colour."""
+    """Of two images, one of them halved; columns between panels serve no color."""
     rng = np.random.default_rng(9)
     images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
     sheet = lay_out(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
@@ -141,7 +141,7 @@ def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> No
     np.testing.assert_array_equal(sheet.picture[:10, 13:21], half[10:20, :8])
     np.testing.assert_array_equal(sheet.picture[:10, 11], half[10:20, 0])
     np.testing.assert_array_equal(sheet.picture[10:12, 13:21], np.stack([half[19, :8]] * 2))
-    assert sheet.colour.tolist()[:21] == [NO_COLOUR] + [3] * 9 + [NO_COLOUR] * 2 + [4] * 9
+    assert sheet.color.tolist()[:21] == [NO_COLOR] + [3] * 9 + [NO_COLOR] * 2 + [4] * 9
     assert sheet.image[0] == 0 and sheet.image[12] == 1 and sheet.scale[0] == 1 and sheet.scale[12] == 2
     assert sheet.shift[:, 0].tolist() == [5, 6] and sheet.shift[:, 11].tolist() == [-13, 10]
     assert sheet.picture.shape[0] % 2 == 0 and sheet.picture.shape[1] % 2 == 0
@@ -157,7 +157,7 @@ def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
 
 
 def test_the_share_of_a_border_pixel_is_what_the_region_covers_of_it() -> None:
-    """A disc drawn with known coverage, on a ground of another colour and of another light."""
+    """A disc drawn with known coverage, on a ground of another color and of another light."""
     fine = np.zeros((40 * 16, 60 * 16), dtype=np.uint8)
     cv2.circle(fine, (30 * 16, 20 * 16), 10 * 16, 255, -1)
     share = cv2.resize(fine, (60, 40), interpolation=cv2.INTER_AREA) / 255.0

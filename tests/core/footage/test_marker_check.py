@@ -1,4 +1,4 @@
-"""The readout of markers: numbers and warnings on clips whose colours are known, and previews' masks."""
+"""The readout of markers: numbers and warnings on clips whose colors are known, and previews' masks."""
 
 from collections.abc import Generator, Sequence
 from pathlib import Path
@@ -16,7 +16,7 @@ from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.mask_outlines import mask_outlines
-from keymark.core.footage.segmentation.regions import colour_masks
+from keymark.core.footage.segmentation.regions import color_masks
 
 Result = TypeVar("Result")
 GREEN = (40, 220, 60)
@@ -45,8 +45,8 @@ def words(result: MarkerCheck) -> str:
     return "\n".join(sentence for readout in result.readouts for sentence in readout.warnings)
 
 
-def test_clear_colours_are_found_everywhere_with_their_areas() -> None:
-    """Two ellipses of 302 and 452 px on a wall that has neither colour."""
+def test_clear_colors_are_found_everywhere_with_their_areas() -> None:
+    """Two ellipses of 302 and 452 px on a wall that has neither color."""
     rng = np.random.default_rng(1)
     red, blue = check([draw(moving(index), rng) for index in range(40)]).readouts
     assert (red.name, red.found, red.sampled) == ("red", 24, 24) and blue.found == 24
@@ -66,8 +66,8 @@ def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
     assert "red is found in only 6 of 24 frames" in words(result) and not blue.warnings
 
 
-def test_one_colour_that_is_nowhere_does_not_hide_the_others() -> None:
-    """It alone has nothing, and its sentence names colours that are there."""
+def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
+    """It alone has nothing, and its sentence names colors that are there."""
     rng = np.random.default_rng(3)
     images = [draw(moving(index), rng) for index in range(20)]
     result = check(images, (*STYLES, MarkerStyle("shin", "shin.L", GREEN)))
@@ -78,7 +78,7 @@ def test_one_colour_that_is_nowhere_does_not_hide_the_others() -> None:
     np.testing.assert_allclose(red.distinctness, check(images).readouts[0].distinctness, atol=0.01)
 
 
-def test_a_wall_of_a_markers_colour_is_named() -> None:
+def test_a_wall_of_a_markers_color_is_named() -> None:
     """Nothing tells the marker from the wall; the other marker is well."""
     rng = np.random.default_rng(4)
     styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
@@ -88,7 +88,7 @@ def test_a_wall_of_a_markers_colour_is_named() -> None:
     assert blue.found == 20 and blue.distinctness > 0.9
 
 
-def test_a_background_that_comes_near_a_markers_colour_makes_it_less_distinct() -> None:
+def test_a_background_that_comes_near_a_markers_color_makes_it_less_distinct() -> None:
     """Below it all hangs a curtain ever nearer to red."""
     distinctness = []
     for share in (0.0, 0.8, 0.85):
@@ -104,7 +104,7 @@ def test_a_background_that_comes_near_a_markers_colour_makes_it_less_distinct() 
     assert distinctness[0] > 0.995 > distinctness[1] > 0.98 > distinctness[2]
 
 
-def test_clutter_of_a_markers_colour_is_named_with_its_share() -> None:
+def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
     """A bucket of 1106 px stands beside a marker of 302 px that moves."""
     rng = np.random.default_rng(6)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
@@ -113,10 +113,10 @@ def test_clutter_of_a_markers_colour_is_named_with_its_share() -> None:
     assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
     share = 22 * 16 / (22 * 16 + 16 * 6)
     assert red.distinctness == pytest.approx(1.0 - share, abs=0.05) and blue.distinctness > 0.95
-    assert "% of what has the colour of red is something else" in words(result)
+    assert "% of what has the color of red is something else" in words(result)
 
 
-def test_markers_of_one_colour_are_named_both_and_each_is_found() -> None:
+def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
     """Their expected places tell them apart."""
     rng = np.random.default_rng(7)
     other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
@@ -126,15 +126,15 @@ def test_markers_of_one_colour_are_named_both_and_each_is_found() -> None:
     result = check([draw([*moving(index), other], rng) for index in range(40)], styles, expected)
     red, blue, twin = result.readouts
     assert result.groups == ((0, 2), (1,))
-    assert "red has almost the same colour as twin" in red.warnings[0]
-    assert "twin has almost the same colour as red" in twin.warnings[0]
+    assert "red has almost the same color as twin" in red.warnings[0]
+    assert "twin has almost the same color as red" in twin.warnings[0]
     assert red.found == twin.found == 24 and blue.warnings == ()
     share = 16 * 6 / (16 * 6 + 9 * 14)
     assert [red.distinctness, twin.distinctness] == pytest.approx([share, 1.0 - share], abs=0.05)
     assert twin.area_px == pytest.approx(np.pi * 9 * 14, rel=0.08)
 
 
-def test_colours_that_light_may_make_equal_are_named() -> None:
+def test_colors_that_light_may_make_equal_are_named() -> None:
     """Two reds that differ by a little more than one sample leaves open, in changing light."""
     rng = np.random.default_rng(8)
     dark = (150, 52, 40)
@@ -143,18 +143,18 @@ def test_colours_that_light_may_make_equal_are_named() -> None:
         shapes: list[Ellipse] = [moving(index)[0], (dark, (250.5, 120.5), (8.0, 18.0), 0.0)]
         images.append(draw(shapes, rng, 6.0, 1.0 - 0.4 * (index % 2)))
     result = check(images, (STYLES[0], MarkerStyle("dark", "trunk", dark)))
-    assert "colours too alike" in words(result) or "almost the same colour" in words(result)
+    assert "colors too alike" in words(result) or "almost the same color" in words(result)
     assert "red" in words(result) and "dark" in words(result)
 
 
-def test_sentences_say_with_what_a_colour_is_confused() -> None:
+def test_sentences_say_with_what_a_color_is_confused() -> None:
     """Each names the marker, and a marker that nothing is wrong with has none."""
     clear = Likeness((), (("blue", 0.02),), 0.05, 0.01, 0.0)
     assert marker_warnings("red", 24, 24, 300.0, clear) == ()
     (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
-    assert other == "red and blue have colours too alike: 30 % of red would pass for blue"
+    assert other == "red and blue have colors too alike: 30 % of red would pass for blue"
     (wall,) = marker_warnings("red", 24, 24, 300.0, clear._replace(background=0.25))
-    assert wall.startswith("the background wears the colour of red: 25 %")
+    assert wall.startswith("the background wears the color of red: 25 %")
 
 
 def test_a_tiny_marker_is_called_small() -> None:
@@ -171,7 +171,7 @@ def test_previews_show_what_the_extraction_measures() -> None:
     rng = np.random.default_rng(10)
     images = [draw(moving(index), rng) for index in range(12)]
     tracks = finish(track_markers(clip_of(images), STYLES))
-    masks = colour_masks(images[5], check(images).model)
+    masks = color_masks(images[5], check(images).model)
     assert masks.shape == (2, 240, 320)
     np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
     assert masks.max() <= 1.0 and masks[0][120, 250] == 0.0 and masks[1][120, 250] == 1.0
@@ -184,7 +184,7 @@ def test_large_images_are_previewed_on_the_measuring_grid() -> None:
     large = [cv2.resize(image, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC) for image in small]
     clip = Clip(Path("large"), Drawn(large, size=(1280, 960)))
     result = result_of(check_markers(result_of(sample_clip(clip)), STYLES))
-    masks = colour_masks(large[2], result.model)
+    masks = color_masks(large[2], result.model)
     assert masks.shape == (2, 240, 320)
     assert masks[0].mean() == pytest.approx(result.readouts[0].area_share, rel=0.06)
 

@@ -11,7 +11,7 @@ import pytest
 from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving, path
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.colors.color_learning import learn_colours
+from keymark.core.footage.colors.color_learning import learn_colors
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, RegionTracks
@@ -61,7 +61,7 @@ def test_changing_light_and_noise_do_not_lose_a_marker() -> None:
     assert np.median(np.abs(tracks.centroid[:, 0] - [path(index) for index in range(40)])) < 0.2
 
 
-def test_a_still_thing_of_the_markers_colour_is_clutter_even_while_the_marker_is_hidden() -> None:
+def test_a_still_thing_of_the_markers_color_is_clutter_even_while_the_marker_is_hidden() -> None:
     """It is larger than the marker, and the marker is away for a while."""
     rng = np.random.default_rng(4)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
@@ -74,13 +74,13 @@ def test_a_still_thing_of_the_markers_colour_is_clutter_even_while_the_marker_is
 
 
 def test_a_marker_that_rests_is_no_clutter() -> None:
-    """Nothing else of its colour moves, so a still region is the marker."""
+    """Nothing else of its color moves, so a still region is the marker."""
     rng = np.random.default_rng(5)
     tracks = finish(track_markers(clip_of([draw(moving(8), rng) for _ in range(30)]), STYLES))
     assert tracks.visible.all()
 
 
-def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_colour() -> None:
+def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_color() -> None:
     """A larger red ball crosses the picture; only the expectation can know which of the two it is."""
     rng = np.random.default_rng(6)
     balls: list[Ellipse] = [(RED, (300.0 - 3.0 * index, 40.0), (14.0, 14.0), 0.0) for index in range(40)]
@@ -123,8 +123,8 @@ def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
     assert tracks.quality[20, 0] < 0.5 * tracks.quality[10, 0]
 
 
-def test_a_colour_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
-    """The sentence names the marker, its colour and colours that are in the clip."""
+def test_a_color_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
+    """The sentence names the marker, its color and colors that are in the clip."""
     rng = np.random.default_rng(9)
     clip = clip_of([draw(moving(index), rng) for index in range(20)])
     with pytest.raises(InputError, match=r"marker shin.*\[40, 220, 60\].*nearest.*\[\d+, \d+, \d+\]"):
@@ -145,17 +145,17 @@ def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_o
     np.testing.assert_allclose(tracks.area[:, 0], 16 * np.pi * 16 * 6, rtol=0.06)
 
 
-def test_one_sample_off_in_light_still_teaches_the_markers_colour() -> None:
-    """A sample from the shaded side, a third darker, finds the same pixels as the true colour."""
+def test_one_sample_off_in_light_still_teaches_the_markers_color() -> None:
+    """A sample from the shaded side, a third darker, finds the same pixels as the true color."""
     rng = np.random.default_rng(12)
     images = [draw(moving(index), rng) for index in range(6)]
     dark = (RED[0] * 2 // 3, RED[1] * 2 // 3, RED[2] * 2 // 3)
-    right, shaded = (learn_colours(images, [sample, BLUE]).found for sample in (RED, dark))
+    right, shaded = (learn_colors(images, [sample, BLUE]).found for sample in (RED, dark))
     np.testing.assert_allclose(shaded, right, rtol=0.1)
 
 
 @pytest.mark.parametrize("grey", [(128, 128, 128), (12, 12, 12), (235, 235, 235)])
-def test_a_marker_without_a_hue_is_told_from_a_coloured_wall(grey: tuple[int, int, int]) -> None:
+def test_a_marker_without_a_hue_is_told_from_a_colored_wall(grey: tuple[int, int, int]) -> None:
     """Black and white sleeves: a sample whose three channels are equal is learned and followed."""
     rng = np.random.default_rng(3)
     images = []
@@ -169,7 +169,7 @@ def test_a_marker_without_a_hue_is_told_from_a_coloured_wall(grey: tuple[int, in
 
 
 def test_a_grey_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
-    """Seven hundredths of a colour's range tell the two apart."""
+    """Seven hundredths of a color's range tell the two apart."""
     rng = np.random.default_rng(3)
     grey = (128, 128, 128)
     images = [draw([(grey, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]

@@ -79,7 +79,7 @@ def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> N
     assert len(passes) == 1
 
 
-def test_a_moved_keyframe_needs_no_pass_where_colours_stay(take: Take, passes: list[int]) -> None:
+def test_a_moved_keyframe_needs_no_pass_where_colors_stay(take: Take, passes: list[int]) -> None:
     """From what was kept comes exactly what reading anew gives."""
     kept = reading_from_arrays(reading_arrays(run(read_footage(take))))
     changed = moved(take, 0.03)
@@ -92,7 +92,7 @@ def test_a_moved_keyframe_needs_no_pass_where_colours_stay(take: Take, passes: l
     assert_alike(run(read_footage(without, kept)).tracks, run(read_footage(without)).tracks)
 
 
-def test_a_keyframe_that_hides_a_colour_has_the_clip_read_anew(take: Take, passes: list[int]) -> None:
+def test_a_keyframe_that_hides_a_color_has_the_clip_read_anew(take: Take, passes: list[int]) -> None:
     """Where the markers may be looked for has a say in what is learned."""
     kept = run(read_footage(take))
     far = moved(take, 0.9)
@@ -101,7 +101,7 @@ def test_a_keyframe_that_hides_a_colour_has_the_clip_read_anew(take: Take, passe
     assert_alike(again.tracks, run(read_footage(far)).tracks)
 
 
-@pytest.mark.parametrize("change", ["clip", "touched", "colour", "segment"])
+@pytest.mark.parametrize("change", ["clip", "touched", "color", "segment"])
 def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[int], change: str) -> None:
     """Nothing is ever out of date."""
     kept = run(read_footage(take))
@@ -111,7 +111,7 @@ def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[i
         image.write_bytes(sorted((take.folder / "frames").iterdir())[9].read_bytes())
     elif change == "touched":
         os.utime(image, (1000, 1000))
-    elif change == "colour":
+    elif change == "color":
         take = replace(take, markers=(replace(style, color_srgb=(44, 150, 70)), *take.markers[1:]))
     else:
         take = replace(take, markers=(replace(style, segment="chest"), *take.markers[1:]))

@@ -1,27 +1,27 @@
-"""The colours that stand out in pictures, for a person who looks for the markers'."""
+"""The colors that stand out in pictures, for a person who looks for the markers'."""
 
 import numpy as np
 from _synthetic_take import COLORS, drawn_frames, true_postures
 from keymark.core.footage.colors.color_space import chromaticity
-from keymark.core.footage.colors.strong_colors import StrongColour, strong_colours
+from keymark.core.footage.colors.strong_colors import StrongColor, strong_colors
 
 
-def test_the_markers_are_among_the_strong_colours() -> None:
+def test_the_markers_are_among_the_strong_colors() -> None:
     """Every one of them, nearly as it was drawn, and nothing twice."""
-    found = strong_colours(drawn_frames(true_postures(6)))
+    found = strong_colors(drawn_frames(true_postures(6)))
     assert len(COLORS) <= len(found) <= 12
-    colours = np.array([colour.color_srgb for colour in found], dtype=float)
-    chroma = chromaticity(colours[:, ::-1])[0]
+    colors = np.array([color.color_srgb for color in found], dtype=float)
+    chroma = chromaticity(colors[:, ::-1])[0]
     for name, color in COLORS.items():
         wanted = chromaticity(np.array(color, dtype=float)[::-1])[0]
         assert np.linalg.norm(chroma - wanted, axis=1).min() < 0.08, name
     apart = np.linalg.norm(chroma[:, None] - chroma[None], axis=-1)[np.triu_indices(len(found), 1)]
-    assert apart.min() > 0.03 and all(0.0 < colour.share < 0.1 for colour in found)
+    assert apart.min() > 0.03 and all(0.0 < color.share < 0.1 for color in found)
 
 
 def test_of_grey_pictures_there_is_nothing_to_say() -> None:
     """Nor of none."""
-    assert strong_colours([np.full((48, 64, 3), 90, dtype=np.uint8)]) == () == strong_colours([])
+    assert strong_colors([np.full((48, 64, 3), 90, dtype=np.uint8)]) == () == strong_colors([])
 
 
 def test_hues_have_names() -> None:
@@ -30,4 +30,4 @@ def test_hues_have_names() -> None:
     names |= {(50, 80, 220): "blue", (190, 50, 150): "pink", (120, 50, 160): "purple"}
     names |= {(220, 120, 50): "orange", (46, 98, 114): "cyan"}
     for color, name in names.items():
-        assert StrongColour(color, 0.01).hue == name
+        assert StrongColor(color, 0.01).hue == name

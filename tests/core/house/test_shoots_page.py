@@ -66,8 +66,8 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
     assert moved.camera.lens_mm == 40.0 and moved.camera.resolution == (160, 120)
     glove = describe(folder / "shoot" / "day2" / "clip02.mp4")
     assert glove.settings.library is None and glove.settings.floor_m == 0.0
-    colours = {style.name: style.color_srgb for style in read_take(glove.place).markers}
-    assert colours["forearm.L"] == (225, 55, 55) and colours["trunk"] == (40, 150, 70)
+    colors = {style.name: style.color_srgb for style in read_take(glove.place).markers}
+    assert colors["forearm.L"] == (225, 55, 55) and colors["trunk"] == (40, 150, 70)
     assert read_take(folder / "shoot" / "day2" / "jump").fps == 30.0
 
 

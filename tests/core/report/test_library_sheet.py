@@ -21,7 +21,7 @@ STANDING = standing_posture(BODY)
 
 
 def alike(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
-    """Where a picture has a colour, whatever its brightness."""
+    """Where a picture has a color, whatever its brightness."""
     wanted, shown = np.array(color, dtype=np.float64), image.astype(np.float64)
     cosine = shown @ wanted / (np.linalg.norm(shown, axis=-1) * np.linalg.norm(wanted) + 1e-9)
     return cosine > 0.985

@@ -50,7 +50,7 @@ def tracks() -> RegionTracks:
 
 
 def count(image: np.ndarray, color: tuple[int, int, int], tolerance: int = 12) -> int:
-    """How many pixels have about this colour."""
+    """How many pixels have about this color."""
     return int((np.abs(image.astype(int) - color).max(axis=-1) <= tolerance).sum())
 
 
@@ -84,7 +84,7 @@ def test_large_frames_are_kept_no_larger_than_drawn(
 
 
 def test_the_skeleton_lies_on_the_projected_joints(take: Take, motion: Motion, tracks: RegionTracks) -> None:
-    """In the sheet's first cell the left elbow has the left's colour where the camera projects it."""
+    """In the sheet's first cell the left elbow has the left's color where the camera projects it."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
     image = overlay_sheet(take, motion, tracks, {0: plain})
     scale = CELL_WIDTH / SIZE[0]

@@ -133,7 +133,7 @@ def test_everyone_can_read_the_page() -> None:
 
 @pytest.mark.parametrize("colors", [LIGHT, DARK], ids=["light", "dark"])
 def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None:
-    """Every colour of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
+    """Every color of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
 
     def luminance(color: str) -> float:
         shares = [int(color[place : place + 2], 16) / 255 for place in (1, 3, 5)]

@@ -80,7 +80,7 @@ REFUSED: dict[str, tuple[Change, str]] = {
     "camera at infinity": (camera(matrix_world=camera_at(-1e300)), "each must be within 1e"),
     "distortion": (camera(distortion=[1e300]), "distortion is"),
     "keyframes aside": (moved(900.0), "not one point of any keyframe lies in the camera's picture"),
-    "colours": (lambda take, _: take["markers"]["trunk"].update(color_srgb=[0, 0, 0]), "matches nothing"),
+    "colors": (lambda take, _: take["markers"]["trunk"].update(color_srgb=[0, 0, 0]), "matches nothing"),
 }
 CONVERTED: dict[str, Change] = {
     "rate": lambda take, _: take.update(fps=1000),

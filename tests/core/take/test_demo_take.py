@@ -106,8 +106,8 @@ def test_the_regions_lie_on_the_true_segments(folder: Path, take: Take, truth: A
     assert np.all(offset[whole] < half_width_px[whole])
 
 
-def test_the_footage_shows_each_colour_where_it_is_said_to_be(folder: Path, take: Take) -> None:
-    """Around a marker's true centroid the footage has the colour of take.json, in nearly all frames."""
+def test_the_footage_shows_each_color_where_it_is_said_to_be(folder: Path, take: Take) -> None:
+    """Around a marker's true centroid the footage has the color of take.json, in nearly all frames."""
     visibility = json.loads((folder / "visibility.json").read_text(encoding="utf-8"))
     images = [image for _, _, image in open_clip(take).frames()]
     for style in take.markers:

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from person import Person, keymark
 
 FARTHEST_COLOR = 40.0
-"""Between a pixel of a sleeve and the sleeve's colour over the whole clip, of 255."""
+"""Between a pixel of a sleeve and the sleeve's color over the whole clip, of 255."""
 HIGHER_PX = 100
 """What the timeline is made higher by."""
 SEARCH_PX = 0.06
-"""How far from where a sleeve should be a person looks for its colour, as a share of the picture's width."""
+"""How far from where a sleeve should be a person looks for its color, as a share of the picture's width."""
 
 
 def start_empty(person: Person) -> Steps[None]:
@@ -72,7 +72,7 @@ def look_through_camera(person: Person) -> Steps[None]:
 
 
 def markers(person: Person) -> Steps[None]:
-    """Add the five markers, and pick each one's colour from the footage."""
+    """Add the five markers, and pick each one's color from the footage."""
     names = [style.segment for style in person.known.markers]
     yield from person.undoable(
         "adding the markers", lambda: person.hands.click_button("keymark.add_usual_markers")
@@ -154,7 +154,7 @@ def _cancel_eyedropper(person: Person) -> Steps[None]:
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     """A pixel [px] of the current frame where a person would click for a marker.
 
-    That is where the sleeve's colour is nearest to what it is known to be, around where the first keyframe
+    That is where the sleeve's color is nearest to what it is known to be, around where the first keyframe
     has the middle of the limb.
     """
     known = person.known

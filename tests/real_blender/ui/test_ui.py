@@ -18,7 +18,7 @@ GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = ("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish")
 """Each leaves at least one picture of this name."""
 AGREEMENT_MM = 1.5
-"""The eyedropper's colours are a level or two off the take's, and the armature's bones are float32."""
+"""The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
 PATIENCE_S = 3000.0
 
 
