@@ -1,7 +1,7 @@
 """What Blender itself makes of keyframes: F-curves with auto-clamped handles on quaternion components.
 
 A reimplementation for comparison, in the form of cubic Hermite curves: a handle's slope is that of the line
-through both neighbours, zero at an extremum and at the ends, and no handle's end passes a neighbour's value.
+through both neighbors, zero at an extremum and at the ends, and no handle's end passes a neighbor's value.
 Blender's handles are 1/2.5614 of a gap long instead of 1/3, which bends time a little; that is left out.
 """
 

@@ -12,7 +12,7 @@ load_project()
 from keymark.core.report.axes import Axes  # noqa: E402
 from keymark.core.report.canvas import (  # noqa: E402
     ACCENT,
-    GREY,
+    GRAY,
     INK,
     LEFT,
     PALE,
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 1200, 520
 ROW, ROW_NAMES = 24, 330
-COLORS = {"interpolation": GREY, "ekf": RIGHT, "map": LEFT}
+COLORS = {"interpolation": GRAY, "ekf": RIGHT, "map": LEFT}
 """Of what is compared, the same in all charts."""
 
 
@@ -119,7 +119,7 @@ def draw_pairs(name: str, title: str, methods: tuple[str, str], pairs: Sequence[
     for row, pair in enumerate(pairs):
         y = upper + ROW * (row + 0.5)
         canvas.text(pair.name, ROW_NAMES - 12.0, y + 4.0, 9.0, INK, "right")
-        canvas.line([[across(pair.first), y], [across(pair.second), y]], GREY)
+        canvas.line([[across(pair.first), y], [across(pair.second), y]], GRAY)
         for method, value in zip(methods, (pair.first, pair.second), strict=True):
             canvas.disc([across(value), y], 5.0, COLORS[method])
     canvas.text(title, 16.0, 31.0, 12.0, INK)

@@ -60,13 +60,13 @@ Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], 
 def draw(
     shapes: list[Ellipse], rng: np.random.Generator, noise: float = 2.0, light: float = 1.0
 ) -> np.ndarray:
-    """Ellipses (color, centre, half axes, degrees) with soft edges on a warm wall over a brown floor."""
+    """Ellipses (color, center, half axes, degrees) with soft edges on a warm wall over a brown floor."""
     fine = _empty().copy()
     for color, (x, y), (a, b), angle in shapes:
-        # OpenCV draws about the centres of pixels, with four bits of fraction.
-        centre = (round((x * FINE - 0.5) * 16), round((y * FINE - 0.5) * 16))
+        # OpenCV draws about the centers of pixels, with four bits of fraction.
+        center = (round((x * FINE - 0.5) * 16), round((y * FINE - 0.5) * 16))
         axes = (round(a * FINE * 16), round(b * FINE * 16))
-        cv2.ellipse(fine, centre, axes, angle, 0, 360, color[::-1], -1, shift=4)
+        cv2.ellipse(fine, center, axes, angle, 0, 360, color[::-1], -1, shift=4)
     image = cv2.resize(fine, SIZE, interpolation=cv2.INTER_AREA).astype(np.float64)
     return np.clip(image * light + rng.normal(0, noise, image.shape), 0, 255).astype(np.uint8)
 

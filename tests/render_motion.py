@@ -15,8 +15,8 @@ import bpy
 from mathutils import Matrix
 
 SAMPLES = 6
-LIGHT_SRGB_GREY = 0.86
-"""An evenly grey world lights everything alike and keeps the markers' hues."""
+LIGHT_SRGB_GRAY = 0.86
+"""An evenly gray world lights everything alike and keeps the markers' hues."""
 
 
 def use_camera(scene: bpy.types.Scene, fields: dict) -> None:
@@ -40,7 +40,7 @@ def light_evenly(scene: bpy.types.Scene) -> None:
     world = bpy.data.worlds.new("Even light")
     world.use_nodes = True
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (LIGHT_SRGB_GREY, LIGHT_SRGB_GREY, LIGHT_SRGB_GREY, 1.0)
+    background.inputs["Color"].default_value = (LIGHT_SRGB_GRAY, LIGHT_SRGB_GRAY, LIGHT_SRGB_GRAY, 1.0)
     scene.world = world
     scene.view_settings.view_transform = "Standard"
     scene.render.resolution_percentage = 100

@@ -11,7 +11,7 @@ import numpy as np
 from keymark.core.body.kinematics import Body
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.registry import SHIPPED, shelved
-from keymark.core.report.canvas import GREY, INK, Canvas
+from keymark.core.report.canvas import GRAY, INK, Canvas
 from keymark.core.report.posture_picture import posture_picture
 
 FIGURES, CELL = 8, 116
@@ -33,7 +33,7 @@ def main(output: str) -> None:
     for number, library in enumerate(libraries):
         top, body = number * row, Body(library.actor)
         canvas.text(library.title, GAP, top + 50, 11.0, INK)
-        canvas.text(library.size, GAP, top + 70, 7.5, GREY)
+        canvas.text(library.size, GAP, top + 70, 7.5, GRAY)
         for column, posture in enumerate(some_postures(library)):
             picture = posture_picture(body, posture.posture)
             canvas.paste(picture, TITLE + column * (CELL + GAP), top, CELL, CELL)

@@ -48,7 +48,7 @@ FRAME_START = 1
 SIDE_EXPOSURE = {"moments": 2, "samples": 2}
 LICENSE = (
     "The take in this folder (clip, camera, keyframes, truth) was made by\n"
-    "tools/make_takes.py and is free under the project's own licence,\n"
+    "tools/make_takes.py and is free under the project's own license,\n"
     "GPL-3.0-or-later; see LICENSE in the project's root folder.\n"
 )
 
@@ -97,11 +97,11 @@ def _masks(
     """(F, M, height, width) where each marker is exactly visible in the middle of each exposure."""
     place_camera(described.camera)
     frames = []
-    with only_markers(performer.thing, room) as greys:
+    with only_markers(performer.thing, room) as grays:
         for frame, index in enumerate(performance.middles):
             performer.bend(performance, int(index))
             room.move(frame)
-            frames.append(marker_masks(greys))
+            frames.append(marker_masks(grays))
     return np.stack(frames)
 
 
@@ -153,11 +153,11 @@ def _visibility(masks: NDArray[np.bool_]) -> dict[str, dict[str, list]]:
     visible: dict[str, dict[str, list]] = {}
     for number, name in enumerate(MARKERS):
         seen = masks[:, number]
-        centres = [
+        centers = [
             [round(float(columns[m].mean()), 2), round(float(rows[m].mean()), 2)] if m.any() else None
             for m in seen
         ]
-        visible[name] = {"pixels": [int(m.sum()) for m in seen], "centroid": centres}
+        visible[name] = {"pixels": [int(m.sum()) for m in seen], "centroid": centers}
     return visible
 
 

@@ -1,4 +1,4 @@
-"""The performer's sizes: segment lengths in metres, and a body of average proportions where none is given.
+"""The performer's sizes: segment lengths in meters, and a body of average proportions where none is given.
 
 Proportions of stature: Drillis & Contini (1966), *Body Segment Parameters*, as tabulated in Winter,
 *Biomechanics and Motor Control of Human Movement*.
@@ -55,7 +55,7 @@ class Actor:
         missing = [name for name in REQUIRED if name not in given]
         if missing:
             raise InputError(
-                f"actor.segments_m lacks {', '.join(missing)}; it needs {', '.join(REQUIRED)}, each in metres"
+                f"actor.segments_m lacks {', '.join(missing)}; it needs {', '.join(REQUIRED)}, each in meters"
             )
         stature = self._stature(given)
         for name, share in SHARES_OF_STATURE.items():

@@ -77,7 +77,7 @@ class Body:
     skeleton: Skeleton = HUMAN
 
     def local(self, placement: Placement) -> Array:
-        """A placement of the skeleton in metres, (3,)."""
+        """A placement of the skeleton in meters, (3,)."""
         place = np.zeros(3)
         for length, factors in placement.items():
             place += self.actor.segments_m[length] * np.asarray(factors)

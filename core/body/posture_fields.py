@@ -1,4 +1,4 @@
-"""Postures in files: values by name of degree of freedom, in metres and radians."""
+"""Postures in files: values by name of degree of freedom, in meters and radians."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 FARTHEST_M = 1000.0
 LARGEST_ANGLE_RAD = 4.0 * np.pi
 DECIMALS = 6
-"""Micrometres and microradians: far below any measurement, and files stay short."""
+"""Micrometers and microradians: far below any measurement, and files stay short."""
 
 
 def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
@@ -67,5 +67,5 @@ def read_posture(
 
 
 def _bounds(skeleton: Skeleton, farthest_m: float) -> Mapping[str, float]:
-    """Largest size of each degree of freedom: metres for places, radians for angles."""
+    """Largest size of each degree of freedom: meters for places, radians for angles."""
     return {name: farthest_m if ".location_" in name else LARGEST_ANGLE_RAD for name in skeleton.dof_names}

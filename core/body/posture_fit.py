@@ -2,7 +2,7 @@
 
 Thirteen points leave some degrees of freedom free (forearm pronation, axial rotations, the share of
 pelvis and waist in a bend). Weak priors hold those near neutral, and a step is taken only when it
-lowers the cost: plain Gauss-Newton wanders off by decimetres here.
+lowers the cost: plain Gauss-Newton wanders off by decimeters here.
 """
 
 from dataclasses import dataclass

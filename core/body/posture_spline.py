@@ -1,7 +1,7 @@
 """A smooth course through postures: curves per degree of freedom, on the manifold.
 
 Each stretch between two postures is a cubic Hermite curve in the tangent space at the earlier one.
-Tangents are the three-point (parabolic) estimate where neighbouring stretches agree in direction and
+Tangents are the three-point (parabolic) estimate where neighboring stretches agree in direction and
 fall to zero where they do not, limited so that no component overshoots its postures (Fritsch & Carlson
 1980, *Monotone Piecewise Cubic Interpolation*; the tangents are Hyman's 1983 form of the limit).
 """
@@ -15,7 +15,7 @@ from .posture import Posture
 Array = NDArray[np.float64]
 
 MONOTONE_LIMIT = 3.0
-"""Largest slope, in units of the smaller neighbouring slope, that keeps a cubic monotone."""
+"""Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone."""
 
 
 def smooth_course(posed: Posture, knots: Array, at: Array) -> Posture:

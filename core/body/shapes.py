@@ -30,7 +30,7 @@ HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
     "foot": ((0.026, 0.024), (0.028, 0.014)),
 }
 HEAD_OVERSHOOT = 1.40
-"""The crown lies this far along the head segment, whose end is the head's centre."""
+"""The crown lies this far along the head segment, whose end is the head's center."""
 TRUNK = "trunk"
 TRUNK_PARTS = ("pelvis", "chest")
 
@@ -42,9 +42,9 @@ class Piece:
     segment: str
     joint: int
     start: Array
-    """(3,) centre of the first end in the joint's frame [m]."""
+    """(3,) center of the first end in the joint's frame [m]."""
     end: Array
-    """(3,) centre of the other end [m]."""
+    """(3,) center of the other end [m]."""
     lateral: Array
     """(3,) unit direction of the first half-width, across the axis."""
     sagittal: Array

@@ -1,4 +1,4 @@
-"""Symmetric systems in which each frame meets only its two neighbours on either side.
+"""Symmetric systems in which each frame meets only its two neighbors on either side.
 
 LAPACK's band Cholesky factorisation solves them. A backward recursion over the factor's frames gives the
 diagonal blocks of the inverse (the Rauch-Tung-Striebel smoother in information form; Särkkä 2013, *Bayesian
@@ -23,7 +23,7 @@ REACH = 2
 class BlockBanded:
     """A symmetric positive definite matrix of F x F blocks, and what is solved with it.
 
-    Neighbouring frames couple all their unknowns; frames two apart couple like unknowns only, as second
+    Neighboring frames couple all their unknowns; frames two apart couple like unknowns only, as second
     differences do, which keeps the band narrow.
     """
 

@@ -1,7 +1,7 @@
 """Where the markers sit and how thick the limbs are, as numbers that can be fitted.
 
 A sleeve may begin anywhere along its segment, and no performer is average. Average proportions are the
-centre of the belief, so that few or badly posed keyframes change little.
+center of the belief, so that few or badly posed keyframes change little.
 """
 
 from dataclasses import dataclass, fields

@@ -164,7 +164,7 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
             continue
         rows, noise = rate[own], variance[own]
         wanted = distance[own] + rows @ model.shape[part]
-        scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a metre
+        scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a meter
         weight = student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))

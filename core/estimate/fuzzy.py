@@ -75,22 +75,22 @@ def keyframe_distance(frame_count: int, keyframes: ArrayLike) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class OutputSet:
-    """A rule's output: triangles about `centre` (D,) of half-width `width` (D,), clipped at `degree`."""
+    """A rule's output: triangles about `center` (D,) of half-width `width` (D,), clipped at `degree`."""
 
-    centre: Array
+    center: Array
     width: Array
     degree: float
 
     def membership(self, value: Array) -> Array:
         """Clipped membership (N, D) of values (N, D)."""
-        return np.asarray(np.clip(1.0 - np.abs(value - self.centre) / self.width, 0.0, self.degree))
+        return np.asarray(np.clip(1.0 - np.abs(value - self.center) / self.width, 0.0, self.degree))
 
     @property
     def corners(self) -> Array:
         """(4, D) values at which the membership bends."""
         top = (1.0 - self.degree) * self.width
         return np.stack(
-            [self.centre - self.width, self.centre - top, self.centre + top, self.centre + self.width]
+            [self.center - self.width, self.center - top, self.center + top, self.center + self.width]
         )
 
 
@@ -105,16 +105,16 @@ def aggregate(near: OutputSet, far: OutputSet) -> tuple[Array, Array]:
     """
     if near.degree <= 0.0 and far.degree <= 0.0:
         raise ValueError("neither rule applies: the degrees of near and far are both 0")
-    # Values relative to the middle, so that the variance does not cancel when the centres are large.
-    middle = 0.5 * (near.centre + far.centre)
+    # Values relative to the middle, so that the variance does not cancel when the centers are large.
+    middle = 0.5 * (near.center + far.center)
     value = np.sort(np.concatenate([near.corners, far.corners]), axis=0)  # (8, D)
     value = np.sort(np.concatenate([value, _crossings(value, near, far)]), axis=0)  # (15, D)
-    centres = 0.5 * (value[:-1] + value[1:])
-    membership, at_centre = _joined(value, near, far), _joined(centres, near, far)
+    centers = 0.5 * (value[:-1] + value[1:])
+    membership, at_center = _joined(value, near, far), _joined(centers, near, far)
     simpson = np.diff(value, axis=0) / 6.0
     moments = []
     for power in (0, 1, 2):
-        ends, between = membership * (value - middle) ** power, at_centre * (centres - middle) ** power
+        ends, between = membership * (value - middle) ** power, at_center * (centers - middle) ** power
         moments.append(np.sum(simpson * (ends[:-1] + 4.0 * between + ends[1:]), axis=0))
     mean = moments[1] / moments[0]
     return middle + mean, np.maximum(moments[2] / moments[0] - mean**2, 0.0)
@@ -125,7 +125,7 @@ def _joined(value: Array, near: OutputSet, far: OutputSet) -> Array:
 
 
 def _crossings(value: Array, near: OutputSet, far: OutputSet) -> Array:
-    """Where the memberships cross between neighbouring values (N, D), or else their midpoint: (N - 1, D)."""
+    """Where the memberships cross between neighboring values (N, D), or else their midpoint: (N - 1, D)."""
     difference = near.membership(value) - far.membership(value)
     before, after = difference[:-1], difference[1:]
     crossing = before * after < 0.0

@@ -89,8 +89,8 @@ def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: R
     for frame in chunks(np.arange(frames), FRAMES_AT_ONCE):
         predicted = model.evaluate(model.body.pose(prior[frame]), frame)
         trusted = (predicted.visible > LEAST_TRUSTED) & (tracks.quality[frame] > LEAST_TRUSTED)
-        metres = camera.depth(prior[frame].translation, frame) / camera.focal_px
-        apart = (predicted.centroid - tracks.centroid[frame]) * metres[:, None, None]
+        meters = camera.depth(prior[frame].translation, frame) / camera.focal_px
+        apart = (predicted.centroid - tracks.centroid[frame]) * meters[:, None, None]
         offset[frame] = np.where(trusted[..., None], apart, np.nan)
     flat = offset.reshape(frames, -1)
     index = np.array([keyframe.index for keyframe in posed])

@@ -63,15 +63,15 @@ def place_standing(
     if regions is None or not known.any():
         return _in_the_middle(body, camera, frame, standing)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
-    centroid = _centre(regions.centroid[0], known)
+    centroid = _center(regions.centroid[0], known)
     _, direction = camera.rays(centroid, frame)
     distance = _usual_distance(body, camera)
     offset = np.zeros(3)
     for _ in range(ROUNDS):
         there = _at(standing, location + distance * direction)
         shown = model.evaluate(body.pose(Posture.stack([there])), np.array([frame]))
-        # The regions' centre lies off the hips; what it is off by now, it is off by there as well.
-        _, ray = camera.rays(_centre(shown.centroid[0], known), frame)
+        # The regions' center lies off the hips; what it is off by now, it is off by there as well.
+        _, ray = camera.rays(_center(shown.centroid[0], known), frame)
         offset = (ray - direction) * distance
         ratio = _relative_size(
             segments, known, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
@@ -129,7 +129,7 @@ def _bound(segments: tuple[str, ...], *parts: str) -> NDArray[np.bool_]:
     return np.array([segment.split(".")[0] in parts for segment in segments])
 
 
-def _centre(centroid: Array, known: NDArray[np.bool_]) -> Array:
+def _center(centroid: Array, known: NDArray[np.bool_]) -> Array:
     return np.asarray(centroid[known].mean(axis=0))
 
 
@@ -153,7 +153,7 @@ def _relative_size(
     errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[told]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
-        apart = [float(np.linalg.norm(_centre(p, trunk) - _centre(p, shins))) for p in (shown, seen)]
+        apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
         logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
         errors = np.append(errors, LEGS_STD)
     nearest = int(np.argmin(logarithms))

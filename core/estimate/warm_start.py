@@ -1,6 +1,6 @@
 """What a change of the take leaves of an earlier estimate: where to begin anew, and from where.
 
-A keyframe that is moved, added or removed changes the prior between its neighbours and, a little, what all
+A keyframe that is moved, added or removed changes the prior between its neighbors and, a little, what all
 keyframes together tell. Where the latter stays within small tolerances, only the frames around the change are
 estimated again, else the whole clip is; either from the prior, as if for the first time. To begin with the
 earlier postures would save a twentieth, and hold on to earlier mistakes (measured: up to 60 mm).

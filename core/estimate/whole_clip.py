@@ -44,7 +44,7 @@ class WholeClipOptions:
     window_s: float = 20.0
     """Longer clips are solved in windows of about this length [s] ..."""
     margin_s: float = 3.0
-    """... that reach this far into their neighbours: several times as far as any term remembers [s]."""
+    """... that reach this far into their neighbors: several times as far as any term remembers [s]."""
 
 
 @dataclass(frozen=True, eq=False)

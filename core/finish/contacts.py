@@ -12,8 +12,8 @@ REST_SPEED_M_S = 0.12
 RELEASE_SPEED_M_S = 0.25
 """... once, and stays below this before and after."""
 REST_HEIGHT_M = 0.05
-"""A resting ankle is no higher than this above its own lowest within `NEIGHBOURHOOD_S`."""
-NEIGHBOURHOOD_S = 1.0
+"""A resting ankle is no higher than this above its own lowest within `NEIGHBORHOOD_S`."""
+NEIGHBORHOOD_S = 1.0
 SHORTEST_S = 0.2
 """Shorter rests are turning points of a moving foot."""
 STRAY_M = 0.025
@@ -67,7 +67,7 @@ def _slow_runs(path: Array, time_s: Array) -> list[tuple[int, int]]:
     """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
     speed = np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1)
     low = np.array(
-        [path[np.abs(time_s - now) <= NEIGHBOURHOOD_S, 2].min() for now in time_s], dtype=np.float64
+        [path[np.abs(time_s - now) <= NEIGHBORHOOD_S, 2].min() for now in time_s], dtype=np.float64
     )
     slow = (speed < RELEASE_SPEED_M_S) & (path[:, 2] - low < REST_HEIGHT_M)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))

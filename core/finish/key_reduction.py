@@ -27,7 +27,7 @@ GENEROUS = 0.5
 BLAME = 0.6
 """A bone gets a key where its own error is at least this share of the largest that adds to a point's."""
 ROUNDS_EVERYWHERE = 3
-"""In the first rounds all keys are fitted anew, afterwards only the new ones' neighbours."""
+"""In the first rounds all keys are fitted anew, afterwards only the new ones' neighbors."""
 MARGIN = 0.98
 """Share of the tolerance to which keys are taken away: F-curves store numbers with few digits."""
 SAME = 1.02

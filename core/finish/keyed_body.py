@@ -105,7 +105,7 @@ class KeyedBody:
         self.splines[group] = spline
 
     def without(self, group: int, frame: int) -> Trial:
-        """What would be without the group's key at a frame, its neighbours fitted anew."""
+        """What would be without the group's key at a frame, its neighbors fitted anew."""
         at = int(np.searchsorted(self.splines[group].keys, frame))
         spline = self.splines[group].without_key(at)
         last = len(spline.keys) - 1

@@ -45,7 +45,7 @@ class PlantedFeet:
     contacts: tuple[Contact, ...]
     """Where which ankle rests; points are counted left, right."""
     skate_before_mm: float
-    """Mean horizontal travel per frame of resting ankles before, in millimetres; 0 without any rest ..."""
+    """Mean horizontal travel per frame of resting ankles before, in millimeters; 0 without any rest ..."""
     skate_after_mm: float
     """... and after."""
 

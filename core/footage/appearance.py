@@ -131,7 +131,7 @@ def _cells(pixels: Image) -> IntArray:
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:
-    """Return which pixels have only neighbours of their own label."""
+    """Return which pixels have only neighbors of their own label."""
     kernel = np.ones((3, 3), dtype=np.uint8)
     shifted = (label + 1).astype(np.uint8)
     return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))

@@ -42,7 +42,7 @@ _STILL_SHARE: Final = 0.5
 _STILL_STEP_PX: Final = 1.5
 _STILL_LOG_AREA: Final = 0.4
 _STILL_CELL: Final = 2.0 / 3.0
-"""Width of a cell in steps, so that a cell and its neighbours reach one step on average."""
+"""Width of a cell in steps, so that a cell and its neighbors reach one step on average."""
 _STILL_COST: Final = 20.0
 _TAKEN_COST: Final = 20.0
 _RIVAL_DEVIATION: Final = 0.2
@@ -131,7 +131,7 @@ def still_clutter(found: Candidates) -> BoolArray:
 def _still(found: Candidates, frames: int) -> BoolArray:
     """Mark regions with like ones at their place in most frames.
 
-    Places and sizes are counted in cells; a region's own and the neighbouring cells are what is like it.
+    Places and sizes are counted in cells; a region's own and the neighboring cells are what is like it.
     """
     if not len(found.frame):
         return np.zeros(0, dtype=np.bool_)
@@ -144,11 +144,11 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     )
     around = np.zeros(len(cell), dtype=np.int64)
     for offset in np.ndindex(3, 3, 3):
-        neighbour = (
+        neighbor = (
             cell + np.ravel_multi_index(offset, tuple(sides)) - np.ravel_multi_index((1, 1, 1), tuple(sides))
         )
-        where = np.minimum(np.searchsorted(cell, neighbour), len(cell) - 1)
-        around += np.where(cell[where] == neighbour, count[where], 0)
+        where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
+        around += np.where(cell[where] == neighbor, count[where], 0)
     return np.asarray(around[index] >= _STILL_SHARE * frames)
 
 
@@ -245,8 +245,8 @@ def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker
     relative = np.full(len(found.frame), np.nan)
     if expected is not None:
         # A container's claimed frame count may fall short: frames beyond it have no expectation.
-        known = np.flatnonzero(found.frame < len(expected.centre))
+        known = np.flatnonzero(found.frame < len(expected.center))
         frame = found.frame[known]
-        offset = np.linalg.norm(found.centroid[known] - expected.centre[frame, marker], axis=1)
+        offset = np.linalg.norm(found.centroid[known] - expected.center[frame, marker], axis=1)
         relative[known] = offset / np.maximum(expected.radius[frame, marker], 1.0)
     return relative

@@ -33,13 +33,13 @@ class Camera:
     """A fixed or moving pinhole camera with polynomial radial distortion.
 
     Attributes:
-        lens_mm: focal length in millimetres.
-        sensor_width_mm: width of the sensor in millimetres; it spans the image's width.
+        lens_mm: focal length in millimeters.
+        sensor_width_mm: width of the sensor in millimeters; it spans the image's width.
         resolution: image width and height in pixels (square pixels).
-        matrix_world: camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; metres.
+        matrix_world: camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters.
         shift_x: shift of the view to the right, in image widths.
         shift_y: shift of the view upwards, in image widths (as in Blender, not heights).
-        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalised coordinates
+        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalized coordinates
             to distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y².
     """
 
@@ -112,12 +112,12 @@ class Camera:
 
     @property
     def principal_point(self) -> FloatArray:
-        """Pixel the optical axis meets, (2,): the image's centre moved against the shifts."""
+        """Pixel the optical axis meets, (2,): the image's center moved against the shifts."""
         width, height = self.resolution
         return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
 
     def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
-        """Take world points (..., 3) in metres to camera coordinates (..., 3) in metres.
+        """Take world points (..., 3) in meters to camera coordinates (..., 3) in meters.
 
         Args:
             points: world points, (..., 3).
@@ -140,7 +140,7 @@ class Camera:
         return np.asarray(offset / np.linalg.norm(offset, axis=-1, keepdims=True))
 
     def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
-        """Return the distance along the viewing axis (...) in metres of world points (..., 3)."""
+        """Return the distance along the viewing axis (...) in meters of world points (..., 3)."""
         return -self.world_to_camera(points, frame)[..., 2]
 
     def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
@@ -154,13 +154,13 @@ class Camera:
         """Project world points to the image.
 
         Args:
-            points: world points, (..., 3), in metres.
+            points: world points, (..., 3), in meters.
             frame: index of each point's pose; see `world_to_camera`.
 
         Returns:
-            Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in metres.
+            Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in meters.
         """
-        x, y, depth = self._normalised(self.world_to_camera(points, frame))
+        x, y, depth = self._normalized(self.world_to_camera(points, frame))
         factor, _ = self._radial_factor(x * x + y * y)
         column, row = self.principal_point
         scale = self.focal_px * factor
@@ -168,7 +168,7 @@ class Camera:
         return np.moveaxis(np.stack([column + scale * x, row - scale * y]), 0, -1), depth
 
     def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
-        """Return d pixel / d world point, (..., 2, 3) in pixels per metre; NaN behind the camera."""
+        """Return d pixel / d world point, (..., 2, 3) in pixels per meter; NaN behind the camera."""
         rotation, _ = self.pose(frame)
         return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
 
@@ -179,14 +179,14 @@ class Camera:
         part I*, eq. 11) for a camera that looks along -Z.
 
         Args:
-            points: world points, (..., 3), in metres.
+            points: world points, (..., 3), in meters.
             frame: index of each point's pose; see `world_to_camera`.
 
         Returns:
             (..., 2, 6) d pixel / d (velocity of the body's point that passes through the camera, its angular
-            velocity), in pixels per metre and per radian; NaN behind the camera.
+            velocity), in pixels per meter and per radian; NaN behind the camera.
         """
-        x, y, depth = self._normalised(self.world_to_camera(points, frame))
+        x, y, depth = self._normalized(self.world_to_camera(points, frame))
         near = 1.0 / np.where(depth > 0.0, depth, np.nan)
         # Depth is -Z, so moving along +Z brings the point nearer.
         rates = np.zeros((2, 6, *x.shape))
@@ -209,7 +209,7 @@ class Camera:
             frame: index of each pixel's pose; see `world_to_camera`.
 
         Returns:
-            Origin (3,) or (..., 3) in metres and unit direction (..., 3), both in the world. Directions are
+            Origin (3,) or (..., 3) in meters and unit direction (..., 3), both in the world. Directions are
             NaN for pixels the distortion polynomial reaches from nowhere.
         """
         rotation, location = self.pose(frame)
@@ -220,7 +220,7 @@ class Camera:
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
     def pose(self, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
-        """Return the camera's orientation (..., 3, 3), its axes as columns, and its place (..., 3) in metres.
+        """Return the camera's orientation (..., 3, 3), its axes as columns, and its place (..., 3) in meters.
 
         Args:
             frame: index of each pose wanted; a fixed camera ignores it.
@@ -236,7 +236,7 @@ class Camera:
         return matrix[..., :3, :3], matrix[..., :3, 3]
 
     @staticmethod
-    def _normalised(camera: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _normalized(camera: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return x, y at unit depth, NaN behind the camera, and the depth."""
         depth = -camera[..., 2]
         before = np.where(depth > 0.0, depth, np.nan)

@@ -107,8 +107,8 @@ def check_markers(
 
 def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
     """Return the expectation in some frames; what lies beyond the last known one is taken as there."""
-    rows = np.minimum(indices, len(expected.centre) - 1)
-    return ExpectedRegions(expected.centre[rows], expected.radius[rows])
+    rows = np.minimum(indices, len(expected.center) - 1)
+    return ExpectedRegions(expected.center[rows], expected.radius[rows])
 
 
 def _cheapest(found: Candidates, cost: FloatArray, _length_px: float) -> IntArray:

@@ -41,7 +41,7 @@ def reading_key(
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
-    places = None if expected is None else (expected.centre, expected.radius)
+    places = None if expected is None else (expected.center, expected.radius)
     return f"{_PREFIX}-{digest(_FORMAT, footage, wanted)}-{digest(places)}"
 
 

@@ -95,11 +95,11 @@ class ExpectedRegions:
     """Where each marker is expected, to tell it from clutter of like hue.
 
     Attributes:
-        centre: (F, M, 2) px; NaN where nothing is known.
+        center: (F, M, 2) px; NaN where nothing is known.
         radius: (F, M) px, a generous bound of how far the region's centroid may lie from there.
     """
 
-    centre: FloatArray
+    center: FloatArray
     radius: FloatArray
 
     def __post_init__(self) -> None:
@@ -108,12 +108,12 @@ class ExpectedRegions:
         Raises:
             ValueError: shapes disagree.
         """
-        centre = np.array(self.centre, dtype=np.float64)
+        center = np.array(self.center, dtype=np.float64)
         radius = np.array(self.radius, dtype=np.float64)
-        if centre.ndim != 3 or centre.shape[-1] != 2 or radius.shape != centre.shape[:2]:
+        if center.ndim != 3 or center.shape[-1] != 2 or radius.shape != center.shape[:2]:
             raise ValueError(
-                f"centre must be (F, M, 2) and radius (F, M), not {centre.shape} and {radius.shape}"
+                f"center must be (F, M, 2) and radius (F, M), not {center.shape} and {radius.shape}"
             )
-        for name, array in (("centre", centre), ("radius", radius)):
+        for name, array in (("center", center), ("radius", radius)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)

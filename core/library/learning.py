@@ -58,7 +58,7 @@ def learn_library(
         body: The performer, whose proportions the library keeps.
         posture: A batch of F postures.
         time_s: (F,) rising times [s].
-        about: Title, author and licence.
+        about: Title, author and license.
         count: How many postures; by default 10 to 40, as many as differ.
 
     Raises:

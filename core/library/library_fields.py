@@ -101,7 +101,7 @@ def _license(fields: Fields) -> str:
 def _actor(fields: Fields) -> Actor:
     actor = fields.child("actor", "an object with segments_m")
     actor.refuse_others(("segments_m",))
-    lengths = actor.child("segments_m", "an object of lengths in metres").values
+    lengths = actor.child("segments_m", "an object of lengths in meters").values
     try:
         return Actor(lengths)
     except InputError as error:
@@ -113,7 +113,7 @@ def _postures(fields: Fields, skeleton: Skeleton) -> tuple[LibraryPosture, ...]:
     for row in _rows(fields, "postures", "postures", 1, MOST_POSTURES):
         row.refuse_others(("name", "tags", "posture"))
         name = _line(row, "name", LONGEST_NAME)
-        values = row.child("posture", "an object of metres and radians by degree of freedom")
+        values = row.child("posture", "an object of meters and radians by degree of freedom")
         posture = read_posture(values, skeleton, FARTHEST_M, zeros_left_out=True)
         postures.append(LibraryPosture(name, posture, _lines(row, "tags", MOST_TAGS, LONGEST_TAG)))
     _refuse_alike(fields, "postures", [posture.name for posture in postures])

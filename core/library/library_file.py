@@ -22,7 +22,7 @@ SCHEMA = "keymark-library"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 4 * 2**20
 DECIMALS = 9
-"""Nanometres and nanoradians: Blender's single precision survives."""
+"""Nanometers and nanoradians: Blender's single precision survives."""
 
 
 def read_library(path: Path) -> Library:

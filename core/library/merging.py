@@ -39,7 +39,7 @@ class Comparison:
     newer: bool
     """Whether the version offered is a later one."""
     header: bool
-    """Whether title, version, author, licence, description, sources, tags or proportions differ."""
+    """Whether title, version, author, license, description, sources, tags or proportions differ."""
     added: tuple[str, ...]
     """Postures and motions that only the library offered has."""
     missing: tuple[str, ...]
@@ -130,7 +130,7 @@ def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
 def joined(first: Library, second: Library, identifier: str, title: str) -> Library:
     """A new library with everything of two others, on the proportions of the first.
 
-    What has the same name in both is told apart by a number, unless it is the same. Author, licence, sources
+    What has the same name in both is told apart by a number, unless it is the same. Author, license, sources
     and tags of both are named.
 
     Raises:

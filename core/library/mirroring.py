@@ -17,7 +17,7 @@ MIRRORED = "mirrored"
 _SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")
 _OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 ALIKE = 1e-6
-"""Metres, radians, and elements of rotation matrices."""
+"""Meters, radians, and elements of rotation matrices."""
 
 
 def mirrored_name(name: str) -> str:

@@ -13,7 +13,7 @@ from .transfer import applied
 
 Array = NDArray[np.float64]
 
-NEIGHBOURS = 2
+NEIGHBORS = 2
 """So many postures before and after a cycle shape the curve within it."""
 
 
@@ -39,7 +39,7 @@ def course(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -
     if not motion.cyclic:
         return applied(_led(library, posed, knots, at), library.actor, body)
     cycle = np.floor(at / motion.duration_s)
-    around = np.arange(-NEIGHBOURS, len(knots) + NEIGHBOURS)
+    around = np.arange(-NEIGHBORS, len(knots) + NEIGHBORS)
     turn, step = np.divmod(around, len(knots))
     led = _led(
         library,

@@ -1,6 +1,6 @@
 """What the footage says in each frame, in a form in which a posture's place before the camera is linear.
 
-A marker whose middle lies at r from the hips is seen at the normalised image place (x, y) where
+A marker whose middle lies at r from the hips is seen at the normalized image place (x, y) where
 (a + x k) (T + r) = 0 and (b + y k) (T + r) = 0, with T the hips relative to the camera, a and b the camera's
 axes to the right and up and k its backward axis in the world. Weighted least squares gives T, and what is
 left over, as fixed matrices of a frame times what is known of a posture: every posture and heading in one
@@ -57,13 +57,13 @@ class Sight:
     axes: Array
     """(M, 2, 3) directions in the world in which a marker's image spreads to the right and upwards."""
     root: Array
-    """(M, 3) square root of the observed second moments, per metre of depth: xx, xy, yy; average size."""
+    """(M, 3) square root of the observed second moments, per meter of depth: xx, xy, yy; average size."""
     root_std_m: Array
     """(M,) of their difference from the predicted ones."""
     constant: float
     """What is added to costs, so that performers of other habits can be compared."""
     pixel: float
-    """What a pixel spans per metre of depth."""
+    """What a pixel spans per meter of depth."""
     seen: NDArray[np.bool_]
     """(M,) markers that are seen."""
     whole: NDArray[np.bool_]

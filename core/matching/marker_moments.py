@@ -53,12 +53,12 @@ def marker_solids(body: Body, segments: tuple[str, ...], posture: Posture) -> So
         width = pieces.half_widths.mean(axis=1)  # (Q, 2)
         share = np.linalg.norm(axis, axis=-1) * width.mean(axis=1)
         share = share / share.sum(axis=1, keepdims=True)
-        centre = 0.5 * (start + end)
-        middle[:, marker] = np.einsum("nq,nqi->ni", share, centre)
+        center = 0.5 * (start + end)
+        middle[:, marker] = np.einsum("nq,nqi->ni", share, center)
         own = ALONG * _outer(axis)
         for side, direction in enumerate((pieces.lateral, pieces.sagittal)):
             own += ACROSS * width[:, side, None, None] ** 2 * _outer(pieces.turn(pose, direction))
-        own += _outer(centre - middle[:, marker, None])
+        own += _outer(center - middle[:, marker, None])
         spread[:, marker] = np.einsum("nq,nqij->nij", share, own)
     middle -= posture.translation[:, None]
     points = np.asarray(body.points(pose) - posture.translation[:, None])

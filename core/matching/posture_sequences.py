@@ -1,6 +1,6 @@
 """A library's postures in a row: every motion at small steps of time, on the body of the take.
 
-A motion becomes a *chain* of postures so close that the one between two neighbours is well known; so does its
+A motion becomes a *chain* of postures so close that the one between two neighbors is well known; so does its
 mirror image, where that is another motion. A posture in no motion is a chain of its own.
 """
 

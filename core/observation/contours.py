@@ -44,7 +44,7 @@ class ContourPrediction:
     half_width: Array
     """(F, N) of the part there [px]."""
     shape_rate: Array
-    """(F, N, SHAPE) how far [px] along the normal a metre of each correction moves a sample."""
+    """(F, N, SHAPE) how far [px] along the normal a meter of each correction moves a sample."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,12 +106,12 @@ class ContourModel:
         stretched = (widths[:, 0] + share[:, None] * (widths[:, 1] - widths[:, 0])) * cosines
         half = np.maximum(np.sqrt(np.sum(stretched**2, axis=-1)), 1e-6)
         rate = np.concatenate([np.broadcast_to(_taper(share), (*half.shape, 2)), cosines], axis=-1)
-        centre = _between(view, part, share)
+        center = _between(view, part, share)
         # Correcting the shape moves a sample along `out` or along the part's own two directions.
         touch = (widths[:, 0] + share[:, None] * (widths[:, 1] - widths[:, 0])) * stretched / half[..., None]
         shape = self.shape[part]
         touch = touch + shape[:, 2:]
-        world = centre + touch[..., :1] * lateral + touch[..., 1:] * sagittal
+        world = center + touch[..., :1] * lateral + touch[..., 1:] * sagittal
         world = world + np.sum(_taper(share) * shape[:, :2], axis=-1)[:, None] * out
         pixel, depth = self.camera.project(world, frame[:, None])
         slope = self.camera.project_jacobian(world, frame[:, None])

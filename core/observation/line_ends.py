@@ -91,9 +91,9 @@ class LineEnds:
         pixels, depth = self.camera.project(self._world_ends(pose), _per_end(frame))  # (..., M, 2, 2)
         line = pixels[..., 1, :] - pixels[..., 0, :]
         squared = _squared_shape(line, self._width_px(depth))
-        centre = pixels.mean(axis=-2)
+        center = pixels.mean(axis=-2)
         angle = np.arctan2(line[..., 1], line[..., 0])
-        return np.stack([centre[..., 0], centre[..., 1], angle, np.log1p(squared)], axis=-1)
+        return np.stack([center[..., 0], center[..., 1], angle, np.log1p(squared)], axis=-1)
 
     def jacobian(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
         """Derivative of `evaluate` by the posture's tangent step, (..., M, 4, D); arguments as there.
@@ -112,8 +112,8 @@ class LineEnds:
         d_depth = farther.mean(axis=-2) / depth.mean(axis=-1)[..., None]
         d_length = np.einsum("...i,...id->...d", line, d_line) / length_squared
         d_log_ratio = 2.0 * squared / (1.0 + squared) * (d_length + d_depth)
-        centre = image.mean(axis=-3)
-        return np.stack([centre[..., 0, :], centre[..., 1, :], d_angle, d_log_ratio], axis=-2)
+        center = image.mean(axis=-3)
+        return np.stack([center[..., 0, :], center[..., 1, :], d_angle, d_log_ratio], axis=-2)
 
     def width_px(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
         """Width of each marked segment in the image, (..., M) [px]; arguments as `evaluate`."""

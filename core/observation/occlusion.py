@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
 HIDDEN_DEPTH_M = 0.01
-"""A part must lie this much nearer to hide another: neighbours share their joint's depth."""
+"""A part must lie this much nearer to hide another: neighbors share their joint's depth."""
 NEGLIGIBLE = 8.0
 """Softness widths after which a part's effect is nothing."""
 BLOCK = 256
@@ -117,7 +117,7 @@ def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
     columns, rows = pixels[..., 0], pixels[..., 1]
     left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)
     radius = 0.5 * np.hypot(right - left, bottom - top)
-    # The nearest place of the part's axis to the circle's centre.
+    # The nearest place of the part's axis to the circle's center.
     across, down = np.moveaxis((parts.end - parts.start)[:, None], -1, 0)  # (F, 1, O)
     first_x, first_y = np.moveaxis(parts.start[:, None], -1, 0)
     dx = 0.5 * (left + right)[..., None] - first_x  # (F, Q, O)

@@ -92,7 +92,7 @@ def outline(pieces: PieceStack, view: View) -> Outline:
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
     """Samples between the contour lines: places (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
 
-    A place is four coordinates: one, the share of the axis, and metres along the cross-section's axes.
+    A place is four coordinates: one, the share of the axis, and meters along the cross-section's axes.
     """
     u = (np.arange(ALONG) + 0.5) / ALONG
     v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0

@@ -180,13 +180,13 @@ class RegionModel:
         weighted = np.empty((*factor.shape[:2], 3, factor.shape[2]))
         np.multiply(factor, samples.area, out=weighted[:, :, 0])
         centroid = self._per_marker((weighted[:, :, :1] @ pixels)[:, :, 0])
-        centred = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
-        np.multiply(weighted[:, :, :1], centred, out=weighted[:, :, 1:])
-        moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centred, -1, -2))
+        centerd = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
+        np.multiply(weighted[:, :, :1], centerd, out=weighted[:, :, 1:])
+        moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centerd, -1, -2))
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
-        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centred, moment))
+        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centerd, moment))
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
@@ -203,13 +203,13 @@ class RegionModel:
         frame: NDArray[np.intp],
         factor: Array,
         weighted: Array,
-        centred: Array,
+        centerd: Array,
         moment: Array,
     ) -> dict[str, Array]:
         """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
         `factor` (F, Q, S) turns a sample's area into its weight; `weighted` (F, Q, 3, S) holds the weights,
-        alone and times `centred`.
+        alone and times `centerd`.
         """
         count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
@@ -221,9 +221,9 @@ class RegionModel:
         # Turning also changes how much of the silhouette each sample stands for.
         middle = moment[:, self._marker_of]
         effect = np.empty((*rows.shape[:3], count))
-        effect[:, :, :2] = centred
+        effect[:, :, :2] = centerd
         for row, (a, b) in enumerate(MOMENTS, start=2):
-            np.multiply(centred[:, :, a], centred[:, :, b], out=effect[:, :, row])
+            np.multiply(centerd[:, :, a], centerd[:, :, b], out=effect[:, :, row])
             effect[:, :, row] -= middle[..., a, b, None]
         effect *= factor[:, :, None]
         rows[..., 3:] += effect @ samples.area_rate

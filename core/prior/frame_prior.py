@@ -89,7 +89,7 @@ def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float)
         postures = [_moved_on(others, index)]
         return Belief(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
     between = interpolate(tuple(others), index + 1)[index]
-    # Each neighbour says something of its own, the nearer one more.
+    # Each neighbor says something of its own, the nearer one more.
     std = (1.0 / variances[0] + 1.0 / variances[1]) ** -0.5
     return Belief(between, std, Posture.stack([between, *postures]), grounded=everyone)
 

@@ -1,6 +1,6 @@
 """How a motion may depart from the prior between its keyframes: how fast, and which joints together.
 
-Where neighbouring keyframes differ much, much happens between them, and what happens between them is made of
+Where neighboring keyframes differ much, much happens between them, and what happens between them is made of
 the same movements: the hip that swings forward bends the knee. The departure's acceleration is therefore
 given the size and, within each limb, the correlations of the steps between keyframes, beside a natural
 amount that every joint has.

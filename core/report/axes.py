@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .canvas import GREY, INK, PALE, Canvas
+from .canvas import GRAY, INK, PALE, Canvas
 
 LEFT_EDGE, RIGHT_EDGE, UPPER_EDGE, LOWER_EDGE = 72, 24, 54, 52
 
@@ -43,9 +43,9 @@ class Axes:
             canvas.text(f"{level:g}", LEFT_EDGE - 9.0, y + 4.0, 9.0, INK, "right")
         for tick in x_ticks:
             x = self.place(tick, 0.0)[0]
-            canvas.line([[x, floor], [x, floor + 5.0]], GREY)
+            canvas.line([[x, floor], [x, floor + 5.0]], GRAY)
             canvas.text(f"{tick:g}", x, floor + 19.0, 9.0, INK, "middle")
-        canvas.line([[LEFT_EDGE, UPPER_EDGE], [LEFT_EDGE, floor], [right, floor]], GREY, 1.2)
+        canvas.line([[LEFT_EDGE, UPPER_EDGE], [LEFT_EDGE, floor], [right, floor]], GRAY, 1.2)
 
     def name(self, title: str, x_title: str, y_title: str) -> None:
         """Write what the plot shows, and what its axes are."""

@@ -13,7 +13,7 @@ Color = tuple[int, int, int]
 WHITE: Color = (255, 255, 255)
 INK: Color = (51, 45, 42)
 PALE: Color = (226, 222, 219)
-GREY: Color = (140, 134, 130)
+GRAY: Color = (140, 134, 130)
 LEFT: Color = (178, 114, 0)
 RIGHT: Color = (0, 94, 213)
 """Blue and vermilion, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
@@ -67,13 +67,13 @@ class Canvas:
         for share in np.arange(count) / count:
             self.line([a + share * (b - a), a + (share + 0.5 / count) * (b - a)], color)
 
-    def disc(self, centre: ArrayLike, radius: float, color: Color) -> None:
+    def disc(self, center: ArrayLike, radius: float, color: Color) -> None:
         """Fill a circle."""
-        self._circle(centre, radius, color, cv2.FILLED)
+        self._circle(center, radius, color, cv2.FILLED)
 
-    def ring(self, centre: ArrayLike, radius: float, color: Color, thickness: float = 1.0) -> None:
+    def ring(self, center: ArrayLike, radius: float, color: Color, thickness: float = 1.0) -> None:
         """Draw a circle."""
-        self._circle(centre, radius, color, _width(thickness))
+        self._circle(center, radius, color, _width(thickness))
 
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""
@@ -113,8 +113,8 @@ class Canvas:
         top, left = round(y - width / 2.0) * SCALE, round(x - 1.5 * size) * SCALE
         self._pixels[top : top + turned.shape[0], left : left + turned.shape[1]] = turned
 
-    def _circle(self, centre: ArrayLike, radius: float, color: Color, thickness: int) -> None:
-        place = np.asarray(centre, dtype=np.float64)
+    def _circle(self, center: ArrayLike, radius: float, color: Color, thickness: int) -> None:
+        place = np.asarray(center, dtype=np.float64)
         if np.isfinite(place).all():
             x, y = _fixed(place[None])[0, 0]
             size = round(radius * SCALE * 2**SHIFT)
@@ -151,7 +151,7 @@ def ticks(low: float, high: float, most: int) -> Sequence[float]:
 
 
 def _fixed(points: NDArray[np.float64]) -> NDArray[np.int32]:
-    """Points (N, 2) for polygons: (N, 1, 2) in sixteenths, pixel centres at whole numbers."""
+    """Points (N, 2) for polygons: (N, 1, 2) in sixteenths, pixel centers at whole numbers."""
     reach = 2.0**14  # far outside every picture; more would overflow
     places = np.clip(points * SCALE - 0.5, -reach, reach)
     return np.round(places * 2**SHIFT).astype(np.int32)[:, None]

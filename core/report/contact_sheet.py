@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .canvas import ACCENT, GREY, INK, WHITE, Canvas
+from .canvas import ACCENT, GRAY, INK, WHITE, Canvas
 
 MARGIN = 16
 GAP = 8
@@ -42,7 +42,7 @@ def sheet(
     height = MARGIN + TITLE + rows * cell_height + (rows - 1) * GAP + FOOT + MARGIN
     canvas = Canvas(width, height)
     canvas.text(title, MARGIN, MARGIN + 15, 12.0, INK)
-    canvas.text(footer, MARGIN, height - MARGIN, 8.0, GREY)
+    canvas.text(footer, MARGIN, height - MARGIN, 8.0, GRAY)
     cells = [
         Cell(
             frame,

@@ -27,7 +27,7 @@ LIMB_WIDTH = 2.2
 PAPER = (226, 222, 219)
 """Where the clip has fewer frames, or the square is larger than the picture."""
 ROOM = 1.35
-"""Side of the square in heights or widths of the largest figure: the points end at the head's centre."""
+"""Side of the square in heights or widths of the largest figure: the points end at the head's center."""
 SMALLEST_SHARE = 0.3
 """Of the picture's shorter side: a posture that is squeezed to a dot is not magnified without end."""
 
@@ -46,9 +46,9 @@ def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image
     """
     strip = Canvas(*SIZE, PAPER)
     figure = stick_figure(motion)
-    centres, side = _squares(take, motion, list(images))
-    for place, ((frame, image), centre) in enumerate(zip(images.items(), centres, strict=True)):
-        corner, scale = centre - 0.5 * side, SIDE / side
+    centers, side = _squares(take, motion, list(images))
+    for place, ((frame, image), center) in enumerate(zip(images.items(), centers, strict=True)):
+        corner, scale = center - 0.5 * side, SIDE / side
         tile = Canvas(SIDE, SIDE)
         tile.paste(_cut(image, corner, side, take.camera.resolution), 0, 0, SIDE, SIDE)
 
@@ -64,22 +64,22 @@ def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image
 
 
 def _squares(take: Take, motion: Motion, frames: list[int]) -> tuple[Array, float]:
-    """Centres (K, 2) and the one side of squares that hold the figure in every frame [px].
+    """Centers (K, 2) and the one side of squares that hold the figure in every frame [px].
 
     They stay inside the picture where they fit.
     """
     size = np.array(take.camera.resolution, dtype=np.float64)
-    centres, extents = np.tile(0.5 * size, (len(frames), 1)), np.zeros(len(frames))
+    centers, extents = np.tile(0.5 * size, (len(frames), 1)), np.zeros(len(frames))
     for place, frame in enumerate(frames):
         pixels, _ = take.camera.project(motion.points[frame], frame)
         seen = pixels[np.isfinite(pixels).all(axis=-1)]
         if len(seen):
             low, high = np.clip(seen.min(axis=0), 0.0, size), np.clip(seen.max(axis=0), 0.0, size)
-            centres[place], extents[place] = 0.5 * (low + high), (high - low).max()
+            centers[place], extents[place] = 0.5 * (low + high), (high - low).max()
     wanted = ROOM * extents.max() if extents.any() else size.max()
     side = float(np.clip(wanted, SMALLEST_SHARE * size.min(), size.max()))
     half = np.minimum(0.5 * side, 0.5 * size)
-    return np.clip(centres, half, size - half), side
+    return np.clip(centers, half, size - half), side
 
 
 def _cut(image: Image, corner: Array, side: float, resolution: tuple[int, int]) -> Image:

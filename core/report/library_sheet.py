@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion, LibraryPosture
-from .canvas import GREY, INK, LEFT, RIGHT, Canvas, Color, Image
+from .canvas import GRAY, INK, LEFT, RIGHT, Canvas, Color, Image
 from .captions import cut, plain, wrapped
 from .mannequin import View, draw_mannequin, view_axes
 from .posture_picture import FLESH_M, TILT_RAD, outermost, showing_turn, stage
@@ -20,7 +20,7 @@ MARGIN = 28
 LEAST_WIDTH, WIDTH = 900, 1520
 """Of what lies between the margins, at least and at most."""
 SCALE = 86.0
-"""Pixels a metre, the same for every figure."""
+"""Pixels a meter, the same for every figure."""
 NARROWEST, WIDEST = 98, 230
 """Width of a cell."""
 HEADER, SECTION = 96, 34
@@ -102,12 +102,12 @@ def library_sheet(library: Library) -> Image:
     for left, top, strip, index in figures:
         posture = strip.postures[index]
         ground = posture.translation * [1.0, 1.0, 0.0] @ view_axes(strip.turn_rad, TILT_RAD)[:2].T
-        centre = (
+        center = (
             0.5 * strip.cell - SCALE * (ground[0] + strip.middle_m),
             strip.high - FLOOR_ROOM + SCALE * ground[1],
         )
         tile = image[top : top + strip.high, left : left + strip.cell]
-        tile[:] = draw_mannequin(tile, body, posture, View(strip.turn_rad, TILT_RAD, SCALE, centre))
+        tile[:] = draw_mannequin(tile, body, posture, View(strip.turn_rad, TILT_RAD, SCALE, center))
     return image
 
 
@@ -202,14 +202,14 @@ def _header(canvas: Canvas, library: Library) -> None:
         f"{library.size}   "
         f"by {library.author}   {library.license}   figure of {library.actor.stature_m:.2f} m"
     )
-    canvas.text(plain(words), MARGIN, 58.0, 8.5, GREY)
+    canvas.text(plain(words), MARGIN, 58.0, 8.5, GRAY)
     canvas.text(
-        cut(plain(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5), MARGIN, 76.0, 8.5, GREY
+        cut(plain(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5), MARGIN, 76.0, 8.5, GRAY
     )
     sides: tuple[tuple[str, Color, bool], ...] = (("right, banded", RIGHT, True), ("left", LEFT, False))
     x = float(canvas.width - MARGIN)
     for word, color, banded in sides:
-        canvas.text(word, x, 76.0, 8.5, GREY, "right")
+        canvas.text(word, x, 76.0, 8.5, GRAY, "right")
         x -= canvas.text_width(word, 8.5) + 8.0
         canvas.line([[x - 26.0, 72.0], [x, 72.0]], color, 7.0)
         if banded:
@@ -224,18 +224,18 @@ def _section(canvas: Canvas, strip: _Strip, left: int, top: int) -> None:
     if strip.cyclic:
         _loop(canvas, x + 7.0, base - 5.5)
         x += 22.0
-    canvas.text(strip.detail, x, base, 8.5, GREY)
+    canvas.text(strip.detail, x, base, 8.5, GRAY)
 
 
 def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
     """A circle that ends in an arrow: what comes again."""
     angle = np.linspace(-0.35 * np.pi, 1.35 * np.pi, 24)
     circle = np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], axis=-1)
-    canvas.line(circle, GREY, 1.6)
+    canvas.line(circle, GRAY, 1.6)
     tip, back = circle[-1], circle[-1] - circle[-4]
     along = back / np.linalg.norm(back)
     across = np.array([-along[1], along[0]])
-    canvas.polygon([tip + 5.0 * along, tip + 3.6 * across, tip - 3.6 * across], GREY)
+    canvas.polygon([tip + 5.0 * along, tip + 3.6 * across, tip - 3.6 * across], GRAY)
 
 
 def _caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, width: int) -> None:
@@ -244,7 +244,7 @@ def _caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, wid
     for line in _name_lines(name, width):
         canvas.text(line, middle, y, LETTER, INK, "middle")
         y += LINE
-    canvas.text(cut(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GREY, "middle")
+    canvas.text(cut(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GRAY, "middle")
 
 
 def _name_lines(name: str, width: int) -> Sequence[str]:

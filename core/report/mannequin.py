@@ -44,8 +44,8 @@ class View:
     tilt_rad: float
     """How far it looks down."""
     scale: float
-    """Pixels a metre."""
-    centre: tuple[float, float]
+    """Pixels a meter."""
+    center: tuple[float, float]
     """Where the world's origin lies in the picture: pixels to the right and down."""
 
     @property
@@ -57,7 +57,7 @@ class View:
         """Pixels (..., 2) of world places (..., 3), and how far away these lie (...,) [m]."""
         axes = self.axes
         flat = self.scale * axes[:2] * np.array([[1.0], [-1.0]])
-        pixel = places @ flat.T.astype(places.dtype) + np.array(self.centre, dtype=places.dtype)
+        pixel = places @ flat.T.astype(places.dtype) + np.array(self.center, dtype=places.dtype)
         return pixel, places @ axes[2].astype(places.dtype)
 
 
@@ -96,7 +96,7 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
         turn, origin = rotations[frame], origins[frame]
         towards = surface.normal[skin] @ (turn.T @ view.axes[2]).astype(np.float32) < 0.0
         facing.append(np.flatnonzero(towards) + skin.start)
-        shown.append(_moved(surface.place[facing[-1]], onto @ turn, onto @ origin + [*view.centre, 0.0]))
+        shown.append(_moved(surface.place[facing[-1]], onto @ turn, onto @ origin + [*view.center, 0.0]))
         thrown.append(_moved(surface.place[skin][::SPARSE], turn, origin))
     front = np.concatenate(facing)
     nearest, depth = _nearest(np.concatenate(shown), size)
@@ -137,7 +137,7 @@ def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Si
     """Which point is seen in each pixel of the larger picture, -1 where none, and how far away it is [m].
 
     Args:
-        seen: (N, 3) pixels of the reduced picture to the right and down, and metres away.
+        seen: (N, 3) pixels of the reduced picture to the right and down, and meters away.
         size: Height and width of the larger one.
     """
     pixel, away = _pixels(seen[:, :2] * np.float32(FINER), size), seen[:, 2]

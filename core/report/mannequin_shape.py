@@ -56,10 +56,10 @@ class _Tube:
     """Elliptical rings (R) along a line, in a frame."""
 
     frame: int
-    centre: Array
+    center: Array
     """(R, 3) [m]."""
     lateral: Array
-    """(R, 3) from the centre to the ring [m]."""
+    """(R, 3) from the center to the ring [m]."""
     sagittal: Array
     """(R, 3)."""
     color: Array
@@ -123,20 +123,20 @@ def _head(piece: Piece, spacing_m: float) -> Iterator[_Tube]:
     )  # fmt: skip
     yield _limb(neck, "neck", spacing_m)
     up = 0.40 * axis
-    centre = piece.end - up
+    center = piece.end - up
     wide, deep = piece.half_widths[1]
-    yield _egg(piece.joint, centre, up, wide * piece.lateral, deep * piece.sagittal, spacing_m)
-    nose = centre - 0.98 * deep * piece.sagittal - 0.12 * up
+    yield _egg(piece.joint, center, up, wide * piece.lateral, deep * piece.sagittal, spacing_m)
+    nose = center - 0.98 * deep * piece.sagittal - 0.12 * up
     size = 0.17 * wide
     yield _egg(piece.joint, nose, 0.22 * up, size * piece.lateral, 2.0 * size * piece.sagittal, spacing_m)
 
 
-def _egg(joint: int, centre: Array, up: Array, lateral: Array, sagittal: Array, spacing_m: float) -> _Tube:
+def _egg(joint: int, center: Array, up: Array, lateral: Array, sagittal: Array, spacing_m: float) -> _Tube:
     angle = np.linspace(0.0, np.pi, max(int(np.pi * np.linalg.norm(up) / spacing_m), 12))[:, None]
     # The jaw is narrower than the skull.
     size = np.sin(angle) * (1.0 - 0.05 * (1.0 - np.cos(angle)))
     color = np.tile(np.array(TRUNK, dtype=np.float64), (len(angle), 1))
-    return _Tube(joint, centre + np.cos(angle) * up, size * lateral, size * sagittal, color)
+    return _Tube(joint, center + np.cos(angle) * up, size * lateral, size * sagittal, color)
 
 
 def _foot(body: Body, piece: Piece, spacing_m: float) -> _Tube:
@@ -150,11 +150,11 @@ def _foot(body: Body, piece: Piece, spacing_m: float) -> _Tube:
     rise = np.clip((along - tip) / (heel - tip), 0.0, 1.0) ** 1.3
     height = ends * (0.32 + 0.68 * rise) * (ankle[2] - low) * 1.15
     half_width = ends * float(piece.half_widths[:, 0].mean()) * (1.15 - 0.25 * rise)
-    centre = np.stack([np.full_like(along, ankle[0]), along, low + 0.5 * height], axis=-1)
+    center = np.stack([np.full_like(along, ankle[0]), along, low + 0.5 * height], axis=-1)
     across, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     color = np.tile(SHOE * _side_color(piece.segment), (len(along), 1))
     frame = foot_frame(body, piece.segment)
-    return _Tube(frame, centre, half_width[:, None] * across, 0.5 * height[:, None] * up, color)
+    return _Tube(frame, center, half_width[:, None] * across, 0.5 * height[:, None] * up, color)
 
 
 def _side_color(segment: str) -> Array:
@@ -167,12 +167,12 @@ def _points(tube: _Tube, spacing_m: float) -> tuple[int, Array, Array, Array]:
     around = np.linspace(0.0, 2.0 * np.pi, max(int(2.0 * np.pi * widest / spacing_m), 12), endpoint=False)
     cos, sin = np.cos(around)[:, None], np.sin(around)[:, None]
     spoke = cos * tube.lateral[:, None] + sin * tube.sagittal[:, None]  # (R, S, 3)
-    place = tube.centre[:, None] + spoke
+    place = tube.center[:, None] + spoke
     turn = cos * tube.sagittal[:, None] - sin * tube.lateral[:, None]
     normal = np.cross(np.gradient(place, axis=0), turn)
     normal *= np.sign(np.sum(normal * spoke, axis=-1, keepdims=True) + 1e-15)
     # The poles, where rings are points, look along the line.
-    pole = tube.centre - tube.centre.mean(axis=0)
+    pole = tube.center - tube.center.mean(axis=0)
     flat = np.linalg.norm(normal, axis=-1, keepdims=True) < 1e-12
     normal = np.where(flat, pole[:, None], normal)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)

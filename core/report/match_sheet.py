@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..body.posture import Posture
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
-from .canvas import ACCENT, GREY, INK, PALE, WHITE, Canvas, Image
+from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas, Image
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .overlay_sheet import paler
 from .stick_figure import draw_figure, legend, posed_figure
@@ -85,7 +85,7 @@ def _caption(canvas: Canvas, cell: Cell, matched: Matched | None) -> None:
     canvas.text(percent, right, cell.top + 15.0, 9.0, INK, "right")
     left, y = cell.left + 7.0, cell.top + 24.0
     canvas.box(left, y, right, y + 4.0, WHITE)
-    color = ACCENT if matched.confidence >= 0.5 else GREY
+    color = ACCENT if matched.confidence >= 0.5 else GRAY
     canvas.box(left, y, left + matched.confidence * (right - left), y + 4.0, color)
 
 

@@ -65,21 +65,21 @@ def _tile(take: Take, figure: StickFigure, tracks: RegionTracks, image: Image, c
 
 
 def paler(image: Image) -> Image:
-    """The footage a little paler and greyer, so that what is drawn over it stands out."""
-    grey = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
-    mixed = 0.7 * image.astype(np.float64) + 0.12 * grey + 0.18 * 255.0
+    """The footage a little paler and grayer, so that what is drawn over it stands out."""
+    gray = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
+    mixed = 0.7 * image.astype(np.float64) + 0.12 * gray + 0.18 * 255.0
     return np.asarray(np.clip(mixed, 0.0, 255.0), dtype=np.uint8)
 
 
 def _draw_region(
     tile: Canvas, tracks: RegionTracks, frame: int, marker: int, scale: float, color: Color
 ) -> None:
-    centre = scale * tracks.centroid[frame, marker]
-    if not np.isfinite(centre).all():
+    center = scale * tracks.centroid[frame, marker]
+    if not np.isfinite(center).all():
         return
-    outline = ellipse_outline(centre, scale**2 * tracks.second_moment[frame, marker])
+    outline = ellipse_outline(center, scale**2 * tracks.second_moment[frame, marker])
     tile.line(outline, WHITE, 2.6, closed=True)
     tile.line(outline, color, 1.4, closed=True)
     for step in (np.array([4.0, 0.0]), np.array([0.0, 4.0])):
-        tile.line([centre - step, centre + step], WHITE, 2.4)
-        tile.line([centre - step, centre + step], INK, 1.0)
+        tile.line([center - step, center + step], WHITE, 2.4)
+        tile.line([center - step, center + step], INK, 1.0)

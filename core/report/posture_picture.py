@@ -47,9 +47,9 @@ def posture_picture(body: Body, posture: Posture) -> Image:
     left, right = float(seen[:, 0].min()) - FLESH_M, float(seen[:, 0].max()) + FLESH_M
     free = SIZE - 2 * EDGE
     scale = min(free / (high - low), free / (right - left), free / (1.08 * body.actor.stature_m))
-    centre = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE + scale * low)
-    view = View(turn, TILT_RAD, scale, centre)
-    return draw_mannequin(stage(SIZE, SIZE, centre[1] - scale * floor_y, scale), body, posture, view)
+    center = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE + scale * low)
+    view = View(turn, TILT_RAD, scale, center)
+    return draw_mannequin(stage(SIZE, SIZE, center[1] - scale * floor_y, scale), body, posture, view)
 
 
 def stage(height: int, width: int, floor: float, scale: float) -> Image:
@@ -59,7 +59,7 @@ def stage(height: int, width: int, floor: float, scale: float) -> Image:
         height: Of the picture.
         width: Of the picture.
         floor: Where on it, downwards, the floor under the figure lies.
-        scale: Pixels a metre.
+        scale: Pixels a meter.
     """
     rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
     share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
@@ -107,7 +107,7 @@ def _length(vector: Array) -> Array:
 
 
 def outermost(body: Body, postures: Posture, turn_rad: float) -> Array:
-    """Joints, crown and tips of a batch (K) of postures in a view, (K, N, 2): metres right and up."""
+    """Joints, crown and tips of a batch (K) of postures in a view, (K, N, 2): meters right and up."""
     return np.asarray(_places(body, postures) @ view_axes(turn_rad, TILT_RAD)[:2].T)
 
 

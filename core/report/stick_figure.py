@@ -16,7 +16,7 @@ Projection = Callable[[Array], tuple[Array, Array]]
 """World points (N, 3) to places on the canvas (N, 2) and depths (N,), greater being farther."""
 
 HEAD_RADIUS = 0.055
-"""Of the stature; the head point is the head's centre."""
+"""Of the stature; the head point is the head's center."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class StickFigure:
 
     limbs: tuple[Limb, ...]
     head: Array
-    """(F, 3) centre of the head [m]."""
+    """(F, 3) center of the head [m]."""
     head_radius_m: float
 
 
@@ -114,9 +114,9 @@ def _draw_limb(canvas: Canvas, places: Array, side: str, width: float, outlined:
 def _draw_head(
     canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, outlined: bool
 ) -> None:
-    centre = figure.head[frame]
+    center = figure.head[frame]
     # A step in each direction of space, the longest of which is the radius whatever the view.
-    rim, _ = project(centre + figure.head_radius_m * np.vstack([np.eye(3), np.zeros((1, 3))]))
+    rim, _ = project(center + figure.head_radius_m * np.vstack([np.eye(3), np.zeros((1, 3))]))
     radius = float(np.linalg.norm(rim[:3] - rim[3], axis=-1).max())
     if not np.isfinite(radius):
         return

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..take.motion import Motion
-from .canvas import GREY, Canvas, Image
+from .canvas import GRAY, Canvas, Image
 from .stick_figure import draw_figure, stick_figure
 
 Array = NDArray[np.float64]
@@ -39,13 +39,13 @@ def thumbnail(motion: Motion) -> Image:
     scale = min((SIZE - 2 * EDGE) / (top - floor), 1.25 * column / wide)
     ground = 0.5 * (SIZE + scale * (top - floor))
     canvas = Canvas(SIZE, SIZE, PAPER)
-    canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GREY, 1.5)
+    canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GRAY, 1.5)
     for number, frame in enumerate(frames):
-        centre = EDGE + column * (number + 0.5)
+        center = EDGE + column * (number + 0.5)
 
-        def project(points: Array, centre: float = centre, number: int = number) -> tuple[Array, Array]:
+        def project(points: Array, center: float = center, number: int = number) -> tuple[Array, Array]:
             right, upward, away = axes @ points.T
-            x, y = centre + scale * (right - middle[number]), ground - scale * (upward - floor)
+            x, y = center + scale * (right - middle[number]), ground - scale * (upward - floor)
             return np.stack([x, y], axis=-1), away
 
         draw_figure(canvas, figure, int(frame), project, LIMB_WIDTH, outlined=True)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..footage.camera import Camera
 from ..take.motion import Motion
-from .canvas import GREY, PALE, Canvas, Image
+from .canvas import GRAY, PALE, Canvas, Image
 from .contact_sheet import LABEL, MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
 
@@ -61,7 +61,7 @@ class _Window:
     """What of the view's plane a cell shows."""
 
     scale: float
-    """Picture units a metre."""
+    """Picture units a meter."""
     low_m: float
     """Height of the cell's lower edge over the origin."""
 
@@ -124,7 +124,7 @@ def _tile(
         tile.line([[0.0, y], [cell.width, y]], PALE)
     if floor is not None:
         y = cell.height - scale * (floor - window.low_m)
-        tile.line([[0.0, y], [cell.width, y]], GREY, 1.6)
+        tile.line([[0.0, y], [cell.width, y]], GRAY, 1.6)
 
     def project(points: Array) -> tuple[Array, Array]:
         right, upward, away = axes @ (points - origin).T

@@ -19,7 +19,7 @@ from scipy.special import gammainc
 Array = NDArray[np.float64]
 
 TOLERANCE_SHARE = 0.025
-"""Of the performer's stature: four to five centimetres of a grown-up's joints."""
+"""Of the performer's stature: four to five centimeters of a grown-up's joints."""
 UNSEEN_SHARE = 0.2
 """Of the way that the footage moved a point, the part that its error adds in what is not seen: about what
 takes with truth show with few keyframes."""

@@ -29,7 +29,7 @@ NORMAL_95 = 1.96
 
 @dataclass(frozen=True)
 class Score:
-    """Errors of a motion in millimetres; those over free frames leave the keyframes out."""
+    """Errors of a motion in millimeters; those over free frames leave the keyframes out."""
 
     frames: int
     keyframes: int

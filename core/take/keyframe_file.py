@@ -33,7 +33,7 @@ def read_keyframes(
 ) -> tuple[Keyframe, ...]:
     """Read keyframes, in the order of their frames.
 
-    A keyframe holds `frame` and `posture` (every degree of freedom by name, metres and radians), or `frame`
+    A keyframe holds `frame` and `posture` (every degree of freedom by name, meters and radians), or `frame`
     and `points` (thirteen points [m], world axes), to which a posture of the actor is fitted. With both, the
     posture counts. One that nobody posed says in `matched` which library it comes from.
 
@@ -152,12 +152,12 @@ def _matched(row: Fields) -> Matched | None:
 
 
 def _points(fields: Fields, names: Sequence[str]) -> Array:
-    valid = f"[x, y, z] in metres, each within {FARTHEST_M:g} m of the origin"
+    valid = f"[x, y, z] in meters, each within {FARTHEST_M:g} m of the origin"
     rows = [fields.numbers(name, 3, -FARTHEST_M, FARTHEST_M, valid) for name in names]
     places = np.asarray(rows)
     across = float(np.linalg.norm(places - places.mean(axis=0), axis=-1).max())
     if across < 0.05:
         raise InputError(
-            f"{fields.where} all lie in one place; they must be the 13 joints of a person, in metres"
+            f"{fields.where} all lie in one place; they must be the 13 joints of a person, in meters"
         )
     return places

@@ -34,7 +34,7 @@ UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 def write_motion(motion: Motion, path: Path) -> None:
     """Write a motion as `motion.json`, beside and moved into place; the same motion gives the same bytes.
 
-    Lengths are in metres and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
+    Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
 
     Args:
@@ -101,7 +101,7 @@ def _has_covariance(motion: Motion) -> bool:
 
 def _uncertainty(motion: Motion) -> dict[str, Any]:
     names = motion.body.skeleton.point_names
-    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), metres² to millimetres²
+    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), meters² to millimeters²
     return {
         "sigma_m": dict(zip(names, rounded(motion.sigma_m.T), strict=True)),
         "covariance_mm2": dict(zip(names, _significant(np.swapaxes(covariance, 0, 1)), strict=True)),

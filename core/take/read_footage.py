@@ -57,17 +57,17 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     """Where the interpolated keyframes put each marker, with a generous radius."""
     prior = interpolate(take.keyframes, frame_count)
     model = average_model(take)
-    centre = np.empty((frame_count, len(take.markers), 2))
+    center = np.empty((frame_count, len(take.markers), 2))
     for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
-        centre[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
+        center[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     posed = take.keyframe_indices
     beyond = np.maximum(np.arange(frame_count) - max(posed), min(posed) - np.arange(frame_count)).clip(0)
     reach = EXPECTED_RADIUS_M + STRAYED_M_PER_S * beyond / take.fps
     radius = reach * take.camera.focal_px / np.maximum(depth, 0.1)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
-    centre, radius = np.round(64.0 * centre) / 64.0, np.round(64.0 * radius) / 64.0
-    return ExpectedRegions(centre, np.repeat(radius[:, None], len(take.markers), axis=1))
+    center, radius = np.round(64.0 * center) / 64.0, np.round(64.0 * radius) / 64.0
+    return ExpectedRegions(center, np.repeat(radius[:, None], len(take.markers), axis=1))
 
 
 def average_model(take: Take) -> RegionModel:

@@ -35,7 +35,7 @@ MOST_MARKERS = 64
 LONGEST_MARKER = 200
 """Characters of a marker's name."""
 POORLY_FITTED_M = 0.06
-"""Hand-posed points fit an actor of the right size within two or three centimetres."""
+"""Hand-posed points fit an actor of the right size within two or three centimeters."""
 NOTICEABLE_RATE = 0.02
 
 
@@ -273,7 +273,7 @@ def check_in_front(take: Take) -> None:
     if not in_picture:
         raise InputError(
             f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
-            "its lens and the keyframes, all in metres in one world, must fit each other"
+            "its lens and the keyframes, all in meters in one world, must fit each other"
         )
 
 
@@ -354,7 +354,7 @@ def _body(fields: Fields) -> Body:
     height_m = actor.number("height_m", 0.5, 3.0, "m") if actor.has("height_m") else None
     if height_m is not None and not actor.has("segments_m"):
         return Body(Actor.from_stature(height_m))
-    lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in metres").values
+    lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in meters").values
     try:
         return Body(Actor(lengths))
     except InputError as error:

@@ -96,17 +96,17 @@ def _limb(piece: Piece) -> Array:
     # Half ellipsoids close both ends, as deep as the narrower half-width.
     rise = np.linspace(0.0, 0.5 * np.pi, RINGS_OF_CAP + 1)
     for end, direction, widths in ((0, -1.0, piece.half_widths[0]), (1, 1.0, piece.half_widths[1])):
-        centre = piece.start if end == 0 else piece.end
+        center = piece.start if end == 0 else piece.end
         for share in rise[::-1] if end == 0 else rise:
             # The pole keeps a tiny ring, so that every band is made of quads.
             around = circle * widths * max(float(np.cos(share)), 1e-3)
-            middle = centre + direction * np.sin(share) * widths.min() * axis
+            middle = center + direction * np.sin(share) * widths.min() * axis
             rings.append(middle + around[:, :1] * piece.lateral + around[:, 1:] * piece.sagittal)
     return np.stack(rings)
 
 
 def _quads(rings: int) -> NDArray[np.intp]:
-    """(rings - 1, sides, 4) vertex indices of the bands between neighbouring rings."""
+    """(rings - 1, sides, 4) vertex indices of the bands between neighboring rings."""
     ring = np.arange(rings - 1)[:, None] * SIDES_OF_RING
     side = np.arange(SIDES_OF_RING)[None, :]
     following = (side + 1) % SIDES_OF_RING

@@ -54,7 +54,7 @@ def bone_models(body: Body) -> tuple[BoneModel, ...]:
     """The body's bones, parents first.
 
     Args:
-        body: Skeleton and sizes; lengths in metres.
+        body: Skeleton and sizes; lengths in meters.
     """
     skeleton = body.skeleton
     axes: dict[str, Array] = {}

@@ -16,7 +16,7 @@ STARTUP_PLACE_M = (7.3589, -6.9258, 4.9583)
 """Where the camera of Blender's startup file stands [m]."""
 SAME = 1e-3
 SYMBOL_M = 0.3
-"""Size of the camera's symbol [m]: the usual metre stands in the picture of every other view."""
+"""Size of the camera's symbol [m]: the usual meter stands in the picture of every other view."""
 
 
 def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:

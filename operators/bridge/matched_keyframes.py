@@ -66,7 +66,7 @@ def write_matched(
     """
     channelbag = channelbag_for(action, armature_object)
     columns = posture_columns(armature_object, Posture.stack(list(postures)))
-    turned = _turned_to_neighbours(channelbag, columns, frames)
+    turned = _turned_to_neighbors(channelbag, columns, frames)
     remove_keys(channelbag, moved_paths(armature_object, postures[0].skeleton), frames)
     for path, index, bone, column in columns:
         set_matched_keys(channelbag, path, index, bone, frames, column * turned.get(path, 1.0))
@@ -118,7 +118,7 @@ def _curves(armature_object: bpy.types.Object, skeleton: Skeleton) -> list[tuple
     return curves
 
 
-def _turned_to_neighbours(
+def _turned_to_neighbors(
     channelbag: bpy.types.ActionChannelbag, columns: list[tuple[str, int, str, Array]], frames: Array
 ) -> dict[str, Array]:
     """(K,) a sign for each quaternion by data path, so that it does not turn the long way round.

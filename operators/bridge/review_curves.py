@@ -69,7 +69,7 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
         curves.append(
             ReviewCurve(
                 f"Sigma {name} mm",
-                f"Standard deviation of the point {name}, in millimetres",
+                f"Standard deviation of the point {name}, in millimeters",
                 1e3 * review.sigma_m[:, point],
                 100.0,
             )

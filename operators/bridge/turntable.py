@@ -38,14 +38,14 @@ SYMBOL_M = 0.25
 class Stage:
     """Where the actor moves and faces."""
 
-    centre: Array
+    center: Array
     """(3,) middle of its hips over the floor, and of its height [m]."""
     heading_rad: float
     """Direction it faces on the whole, from the world's +X towards +Y."""
     reach_m: float
-    """How far its body reaches sideways from the centre, or from its hips where the view follows them."""
+    """How far its body reaches sideways from the center, or from its hips where the view follows them."""
     rise_m: float
-    """How far it reaches up and down from the centre."""
+    """How far it reaches up and down from the center."""
 
 
 @dataclass(frozen=True)
@@ -137,15 +137,15 @@ def add_turntable(
     """
     collection = bpy.data.collections.new(name)
     scene.collection.children.link(collection)
-    centre = _empty(collection, f"{name} Center")
-    centre.location = stage.centre.tolist()
+    center = _empty(collection, f"{name} Center")
+    center.location = stage.center.tolist()
     if follow:
-        _follow_hips(centre, armature_object)
+        _follow_hips(center, armature_object)
     pivot = _empty(collection, f"{name} Pivot")
-    pivot.parent = centre
+    pivot.parent = center
     for layer in scene.view_layers:
         layer.update()  # it does not know the new objects yet
-        for empty in (centre, pivot):  # lines from each camera to them would lie over the actor
+        for empty in (center, pivot):  # lines from each camera to them would lie over the actor
             if empty.name in layer.objects:
                 empty.hide_set(True, view_layer=layer)
     _turn_once(pivot, scene.frame_start, scene.frame_end + 1)
@@ -154,8 +154,8 @@ def add_turntable(
     views = [
         _camera(collection, title, parent, angle, distance, lens_mm)
         for title, parent, angle in (
-            ("Front View", centre, stage.heading_rad),
-            ("Side View", centre, sideways),
+            ("Front View", center, stage.heading_rad),
+            ("Side View", center, sideways),
             ("Turning View", pivot, stage.heading_rad),
         )
     ]
@@ -218,8 +218,8 @@ def _add(collection: bpy.types.Collection, item: bpy.types.Object) -> None:
     collection.objects.link(item)
 
 
-def _follow_hips(centre: bpy.types.Object, armature_object: bpy.types.Object) -> None:
-    constraint = centre.constraints.new("COPY_LOCATION")
+def _follow_hips(center: bpy.types.Object, armature_object: bpy.types.Object) -> None:
+    constraint = center.constraints.new("COPY_LOCATION")
     constraint.target = armature_object
     constraint.subtarget = "pelvis"
     constraint.use_z = False

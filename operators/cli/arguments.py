@@ -80,7 +80,7 @@ def _add_convert(commands: "Commands[LineParser]") -> None:
         "--floor",
         metavar="HEIGHT",
         type=float,
-        help="height of the floor in metres where it is known, which says best how far away the performer "
+        help="height of the floor in meters where it is known, which says best how far away the performer "
         "is; with --library",
     )
     convert.add_argument(

@@ -43,7 +43,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
         output = arguments.output
         words = [
             f"Error against the true motion of {scores['map'].frames} frames, posed in "
-            f"{scores['map'].keyframes} of them, in millimetres:",
+            f"{scores['map'].keyframes} of them, in millimeters:",
             *_table(scores),
             f"Open in Blender: {output / BLEND}",
             f"Pictures:        {output / REPORT}",

@@ -108,7 +108,7 @@ def _add_defaults(command: LineParser) -> None:
         "--floor",
         metavar="HEIGHT",
         type=float,
-        help="height of the floor in metres where nothing in SHOOT says it",
+        help="height of the floor in meters where nothing in SHOOT says it",
     )
     command.add_argument(
         "--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"

@@ -86,7 +86,7 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
     bl_label = "Export"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw a button for each format; one that this Blender lacks is grey and says why."""
+        """Draw a button for each format; one that this Blender lacks is gray and says why."""
         column = self.column()
         for kind, chosen in FORMATS.items():
             missing = chosen.missing()

@@ -33,8 +33,8 @@ class ClipView:
         """Places (I, 13, 2) of the points in the region; a moving camera's, each as its own frame saw it."""
         return self.footage.to_region(review.image_points[indices])
 
-    def pixels_per_metre(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a metre across the view at each point."""
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
         depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
         magnified = abs(self.footage.extent[0]) / self.footage.size[0]
         return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))

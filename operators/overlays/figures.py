@@ -67,9 +67,9 @@ def _dashed_run(places: Array, dash: float, gap: float) -> Array:
     return np.stack([at[:-1], at[1:]], axis=1)[inked]
 
 
-def circles(centres: ArrayLike, radii: ArrayLike, corners: int = 24) -> Array:
-    """(N, corners, 2) circles around centres (N, 2) with radii (N,) or one for all."""
-    middle = np.asarray(centres, dtype=np.float64).reshape(-1, 1, 2)
+def circles(centers: ArrayLike, radii: ArrayLike, corners: int = 24) -> Array:
+    """(N, corners, 2) circles around centers (N, 2) with radii (N,) or one for all."""
+    middle = np.asarray(centers, dtype=np.float64).reshape(-1, 1, 2)
     reach = np.broadcast_to(np.asarray(radii, dtype=np.float64), middle.shape[:1])
     return middle + reach[:, None, None] * _unit_circle(corners)
 
@@ -80,9 +80,9 @@ def _unit_circle(corners: int) -> Array:
     return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 
 
-def diamonds(centres: ArrayLike, radius: float) -> Array:
-    """(N, 4, 2) squares standing on a corner around centres (N, 2), as Blender draws keys."""
-    return circles(centres, radius, 4)
+def diamonds(centers: ArrayLike, radius: float) -> Array:
+    """(N, 4, 2) squares standing on a corner around centers (N, 2), as Blender draws keys."""
+    return circles(centers, radius, 4)
 
 
 def triangles(polygons: ArrayLike) -> Array:

@@ -40,8 +40,8 @@ class MotionView(Protocol):
     def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
         """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
 
-    def pixels_per_metre(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a metre at each point."""
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter at each point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +70,8 @@ def picture(
 ) -> list[Item]:
     """Everything that is switched on, and a legend that explains it."""
     scale = drawing.ui_scale()
-    metre = view.pixels_per_metre(what.review, what.index)
-    style = Style(settings.opacity, settings.line_width, scale, body_scale(metre, scale))
+    meter = view.pixels_per_meter(what.review, what.index)
+    style = Style(settings.opacity, settings.line_width, scale, body_scale(meter, scale))
     items: list[Item] = []
     if settings.show_paths:
         items += _paths(what, view, settings, style)
@@ -79,7 +79,7 @@ def picture(
         items += _outlines(what, view.footage, settings, style)
     if settings.show_skeleton:
         (places,) = view.places(what.review, np.array([what.index]))
-        items += skeleton(what.review, what.index, places, metre, settings.uncertain_beyond, style)
+        items += skeleton(what.review, what.index, places, meter, settings.uncertain_beyond, style)
     if settings.show_legend:
         rows = _rows(what, view, settings)
         items += legend(rows, *corner(context.area, context.region, scale), style)

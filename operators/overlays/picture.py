@@ -52,7 +52,7 @@ Item = Stroke | Fill | Label
 
 
 def paint(items: Iterable[Item]) -> None:
-    """Draw everything, the first at the bottom; neighbours that are alike in one go."""
+    """Draw everything, the first at the bottom; neighbors that are alike in one go."""
     for item in merged(items):
         if isinstance(item, Stroke):
             drawing.lines(item.segments, item.color, item.width, item.halo)
@@ -63,7 +63,7 @@ def paint(items: Iterable[Item]) -> None:
 
 
 def merged(items: Iterable[Item]) -> list[Item]:
-    """Neighbouring lines of one thickness become one item, and neighbouring polygons of as many corners."""
+    """Neighboring lines of one thickness become one item, and neighboring polygons of as many corners."""
     done: list[Item] = []
     for _, group in groupby(items, key=_kind):
         alike = list(group)

@@ -31,7 +31,7 @@ LIMBS = (
 
 
 def skeleton(
-    review: "Review", index: int, places: Array, pixels_per_metre: Array, limit_m: float, style: Style
+    review: "Review", index: int, places: Array, pixels_per_meter: Array, limit_m: float, style: Style
 ) -> list[Item]:
     """The body of one frame.
 
@@ -39,7 +39,7 @@ def skeleton(
         review: What there is to see.
         index: Place of the frame.
         places: (13, 2) the points in the region.
-        pixels_per_metre: (13,) size of a metre at each point in the region.
+        pixels_per_meter: (13,) size of a meter at each point in the region.
         limit_m: A point whose standard deviation is larger is uncertain.
         style: How to draw.
     """
@@ -49,7 +49,7 @@ def skeleton(
     return [
         *_limbs(review.point_names, places, style),
         *_joints(places, uncertain, colors, style),
-        _doubt(places[uncertain], (sigma * pixels_per_metre)[uncertain], colors[uncertain], style),
+        _doubt(places[uncertain], (sigma * pixels_per_meter)[uncertain], colors[uncertain], style),
     ]
 
 

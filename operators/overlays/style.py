@@ -21,8 +21,8 @@ CORE_SHARE = 0.45
 """Share of a hollow line's thickness that its core has."""
 LIMB = 2.4
 """How much thicker than outlines limbs are drawn."""
-METRE, SMALLEST = 160.0, 0.35
-"""A body of which a metre is smaller than this is drawn with finer marks, down to a share of the usual."""
+METER, SMALLEST = 160.0, 0.35
+"""A body of which a meter is smaller than this is drawn with finer marks, down to a share of the usual."""
 PALER = 0.5
 """How far towards white the prediction's color is moved, so that dashes show over a solid line."""
 HALO = 0.9
@@ -53,11 +53,11 @@ class Style:
         return HALO * self.opacity
 
 
-def body_scale(pixels_per_metre: NDArray[np.float64], scale: float) -> float:
-    """How large a body is drawn of which a metre is so large at each point (N,) [region px]."""
-    seen = pixels_per_metre[np.isfinite(pixels_per_metre)]
-    metre = float(np.median(seen)) / scale if len(seen) else METRE
-    return float(np.clip(metre / METRE, SMALLEST, 1.0))
+def body_scale(pixels_per_meter: NDArray[np.float64], scale: float) -> float:
+    """How large a body is drawn of which a meter is so large at each point (N,) [region px]."""
+    seen = pixels_per_meter[np.isfinite(pixels_per_meter)]
+    meter = float(np.median(seen)) / scale if len(seen) else METER
+    return float(np.clip(meter / METER, SMALLEST, 1.0))
 
 
 def side_color(name: str) -> Color:

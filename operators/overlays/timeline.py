@@ -228,8 +228,8 @@ def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Ti
 def matches(frames: Array, level: Array, sure: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
     """Squares on the graph at keyframes from a library: hollow where in doubt, filled where sure."""
     x = timeline.places(frames)
-    centres = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
-    marks = squares(centres, timeline.fitting(x, timeline.sizes.diamond))
+    centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
+    marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))
     return [
         Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8),
         Fill(marks[sure], MATCHED),

@@ -96,11 +96,11 @@ def believed_color(confidence: Array) -> Array:
     return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
 
 
-def squares(centres: Array, size: float) -> Array:
+def squares(centers: Array, size: float) -> Array:
     """(N, 4, 2) upright squares about places (N, 2), as large as a diamond of this size."""
     half = 0.8 * size
     corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
-    return np.asarray(centres[:, None] + corners)
+    return np.asarray(centers[:, None] + corners)
 
 
 def pointers(x: Array, tip: float, size: float) -> Array:

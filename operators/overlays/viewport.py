@@ -33,8 +33,8 @@ class WorldView:
         """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
         return self.project(review.points[indices])
 
-    def pixels_per_metre(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a metre across the view at each point."""
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
         points = review.points[index]
         depth = self._before(points)
         return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)

@@ -133,8 +133,8 @@ def _draw(body: Body, posture: Posture, camera: Camera) -> np.ndarray:
         garments = [(piece, style.color_srgb) for piece, style in worn if piece.segment == limb.segment]
         for piece, color in [(limb, (60, 60, 60)), *garments]:
             rims = [
-                pose.place(piece.joint, centre + side * width * across)
-                for centre, widths in ((piece.start, piece.half_widths[0]), (piece.end, piece.half_widths[1]))
+                pose.place(piece.joint, center + side * width * across)
+                for center, widths in ((piece.start, piece.half_widths[0]), (piece.end, piece.half_widths[1]))
                 for width, across in zip(widths, (piece.lateral, piece.sagittal), strict=True)
                 for side in (-1.0, 1.0)
             ]

@@ -178,7 +178,7 @@ def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None
     ],
 )
 def test_an_operator_that_cannot_run_says_what_is_missing(operator: str, sentence: str) -> None:
-    """The tooltip of a greyed-out button."""
+    """The tooltip of a grayed-out button."""
     with pytest.raises(RuntimeError, match=sentence):
         getattr(bpy.ops.keymark, operator)()
 

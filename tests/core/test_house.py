@@ -204,7 +204,7 @@ def test_nothing_below_tests_is_a_package(repository: Path) -> None:
 
 
 def test_manifest_and_pyproject_agree(repository: Path) -> None:
-    """One version, one licence, one name, and the Python of the oldest Blender named."""
+    """One version, one license, one name, and the Python of the oldest Blender named."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     settings = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))
     project = settings["project"]

@@ -1,4 +1,4 @@
-"""The same take gives the same motion: bit for bit here, and to a tenth of a millimetre anywhere."""
+"""The same take gives the same motion: bit for bit here, and to a tenth of a millimeter anywhere."""
 
 import importlib.util
 import sys

@@ -23,14 +23,14 @@ SHARES_OF_MASS = {
     "chest": (0.280, 0.5),
     "head": (0.081, 0.8),
 }
-"""Of a part in the body's mass, and where along it its centre lies: Winter (2009), table 4.1; the trunk's is
+"""Of a part in the body's mass, and where along it its center lies: Winter (2009), table 4.1; the trunk's is
 divided at the waist."""
 BEFORE_ANKLE_M = 0.045
 """Where a foot bears a person who stands [m]."""
 STEPS = 12
 
 
-def centre_of_mass(body: Body, pose: Pose) -> Array:
+def center_of_mass(body: Body, pose: Pose) -> Array:
     """(..., 3) [m]."""
     total, weight = np.zeros((*pose.posture.batch, 3)), 0.0
     for segment in body.skeleton.segments:
@@ -41,8 +41,8 @@ def centre_of_mass(body: Body, pose: Pose) -> Array:
 
 
 def mass_of(moment: Moment) -> Array:
-    """(3,) the centre of mass of a moment [m]."""
-    return centre_of_mass(BODY, BODY.pose(posture_of(moment)))
+    """(3,) the center of mass of a moment [m]."""
+    return center_of_mass(BODY, BODY.pose(posture_of(moment)))
 
 
 def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:

@@ -11,7 +11,7 @@ from .solving import BODY, posture_of
 
 AUTHOR, LICENSE = "Keymark", "CC0-1.0"
 DECIMALS = 4
-"""Of metres and radians: a tenth of a millimetre, and the same on every computer."""
+"""Of meters and radians: a tenth of a millimeter, and the same on every computer."""
 
 
 class Composer:

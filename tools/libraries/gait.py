@@ -34,7 +34,7 @@ SWING_PLACE = {0.0: 0.0, 0.12: 0.07, 0.5: 0.52, 0.8: 0.87, 0.92: 0.975, 1.0: 1.0
 SWING_HEIGHT = {0.0: (1.0, 0.0, 0.0), 0.12: (1.0, 0.0, 0.04), 0.35: (0.7, 0.1, 0.055), 0.6: (0.1, 0.5, 0.02)}
 SWING_HEIGHT |= {0.8: (0.0, 0.9, 0.012), 1.0: (0.0, 1.0, 0.0)}
 """An ankle's height after a share of the swing: shares of its height at toe off and at heel strike, and
-metres for a stride of a metre and a half."""
+meters for a stride of a meter and a half."""
 
 
 _SWING_PLACE, _SWING_HEIGHT = (
@@ -85,7 +85,7 @@ class Style:
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """A walk over footfalls in order of time, of which neighbours are of different feet."""
+    """A walk over footfalls in order of time, of which neighbors are of different feet."""
 
     footfalls: Sequence[Footfall]
     step_s: float

@@ -1,4 +1,4 @@
-"""One moment of a motion in the words of a clinic: angles in degrees, places in metres.
+"""One moment of a motion in the words of a clinic: angles in degrees, places in meters.
 
 A moment is posed facing -Y on the floor z = 0; left is +X. Every angle is zero for a person who stands
 upright with hanging arms and straight legs.

@@ -48,7 +48,7 @@ class Described:
         noise: The sensor's, in eight-bit steps.
         quality: Of the encoding, in Blender's words.
         side: A second camera, for reference only.
-        shadow_per_height: How far a point's shadow falls beside it on the floor, for each metre of height.
+        shadow_per_height: How far a point's shadow falls beside it on the floor, for each meter of height.
     """
 
     name: str

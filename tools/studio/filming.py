@@ -92,7 +92,7 @@ def film(
         camera: The scene's camera is made this one.
         moments: Renders while the shutter is open, whose mean is the frame.
         samples: Light paths a pixel of each render.
-        shadow_per_height: (3,) how far the shadow of a point falls beside it on the floor, for each metre of
+        shadow_per_height: (3,) how far the shadow of a point falls beside it on the floor, for each meter of
             its height.
     """
     place_camera(camera)
@@ -108,7 +108,7 @@ def film(
         performer.bend(performance, int(indices[moments // 2]))
         places = np.concatenate([performer.world_places(), room.moving_places(frame)])
         shadow = places * [1.0, 1.0, 0.0] + places[:, 2:] * shadow_per_height
-        left, top, right, bottom = _neighbourhood(np.concatenate([places, shadow]), camera)
+        left, top, right, bottom = _neighborhood(np.concatenate([places, shadow]), camera)
         with _border(camera, left, top, right, bottom):
             light = np.zeros((bottom - top, right - left, 3))
             for index, offset in zip(indices, offsets, strict=True):
@@ -123,7 +123,7 @@ def film(
     return images
 
 
-def _neighbourhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
+def _neighborhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
     """Left, top, right and bottom pixel bounds of places (N, 3) before the camera, and a margin."""
     pixels, depth = camera.project(places)
     pixels = pixels[depth > 0.0]
@@ -138,7 +138,7 @@ def _border(camera: Camera, left: int, top: int, right: int, bottom: int) -> Ite
     """While open, only these pixels are rendered."""
     render_settings = bpy.context.scene.render
     width, height = camera.resolution
-    inside = 0.01  # of a pixel, against rounding to a neighbour
+    inside = 0.01  # of a pixel, against rounding to a neighbor
     render_settings.use_border = render_settings.use_crop_to_border = True
     render_settings.border_min_x, render_settings.border_max_x = (
         (left + inside) / width,
@@ -201,26 +201,26 @@ def encode(images: list[NDArray[np.uint8]], path: Path, quality: str) -> None:
 
 @contextmanager
 def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[int]]:
-    """While open, renders are flat: each marker in a grey of its own, all else black; yields those greys."""
+    """While open, renders are flat: each marker in a gray of its own, all else black; yields those grays."""
     scene = bpy.context.scene
     kept_visible = (performer, *room.things)
     others = [
         thing for thing in scene.objects if thing.type in ("MESH", "LIGHT") and thing not in kept_visible
     ]
-    greys = [40 * (number + 1) for number in range(len(MARKERS))]
+    grays = [40 * (number + 1) for number in range(len(MARKERS))]
     painted = {thing: list(thing.data.materials) for thing in kept_visible}
     black = _flat(0.0)
     for thing, materials in painted.items():
         for slot in range(len(materials)):
             shown = thing is performer and slot < len(MARKERS)
-            thing.data.materials[slot] = _flat(greys[slot] / 255.0) if shown else black
+            thing.data.materials[slot] = _flat(grays[slot] / 255.0) if shown else black
     kept = (scene.cycles.use_denoising, scene.cycles.filter_width, scene.world)
     scene.cycles.use_denoising, scene.cycles.filter_width = False, 0.01
     scene.view_settings.view_transform, scene.world = "Raw", None
     for thing in others:
         thing.hide_render = True
     try:
-        yield greys
+        yield grays
     finally:
         for thing, materials in painted.items():
             for slot, material in enumerate(materials):
@@ -231,10 +231,10 @@ def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[
             thing.hide_render = False
 
 
-def marker_masks(greys: list[int]) -> NDArray[np.bool_]:
-    """(M, height, width) the pixels in whose centre each marker is seen, from one flat render."""
+def marker_masks(grays: list[int]) -> NDArray[np.bool_]:
+    """(M, height, width) the pixels in whose center each marker is seen, from one flat render."""
     image = np.rint(255.0 * render(1)[..., 0])
-    return np.stack([image == grey for grey in greys])
+    return np.stack([image == gray for gray in grays])
 
 
 def _flat(value: float) -> bpy.types.Material:

@@ -199,11 +199,11 @@ def _dress(name: str, body: Body, local: Array) -> NDArray[np.str_]:
         worn[local[:, 2] < 0.025] = "shoe"
     elif kind == "neck":
         worn[:] = np.where(local[:, 2] > 0.02, "skin", "trunk")
-        centre = local - np.array([0.0, 0.0, lengths["neck_head"]])
-        hairline = 0.055 - 0.9 * (centre[:, 1] + 0.055).clip(min=0.0)
-        worn[(centre[:, 2] > hairline) & (centre[:, 2] > -0.075)] = "hair"
-        eyes = (np.abs(np.abs(centre[:, 0]) - 0.030) < 0.013) & (np.abs(centre[:, 2] - 0.012) < 0.009)
-        worn[eyes & (centre[:, 1] < -0.06)] = "eye"
+        center = local - np.array([0.0, 0.0, lengths["neck_head"]])
+        hairline = 0.055 - 0.9 * (center[:, 1] + 0.055).clip(min=0.0)
+        worn[(center[:, 2] > hairline) & (center[:, 2] > -0.075)] = "hair"
+        eyes = (np.abs(np.abs(center[:, 0]) - 0.030) < 0.013) & (np.abs(center[:, 2] - 0.012) < 0.009)
+        worn[eyes & (center[:, 1] < -0.06)] = "eye"
     return worn
 
 

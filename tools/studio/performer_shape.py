@@ -1,7 +1,7 @@
 """The performer's outer shape at one posture: limbs as stacks of rings with calves, hips, cuffs and a face.
 
 The shape is drawn by eye, and on purpose not by the estimator's tapered cylinders: muscles bulge,
-cloth stands off, the trunk is one curved form. Sizes are metres. Each part moves with one joint; where
+cloth stands off, the trunk is one curved form. Sizes are meters. Each part moves with one joint; where
 parts meet the skin blends.
 """
 
@@ -89,7 +89,7 @@ HEAD: list[Ring] = [
     (0.105, 0.054, 0.072, 0.012),
     (0.122, 0.024, 0.034, 0.012),
 ]
-"""Height above the head's centre [m] instead of a share."""
+"""Height above the head's center [m] instead of a share."""
 SHOE: list[Ring] = [
     (-0.075, 0.026, 0.030, -0.042), (-0.055, 0.036, 0.046, -0.034), (0.0, 0.040, 0.060, -0.026),
     (0.06, 0.043, 0.048, -0.036), (0.12, 0.047, 0.034, -0.048), (0.165, 0.043, 0.027, -0.054),
@@ -160,9 +160,9 @@ def movers(body: Body, pose: Pose, feet: dict[str, Array]) -> dict[str, tuple[Ar
     return placed
 
 
-def _ring(centre: Array, sideways: Array, backwards: Array) -> Array:
+def _ring(center: Array, sideways: Array, backwards: Array) -> Array:
     angle = np.linspace(0.0, 2.0 * np.pi, SIDES_OF_RING, endpoint=False)[:, None]
-    return np.asarray(centre + np.cos(angle) * sideways + np.sin(angle) * backwards)
+    return np.asarray(center + np.cos(angle) * sideways + np.sin(angle) * backwards)
 
 
 def _stack(start: Array, along: Array, rings: list[Ring], girth: float = 1.0) -> Array:
@@ -182,7 +182,7 @@ def _stack(start: Array, along: Array, rings: list[Ring], girth: float = 1.0) ->
 
 
 def _denser(rings: list[Ring]) -> Array:
-    """Rings at even distances through the given ones, so that nothing is coarser than a few centimetres."""
+    """Rings at even distances through the given ones, so that nothing is coarser than a few centimeters."""
     table = np.array(rings)
     share = np.linspace(table[0, 0], table[-1, 0], 4 * len(rings))
     columns = [np.interp(share, table[:, 0], table[:, i]) for i in range(1, 4)]
@@ -204,16 +204,16 @@ def _trunk_parts(body: Body, girth: float) -> list[Part]:
 def _head_parts(body: Body) -> list[Part]:
     length = body.actor.segments_m["neck_head"]
     up = np.array([0.0, 0.0, length])
-    centimetre = np.array([0.0, 0.0, 1.0])
+    centimeter = np.array([0.0, 0.0, 1.0])
     nose = [(-0.035, 0.017, 0.016, -0.094), (-0.028, 0.018, 0.022, -0.096), (0.012, 0.010, 0.012, -0.094)]
     parts = [
         Part("neck", "neck", _stack(np.zeros(3), up, NECK)),
-        Part("head", "neck", _stack(up, centimetre, HEAD)),
-        Part("head", "neck", _stack(up, centimetre, nose)),
+        Part("head", "neck", _stack(up, centimeter, HEAD)),
+        Part("head", "neck", _stack(up, centimeter, nose)),
     ]
     for side in (-1.0, 1.0):
         ear = [(-0.030, 0.008, 0.010, 0.012), (0.0, 0.012, 0.018, 0.014), (0.030, 0.009, 0.012, 0.018)]
-        parts.append(Part("head", "neck", _stack(up + np.array([0.076 * side, 0.0, 0.0]), centimetre, ear)))
+        parts.append(Part("head", "neck", _stack(up + np.array([0.076 * side, 0.0, 0.0]), centimeter, ear)))
     return parts
 
 

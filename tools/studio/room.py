@@ -12,7 +12,7 @@ from .surroundings import Lamp, Room, Thing, Triple
 WALL_BEHIND_Y, WALL_RIGHT_X = 1.75, -2.75
 SKIRTING = (0.80, 0.79, 0.76)
 WOOD = (0.30, 0.20, 0.12)
-GREY = (0.24, 0.25, 0.27)
+GRAY = (0.24, 0.25, 0.27)
 DARK = (0.07, 0.07, 0.08)
 Array = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ def _pictures() -> None:
 
 
 def _bench(x: float, y: float) -> None:
-    _box("Bench", (x, y, 0.44), (1.3, 0.34, 0.07), _matt("Bench", GREY))
+    _box("Bench", (x, y, 0.44), (1.3, 0.34, 0.07), _matt("Bench", GRAY))
     for side in (-0.5, 0.5):
         _box("Bench leg", (x + side, y, 0.2), (0.07, 0.28, 0.4), _matt("Leg", DARK))
 

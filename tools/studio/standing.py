@@ -103,9 +103,9 @@ def choreography(
     def restless(channels: Channels, names: Sequence[str], factor: float) -> Channels:
         complete = {}
         for name in names:
-            metres = name in ("x", "y", "z")
-            slow = (SLOW_M if metres else SLOW_DEG) * sway(frames, random)
-            quick = (QUICK_M if metres else QUICK_DEG) * sway(frames, random, QUICK_FRAMES)
+            meters = name in ("x", "y", "z")
+            slow = (SLOW_M if meters else SLOW_DEG) * sway(frames, random)
+            quick = (QUICK_M if meters else QUICK_DEG) * sway(frames, random, QUICK_FRAMES)
             complete[name] = channels.get(name, zero) + factor * (slow + quick)
         return complete
 

@@ -23,7 +23,7 @@ _COMBED, _COMBED_MORE = 5e-4, 10.0
 """Share of an interlaced picture that is combed, and how much more than by columns. Sixteen clips
 that are not interlaced stay below 1.2e-4 and three times as much; three made so have 1e-2 and more."""
 _COLORLESS: Final = 10
-"""Levels between the channels of grey, but for what compression adds."""
+"""Levels between the channels of gray, but for what compression adds."""
 _CUT: Final = 10.0
 """Levels by which half of the picture changes at once where the scene does."""
 _CUT_MORE: Final = 5.0

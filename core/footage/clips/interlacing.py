@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 
 _STEP: Final = 8
-"""Levels by which neighbouring rows differ where a moving edge is combed."""
+"""Levels by which neighboring rows differ where a moving edge is combed."""
 _TEETH: Final = 5
 """Steps up and down in turn that neither noise nor a texture makes so often."""
 _COLUMNS: Final = 320

@@ -25,7 +25,7 @@ _PNG: Final = b"\x89PNG\r\n\x1a\n"
 def read_image(path: Path) -> Image:
     """Read an image as (height, width, 3) uint8 blue, green, red.
 
-    Sixteen-bit and floating images are brought to eight bits, grey ones to three channels, and alpha is
+    Sixteen-bit and floating images are brought to eight bits, gray ones to three channels, and alpha is
     dropped.
 
     Raises:
@@ -48,8 +48,8 @@ def read_image(path: Path) -> Image:
     elif image.dtype != np.uint8:
         image = np.round(np.clip(np.nan_to_num(image), 0.0, 1.0) * 255.0).astype(np.uint8)
     if image.ndim == 2 or image.shape[2] < 3:
-        grey = np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0])
-        image = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
+        gray = np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0])
+        image = cv2.cvtColor(gray, cv2.COLOR_GRAY2BGR)
     return np.ascontiguousarray(image[:, :, :3])
 
 

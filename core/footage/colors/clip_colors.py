@@ -154,14 +154,14 @@ class ClipColors:
         self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions
     ) -> NDArray[np.uint8] | None:
         """Return where each color may be looked for on the learning grid, (C, rows, columns)."""
-        if frame >= len(expected.centre):
+        if frame >= len(expected.center):
             return None
         places = np.zeros((len(self.groups), *shape), dtype=np.uint8)
         step = self._size[0] / shape[1]
         for place, group in zip(places, self.groups, strict=True):
             for marker in group:
                 # The radius bounds the centroid; the region itself reaches beyond it.
-                circle = (*expected.centre[frame, marker] / step, 1.5 * expected.radius[frame, marker] / step)
+                circle = (*expected.center[frame, marker] / step, 1.5 * expected.radius[frame, marker] / step)
                 if not np.isfinite(circle).all():
                     place[:] = 1
                     continue

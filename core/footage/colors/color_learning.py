@@ -21,7 +21,7 @@ _SATURATION_DEVIATION: Final = 0.15
 _HUE_DEVIATION: Final = 0.10
 _LOG_LUMA_DEVIATION: Final = 0.45
 _LEAST_SATURATION: Final = 0.04
-"""A grey has no hue to be off by: below this the deviations shrink no further."""
+"""A gray has no hue to be off by: below this the deviations shrink no further."""
 
 _FARTHEST: Final = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
 _NEAR: Final = 2.4  # half of it
@@ -106,17 +106,17 @@ def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColorDistribut
     Args:
         chroma: (N, 2) chromaticity.
         luma: (N,) offset luma in levels.
-        start: the sample's own distribution; the fit's centre stays within its reach.
+        start: the sample's own distribution; the fit's center stays within its reach.
     """
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
     deviation = max(float(high - low) / 2.563, _SMALLEST_LOG_LUMA_DEVIATION)
     light = log_luma - middle
-    centre = np.median(chroma, axis=0)
-    keep = np.sum((chroma - centre) ** 2, axis=1) <= np.quantile(np.sum((chroma - centre) ** 2, axis=1), 0.9)
+    center = np.median(chroma, axis=0)
+    keep = np.sum((chroma - center) ** 2, axis=1) <= np.quantile(np.sum((chroma - center) ** 2, axis=1), 0.9)
     spread = float(light[keep] @ light[keep]) + len(luma) * 0.01  # ridge: even light has no slope to tell
-    slope = np.clip(light[keep] @ (chroma[keep] - centre) / spread, -_STEEPEST_SLOPE, _STEEPEST_SLOPE)
-    residual = (chroma - centre - np.outer(light, slope))[keep]
+    slope = np.clip(light[keep] @ (chroma[keep] - center) / spread, -_STEEPEST_SLOPE, _STEEPEST_SLOPE)
+    residual = (chroma - center - np.outer(light, slope))[keep]
     # Of a normal distribution's variance in the plane the trimmed tenth takes a third.
     # Pixel noise is not added here but where distances are taken.
     covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
@@ -127,7 +127,7 @@ def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColorDistribut
         start,
         log_luma=float(middle),
         log_luma_deviation=deviation,
-        mean=centre,
+        mean=center,
         slope=slope,
         covariance=covariance,
     )

@@ -76,8 +76,8 @@ class ColorDistribution:
         y = chroma[..., 1] - float(self.mean[1]) - float(self.slope[1]) * light
         squared = (second * x * x - 2.0 * cross * x * y + first * y * y) / determinant
         squared += (light / self.log_luma_deviation) ** 2
-        normaliser = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
-        return squared, -0.5 * (squared + normaliser)
+        normalizer = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
+        return squared, -0.5 * (squared + normalizer)
 
     def within_reach(self, chroma: ColorArray, luma: ColorArray) -> NDArray[np.intp]:
         """Return the indices of all N colors nearer than OUTLIER_DISTANCE, and of some beyond.
@@ -124,7 +124,7 @@ def color_model(
     Args:
         distributions: the markers' colors.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
-        background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighbouring cells.
+        background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighboring cells.
     """
     near = _cells_near(distributions)
     chroma, luma = cell_chromaticity(near)

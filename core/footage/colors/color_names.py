@@ -11,7 +11,7 @@ _HOW_MANY = 3
 _APART = 0.08
 """Chromaticity that two colors must differ by to be named both."""
 _LIKE_LOG_LUMA = 0.25
-"""Difference in the logarithm of luma up to which two greys look alike."""
+"""Difference in the logarithm of luma up to which two grays look alike."""
 _SHARE = 2e-5
 """Share of the clip's pixels that a color must have, to be more than noise."""
 

@@ -2,7 +2,7 @@
 
 A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the
 light to a good approximation; chroma over luma therefore names the surface and luma alone the light that
-falls on it. A small offset keeps dark pixels, whose ratios are noise, near grey.
+falls on it. A small offset keeps dark pixels, whose ratios are noise, near gray.
 """
 
 from __future__ import annotations

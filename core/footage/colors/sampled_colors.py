@@ -112,7 +112,7 @@ class SampledColors:
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
     def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> FloatArray:
-        """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighbouring cells."""
+        """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighboring cells."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
             covered = np.zeros(image.shape, dtype=np.uint8)
@@ -126,7 +126,7 @@ class SampledColors:
 
 
 def _spread(counts: FloatArray) -> FloatArray:
-    """Spread counts of cells (CELL_COUNT,) over the neighbouring ones."""
+    """Spread counts of cells (CELL_COUNT,) over the neighboring ones."""
     side = CELLS_PER_CHANNEL
     # Two channels are rows and columns of an image with as many channels as cells in the third.
     cube = cv2.sepFilter2D(

@@ -75,13 +75,13 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     left, least = counts[present][strong], _LEAST_SHARE * counts.sum()
     found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
-        centre = _densest(chroma, left)
-        near = np.linalg.norm(chroma - centre, axis=1) < _APART
+        center = _densest(chroma, left)
+        near = np.linalg.norm(chroma - center, axis=1) < _APART
         share = float(left[near].sum() / counts.sum())
         if share > _LEAST_SHARE:
             blue, green, red = _median(colors[near], left[near])
             # Blends at borders are many and dull; a marker is small and strong.
-            standing_out = float(np.linalg.norm(centre)) * share**0.25
+            standing_out = float(np.linalg.norm(center)) * share**0.25
             found.append((standing_out, StrongColor((red, green, blue), share)))
         left[near] = 0.0
     found.sort(key=lambda one: -one[0])

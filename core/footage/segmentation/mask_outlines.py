@@ -27,6 +27,6 @@ def mask_outlines(mask: NDArray[np.float32], scale: float) -> list[FloatArray]:
     fine = cv2.resize(mask, None, fx=_FINENESS, fy=_FINENESS, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)
     found, _ = cv2.findContours(inside, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
-    # OpenCV follows the centres of the outermost points that are inside.
+    # OpenCV follows the centers of the outermost points that are inside.
     outlines = [(contour[:, 0] + 0.5) * (scale / _FINENESS) for contour in found if len(contour) > 2]
     return sorted(outlines, key=len, reverse=True)

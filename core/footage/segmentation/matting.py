@@ -2,7 +2,7 @@
 
 A border pixel mixes the region's color and its surroundings'; encoded colors mix linearly to a good
 approximation. The share follows from the colors just inside and just outside, which makes areas unbiased
-where a threshold would grow a region over dark neighbours and shrink it before bright ones.
+where a threshold would grow a region over dark neighbors and shrink it before bright ones.
 """
 
 from __future__ import annotations

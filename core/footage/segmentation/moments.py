@@ -3,7 +3,7 @@
 The paper's section 3.1: zero-, first- and second-order moments (eq. 1), the second central moment matrix A
 over m00 (eq. 2), and the centroid, the direction of the major axis and the ratio of the eigenvalues (eqs. 3
 to 6). Pixels are unit squares in the image convention of the project: the first pixel covers [0, 1] x [0, 1]
-and its centre is (0.5, 0.5).
+and its center is (0.5, 0.5).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
         weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
         origin: image coordinates (x, y) of the window's top left corner, in pixels.
     """
-    # OpenCV takes pixels for points and the first pixel's centre for the origin.
+    # OpenCV takes pixels for points and the first pixel's center for the origin.
     points = cv2.moments(np.asarray(weights, dtype=np.float64))
     area, x, y = points["m00"], origin[0] + 0.5, origin[1] + 0.5
     m10 = points["m10"] + x * area

@@ -7,12 +7,12 @@ from ...files.fields import Fields
 from ...files.inherited_fields import child_place
 
 _CAMERA = {
-    "lens_mm": "the focal length in millimetres",
-    "sensor_width_mm": "the sensor's width in millimetres, 36 where lens_mm is that of full frame",
+    "lens_mm": "the focal length in millimeters",
+    "sensor_width_mm": "the sensor's width in millimeters, 36 where lens_mm is that of full frame",
     "matrix_world": "where the camera stood, four rows of four numbers",
 }
 _COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
-_HEIGHT = "the performer's height in metres"
+_HEIGHT = "the performer's height in meters"
 
 
 def unfilled(fields: Fields) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
     fields["camera"] = _camera(survey)
     fields["markers"] = _markers(survey)
     fields["actor"] = {
-        "//height_m": "the performer's height in metres; lengths measured one by one (segments_m) are better",
+        "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
         "height_m": None,
     }
     return fields | _library(survey)
@@ -97,7 +97,7 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
             "with another lens or from elsewhere",
         ]
     said["//matrix_world"] = [
-        "where the camera stood, in metres, as four rows. Blender's Python console tells that of a camera:",
+        "where the camera stood, in meters, as four rows. Blender's Python console tells that of a camera:",
         "[list(row) for row in bpy.context.scene.camera.matrix_world]",
         "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
         "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",

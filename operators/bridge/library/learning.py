@@ -24,7 +24,7 @@ def library_from_action(
         armature_object: The actor.
         action: The motion, with whatever the animator has changed in it.
         frame_s: Time from one scene frame to the next [s].
-        about: Title, author and licence.
+        about: Title, author and license.
         count: How many postures; by default 10 to 40, as many as differ.
 
     Raises:

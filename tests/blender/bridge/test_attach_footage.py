@@ -103,7 +103,7 @@ def test_an_animated_camera_is_used_as_it_moves(clip: bpy.types.MovieClip) -> No
     assert read.matrix_world[[0, -1], 0, 3] == pytest.approx([0.0, 1.2], abs=1e-5)
 
 
-def test_the_startup_files_camera_is_recognised() -> None:
+def test_the_startup_files_camera_is_recognized() -> None:
     """It was no footage's; once moved it may be."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     camera = bpy.context.scene.camera

@@ -31,7 +31,7 @@ def places(mesh_object: bpy.types.Object, group: str) -> np.ndarray:
 def test_limbs_lie_on_cores_shapes_in_any_posture(
     actor: bpy.types.Object, body: Body, random_posture: Callable[[int], Posture], seed: int
 ) -> None:
-    """Rings around both ends of every piece have their centres and half-widths."""
+    """Rings around both ends of every piece have their centers and half-widths."""
     mesh_object = build_body_mesh(actor, body, ())
     posture = random_posture(seed)
     write_posture(actor, posture)

@@ -137,7 +137,7 @@ def test_the_curves_pose_an_actor_as_the_library_does(library: Library) -> None:
 
 
 def test_assets_are_seen_as_such(library: Library) -> None:
-    """Catalog, author, licence, description, tags and a picture."""
+    """Catalog, author, license, description, tags and a picture."""
     action = add_assets(library)[1]
     data = action.asset_data
     assert (data.author, data.license, data.description) == ("Ä. Author", "CC-BY-4.0", "For tests.")

@@ -122,7 +122,7 @@ def test_an_actor_given_the_action_moves_as_the_motion_says(
     wave_motion: Motion,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """Its bones show the motion's points to a hundredth of a millimetre, at any frame."""
+    """Its bones show the motion's points to a hundredth of a millimeter, at any frame."""
     add_result("clip")
     assert merge(results, tmp_path / "library.blend") == 0
     (action,) = loaded(tmp_path / "library.blend")

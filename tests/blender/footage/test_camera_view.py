@@ -36,16 +36,16 @@ def test_panels_take_their_room() -> None:
 @pytest.mark.parametrize("picture", [(1920.0, 1080.0), (1080.0, 1920.0), (960.0, 912.0)])
 @pytest.mark.parametrize("sensor_fit", ["HORIZONTAL", "VERTICAL", "AUTO"])
 def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fit: str) -> None:
-    """Centred there, touching the margin on one pair of sides and within it on the other."""
+    """Centerd there, touching the margin on one pair of sides and within it on the other."""
     free = (40.0, 0.0, 750.0, 570.0)
     whole = picture_at_factor_one(REGION, picture, sensor_fit)
     zoom, offset = camera_view(REGION, free, whole)
     factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
     edges = []
     for axis in (0, 1):
-        centre = 0.5 * REGION[axis] - 2.0 * factor * offset[axis] * REGION[axis]
+        center = 0.5 * REGION[axis] - 2.0 * factor * offset[axis] * REGION[axis]
         half = 0.5 * factor * whole[axis]
-        edges.append((centre - half - free[axis], free[axis + 2] - centre - half))
+        edges.append((center - half - free[axis], free[axis + 2] - center - half))
     assert min(min(pair) for pair in edges) == pytest.approx(12.0)
     assert all(pair[0] == pytest.approx(pair[1]) for pair in edges)
 

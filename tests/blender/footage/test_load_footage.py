@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160, 120)) -> Path:
-    """A grey clip that gets brighter."""
+    """A gray clip that gets brighter."""
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), fps, size)
     assert writer.isOpened()
     for frame in range(frames):

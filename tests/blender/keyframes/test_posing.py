@@ -55,7 +55,7 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
 def test_one_click_stands_the_actor_at_the_performer(
     unposed_scene: bpy.types.Scene, wave_motion: Motion
 ) -> None:
-    """The hips within decimetres along the view, and much nearer across it."""
+    """The hips within decimeters along the view, and much nearer across it."""
     unposed_scene.frame_set(1)
     assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
     true = wave_motion.posture.translation[0]
@@ -105,7 +105,7 @@ def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
 def test_a_standing_performer_is_measured_from_two_pixels(
     unposed_scene: bpy.types.Scene, wave_motion: Motion, tiny_take: Take
 ) -> None:
-    """Place to a few centimetres, height exactly."""
+    """Place to a few centimeters, height exactly."""
     unposed_scene.frame_set(1)
     body = wave_motion.body
     hips = wave_motion.posture.translation[0]

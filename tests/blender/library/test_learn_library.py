@@ -97,7 +97,7 @@ def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup
 
 
 def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """A licence that is none, or more postures than frames: one sentence, no file, no asset."""
+    """A license that is none, or more postures than frames: one sentence, no file, no asset."""
     actions = len(bpy.data.actions)
     for wrong, sentence in (({"license": "free for all!"}, "license"), ({"count": 500}, "50 frames")):
         with pytest.raises(RuntimeError, match=sentence):

@@ -229,7 +229,7 @@ def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened
 
 
 def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
-    """The button says so, instead of a sentence about grey after the clip was read."""
+    """The button says so, instead of a sentence about gray after the clip was read."""
     bpy.ops.keymark.add_marker()
     for operator in ("reconstruct", "propose_keyframes"):
         with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):

@@ -32,8 +32,8 @@ def review() -> Review:
     rng = np.random.default_rng(4)
     turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    centres = rng.uniform(80.0, 160.0, (FRAMES, 2, 1, 2))
-    observed = centres + 10.0 * ring
+    centers = rng.uniform(80.0, 160.0, (FRAMES, 2, 1, 2))
+    observed = centers + 10.0 * ring
     observed[10:, 1] = np.nan
     points = rng.uniform(-0.5, 0.5, (FRAMES, 13, 3)) - [0.0, 0.0, 4.0]
     sigma = np.full((FRAMES, 13), 0.02)
@@ -44,7 +44,7 @@ def review() -> Review:
         marker_names=("trunk", "shin.L"),
         point_names=HUMAN.point_names,
         observed=observed,
-        predicted=centres + 12.0 * ring,
+        predicted=centers + 12.0 * ring,
         points=points,
         image_points=np.array([160.0, 120.0]) + 400.0 * points[..., :2] / 4.0,
         sigma_m=sigma,
@@ -108,8 +108,8 @@ def test_outlines_have_their_markers_colors_and_lie_on_the_footage(scene: bpy.ty
     assert first.color[:3] == (0.0, 1.0, 0.0)
     assert second.color[:3] == (1.0, 0.0, 0.0)
     what = motion.shown(scene)
-    centre = what.review.observed[0, 0].mean(axis=0)
-    assert first.segments.mean(axis=(0, 1)) == pytest.approx([10 + 2 * centre[0], 490 - 2 * centre[1]])
+    center = what.review.observed[0, 0].mean(axis=0)
+    assert first.segments.mean(axis=(0, 1)) == pytest.approx([10 + 2 * center[0], 490 - 2 * center[1]])
 
 
 def test_a_hidden_marker_is_named_where_it_is_predicted(scene: bpy.types.Scene) -> None:
@@ -158,15 +158,15 @@ def discs(items: list) -> int:
 def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
     """The others are discs."""
     places = CAMERA_VIEW.places(review, np.array([3]))[0]
-    metre = CAMERA_VIEW.pixels_per_metre(review, 3)
-    items = skeleton(review, 3, places, metre, 0.05, STYLE)
+    meter = CAMERA_VIEW.pixels_per_meter(review, 3)
+    items = skeleton(review, 3, places, meter, 0.05, STYLE)
     assert discs(items) == 12
     circle = items[-1].segments.reshape(-1, 2)
     head = review.point_names.index("head")
-    assert np.linalg.norm(circle - places[head], axis=-1) == pytest.approx(0.09 * metre[head], rel=0.01)
-    assert metre[head] == pytest.approx(2.0 * 400.0 / -review.points[3, head, 2])
+    assert np.linalg.norm(circle - places[head], axis=-1) == pytest.approx(0.09 * meter[head], rel=0.01)
+    assert meter[head] == pytest.approx(2.0 * 400.0 / -review.points[3, head, 2])
     unknown = SimpleNamespace(point_names=review.point_names, sigma_m=np.full_like(review.sigma_m, np.nan))
-    items = skeleton(unknown, 3, places, metre, 0.05, STYLE)
+    items = skeleton(unknown, 3, places, meter, 0.05, STYLE)
     assert discs(items) == 13
 
 
@@ -209,7 +209,7 @@ def test_the_viewports_projection_is_blenders() -> None:
     beside = view @ Vector((0.2, 0.2, -3.0))
     pair = SimpleNamespace(points=np.array([[at, beside]], dtype=float))
     here, there = seen.places(pair, np.array([0]))[0]
-    assert seen.pixels_per_metre(pair, 0)[0] == pytest.approx(10.0 * np.linalg.norm(there - here), rel=1e-4)
+    assert seen.pixels_per_meter(pair, 0)[0] == pytest.approx(10.0 * np.linalg.norm(there - here), rel=1e-4)
 
 
 def test_a_far_body_is_drawn_finer() -> None:
@@ -231,7 +231,7 @@ def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
     assert all(low[1] < label.y < high[1] - 8.0 and low[0] < label.x < high[0] for label in labels)
 
 
-def test_neighbours_that_are_alike_are_drawn_at_once() -> None:
+def test_neighbors_that_are_alike_are_drawn_at_once() -> None:
     """With their own colors, in their order; different ones are not mixed."""
     line = np.zeros((2, 2, 2))
     red, blue = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)

@@ -145,7 +145,7 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
 
 
 def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
-    """The button is grey and says so, instead of failing once it is pressed; a second one makes it live."""
+    """The button is gray and says so, instead of failing once it is pressed; a second one makes it live."""
     scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
     take.keyframe_action = None
     take.armature.animation_data.action = None

@@ -77,7 +77,7 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
 
 
 def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
-    """In one group, generated, in millimetres and pixels; unknown frames have no key."""
+    """In one group, generated, in millimeters and pixels; unknown frames have no key."""
     review = made_up_review()
     expected = {
         "Confidence": review.confidence,

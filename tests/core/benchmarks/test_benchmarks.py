@@ -45,7 +45,7 @@ def test_the_density_that_is_needed_lies_where_the_curve_crosses_the_limit() -> 
 
 
 def test_keyframes_of_any_frames_stand_where_the_truth_does(trial: Trial) -> None:
-    """Exact ones within a millimetre; hand-posed ones by as much off as asked, the same in every run."""
+    """Exact ones within a millimeter; hand-posed ones by as much off as asked, the same in every run."""
     frames = spread_frames(trial, 5)
     assert frames[0] == 0 and frames[-1] == FRAMES - 1 and set(np.diff(frames)) <= {5, 6}
     body, exact = trial.take.body, exact_postures(trial)
@@ -67,7 +67,7 @@ def test_the_best_interpolation_is_none_of_the_worse(trial: Trial) -> None:
 
 
 def test_shifted_frames_stay_in_the_clip_and_in_order() -> None:
-    """Each moves as far as it may; neighbours that would meet stay apart."""
+    """Each moves as far as it may; neighbors that would meet stay apart."""
     assert shifted([0, 8, 16, 23], [2, -2, 1, -1], FRAMES).tolist() == [2, 6, 17, 22]
     assert shifted([0, 8, 16, 23], [-2, 2, 2, 2], FRAMES).tolist() == [0, 10, 18, 23]
     assert shifted([0, 1, 22, 23], [2, -2, 2, 1], FRAMES).tolist() == [2, 3, 22, 23]

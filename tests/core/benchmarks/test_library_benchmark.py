@@ -42,7 +42,7 @@ def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None
 
 
 def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
-    """A take that shows something known must be recognised; others may go without a library."""
+    """A take that shows something known must be recognized; others may go without a library."""
     found = bench.choose("walk", trial, [read_library(SHIPPED / "walking.json")])
     assert found.right is True and found.chosen == "walking"
     assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]

@@ -30,7 +30,7 @@ def points_of(posture: Posture, body: Body = BODY) -> np.ndarray:
     return body.points(body.pose(posture))
 
 
-def test_noise_free_points_are_met_to_a_tenth_of_a_millimetre() -> None:
+def test_noise_free_points_are_met_to_a_tenth_of_a_millimeter() -> None:
     """From the geometric guess alone, for 60 postures facing anywhere; a few end near by."""
     targets = points_of(plausible_postures(60, 0))
     fit = fit_posture(BODY, targets)
@@ -62,7 +62,7 @@ def test_hinges_bend_the_way_joints_do(joint: str, side: str) -> None:
 
 
 def test_a_start_far_away_does_not_diverge() -> None:
-    """Metres away and half turned round, the fit is never worse than its start and mostly arrives."""
+    """Meters away and half turned round, the fit is never worse than its start and mostly arrives."""
     truth = plausible_postures(20, 1)
     targets = points_of(truth)
     rng = np.random.default_rng(2)
@@ -112,7 +112,7 @@ def test_points_no_body_can_reach_still_give_a_finite_posture() -> None:
 
 @pytest.mark.parametrize("name", ["walk", "reach", "aerobic", "real_balance"])
 def test_keyframes_of_real_takes_are_fitted(take_folder: Callable[[str], Path], name: str) -> None:
-    """Exact keyframes leave a few millimetres, as the true body is not this skeleton; no point is far off."""
+    """Exact keyframes leave a few millimeters, as the true body is not this skeleton; no point is far off."""
     folder = take_folder(name)
     actor = Actor(json.loads((folder / "take.json").read_text())["actor"]["segments_m"])
     keyframes = json.loads((folder / "keyframes.json").read_text())["keyframes"]

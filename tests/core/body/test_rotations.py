@@ -109,7 +109,7 @@ def test_quaternions_are_scalar_first() -> None:
 
 
 def test_continuous_quaternions_never_jump_to_the_other_sign() -> None:
-    """Two turns about an axis: neighbours stay near, and each is the same rotation as before."""
+    """Two turns about an axis: neighbors stay near, and each is the same rotation as before."""
     angle = np.linspace(0.0, 4.0 * np.pi, 60)
     raw = rotations.to_quaternions(rotations.hinge(np.array([0.0, 0.6, 0.8]), angle))[:, None]
     smooth = rotations.continuous_quaternions(raw)

@@ -114,7 +114,7 @@ def lengths_with(**changes: object) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("lengths", "sentence"),
     [
-        ({}, r"actor\.segments_m lacks upper_arm\.L.*each in metres"),
+        ({}, r"actor\.segments_m lacks upper_arm\.L.*each in meters"),
         (lengths_with(trunk="long"), r"actor\.segments_m\.trunk is 'long'; .* valid"),
         (lengths_with(trunk=float("nan")), r"trunk is nan; .* valid"),
         (lengths_with(trunk=True), r"trunk is True; .* valid"),
@@ -131,7 +131,7 @@ def test_unusable_lengths_are_refused_in_one_sentence(lengths: dict[str, float],
 
 @pytest.mark.parametrize("stature", [0.0, 175.0, float("nan"), float("inf")])
 def test_an_impossible_stature_is_refused(stature: float) -> None:
-    """Centimetres taken for metres are caught."""
+    """Centimeters taken for meters are caught."""
     with pytest.raises(InputError, match="between 0.5 and 3 m"):
         Actor.from_stature(stature)
 

@@ -40,7 +40,7 @@ def log_errors(found: Body, body: Body) -> np.ndarray:
 
 
 def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> None:
-    """Over several people with their arms out: nearer on the whole, the place right to some centimetres."""
+    """Over several people with their arms out: nearer on the whole, the place right to some centimeters."""
     rng = np.random.default_rng(2)
     before, after = [], []
     for _ in range(5):
@@ -65,7 +65,7 @@ def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
 
 
 def test_someone_who_kneels_does_not_stand() -> None:
-    """The knees bent by a right angle, the trunk half a metre lower."""
+    """The knees bent by a right angle, the trunk half a meter lower."""
     body = Body(Actor.from_stature(1.75))
     names = body.skeleton.dof_names
     step = np.zeros(34)

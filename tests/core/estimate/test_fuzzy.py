@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from keymark.core.estimate.fuzzy import Memberships, OutputSet, aggregate, keyframe_distance, nearness
 
 
-def output(centre: float, width: float, degree: float) -> OutputSet:
+def output(center: float, width: float, degree: float) -> OutputSet:
     """An output set of one degree of freedom."""
-    return OutputSet(np.array([centre]), np.array([width]), degree)
+    return OutputSet(np.array([center]), np.array([width]), degree)
 
 
 def test_distance_counts_in_half_gaps() -> None:
@@ -52,7 +52,7 @@ def test_a_triangle_clipped_at_one_half_is_a_trapezoid() -> None:
 
 
 def test_two_sets_apart_mix_by_their_areas() -> None:
-    """Degrees 1 and 1/2 have the areas 1 and 3/4; the centres 0 and 7 then have the mean 3."""
+    """Degrees 1 and 1/2 have the areas 1 and 3/4; the centers 0 and 7 then have the mean 3."""
     mean, variance = aggregate(output(0.0, 1.0, 1.0), output(7.0, 1.0, 0.5))
     assert mean[0] == pytest.approx(3.0, rel=1e-12)
     between = (4.0 / 7.0) * 9.0 + (3.0 / 7.0) * 16.0
@@ -60,7 +60,7 @@ def test_two_sets_apart_mix_by_their_areas() -> None:
 
 
 def test_joining_counts_what_two_sets_share_once() -> None:
-    """A set joined with a lower one about the same centre is that set."""
+    """A set joined with a lower one about the same center is that set."""
     mean, variance = aggregate(output(1.0, 2.0, 1.0), output(1.0, 2.0, 0.7))
     assert mean[0] == pytest.approx(1.0, abs=1e-14)
     assert variance[0] == pytest.approx(4.0 / 6.0, rel=1e-12)
@@ -74,10 +74,10 @@ def test_no_rule_at_all_is_an_error() -> None:
 
 degrees = st.floats(0.0, 1.0)
 widths = st.floats(0.05, 3.0)
-centres = st.floats(-5.0, 5.0)
+centers = st.floats(-5.0, 5.0)
 
 
-@given(centres, widths, st.floats(0.02, 1.0), centres, widths, degrees)
+@given(centers, widths, st.floats(0.02, 1.0), centers, widths, degrees)
 def test_the_closed_form_agrees_with_fine_sampling(
     first: float, first_width: float, first_degree: float, second: float, second_width: float, degree: float
 ) -> None:

@@ -87,7 +87,7 @@ def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.02)
 
 
-def test_keyframes_set_at_the_wrong_frame_are_recognised() -> None:
+def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
     """Postures of up to three frames before or after are taken as mistimed; right ones are not."""
     rng = np.random.default_rng(4)
     shifted = np.clip(POSED + rng.choice([-3, -2, 2, 3], len(POSED)), 0, FRAMES - 1)

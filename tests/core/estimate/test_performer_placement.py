@@ -67,7 +67,7 @@ def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
 
 
 def test_a_ground_elsewhere_is_left_alone() -> None:
-    """A performer on a stage of two metres is not pulled to the floor."""
+    """A performer on a stage of two meters is not pulled to the floor."""
     camera = looking_down(0.3, (0.0, -4.0, 4.3))
     true = standing_posture(BODY, np.array([0.0, 0.0, 2.0]))
     from keymark.core.observation.regions import MarkerPlacement, RegionModel

@@ -53,14 +53,14 @@ def exact() -> WholeClipResult:
 
 
 def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: WholeClipResult) -> None:
-    """The mean error falls well below the interpolation's and below a centimetre."""
+    """The mean error falls well below the interpolation's and below a centimeter."""
     before = point_error_m(prior_from(TRUTH[np.array(POSED)]), TRUTH).mean()
     after = point_error_m(exact.posture, TRUTH).mean()
     assert after < 0.6 * before
     assert after < 0.010
 
 
-def test_exact_keyframes_are_recognised_and_kept(exact: WholeClipResult) -> None:
+def test_exact_keyframes_are_recognized_and_kept(exact: WholeClipResult) -> None:
     """The size of the posing error is found small, and the keyframes stay where they were posed."""
     assert exact.evidence.posing_scale < 0.3
     kept = point_error_m(exact.posture[np.array(POSED)], TRUTH[np.array(POSED)])
@@ -78,7 +78,7 @@ def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact:
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_carelessly_posed_keyframes_are_recognised_and_corrected(seed: int) -> None:
+def test_carelessly_posed_keyframes_are_recognized_and_corrected(seed: int) -> None:
     """The size of the posing error is found, and the estimate is better than the keyframes themselves."""
     posed = posed_by_hand(seed)
     prior = prior_from(posed)
@@ -101,7 +101,7 @@ def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
 
 
 def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -> None:
-    """An extraction that jumps to clutter for a frame moves the estimate by millimetres, not centimetres."""
+    """An extraction that jumps to clutter for a frame moves the estimate by millimeters, not centimeters."""
     tracks = film(TRUTH, 0.3)
     centroid = tracks.centroid.copy()
     centroid[22, 3] += 60.0

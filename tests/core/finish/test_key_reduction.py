@@ -85,7 +85,7 @@ def test_fewer_keys_than_at_even_steps(rig: Rig, values: list[np.ndarray]) -> No
 def test_more_tolerance_needs_fewer_keys_and_poses_share_their_frames(
     rig: Rig, values: list[np.ndarray]
 ) -> None:
-    """Twenty millimetres cost less than five; whole poses key all bones on the same frames."""
+    """Twenty millimeters cost less than five; whole poses key all bones on the same frames."""
     counts = [key_count(run(reduce_keys(rig, TIMES, values, mm / 1e3, KEYFRAMES))) for mm in (5, 10, 20)]
     assert counts[0] > counts[1] > counts[2]
     poses = run(reduce_keys(rig, TIMES, values, 0.01, KEYFRAMES, True))

@@ -37,7 +37,7 @@ TIME_S = np.arange(60) / FPS
 
 
 def test_resting_feet_stand_still_afterwards() -> None:
-    """Both ankles rest, the left one twice; each stays within a millimetre of one place."""
+    """Both ankles rest, the left one twice; each stays within a millimeter of one place."""
     planted = run(plant_feet(BODY, step_and_stand(), TIME_S))
     after = places(planted.posture)
     assert [contact.point for contact in planted.contacts] == [0, 0, 1]
@@ -93,7 +93,7 @@ def test_an_unsteady_foot_does_not_rest() -> None:
 
 
 def test_a_foot_held_up_does_not_rest_on_air() -> None:
-    """Half a metre above where it stands a moment later, it does not rest."""
+    """Half a meter above where it stands a moment later, it does not rest."""
     path = np.zeros((60, 1, 3))
     path[:25, 0, 2] = 0.5
     path[25:31, 0, 2] = np.linspace(0.5, 0.0, 6)

@@ -30,7 +30,7 @@ def fields(**changes: Any) -> dict[str, Any]:
 
 
 def test_projection_agrees_with_a_computation_by_hand() -> None:
-    """At 4 m, half a metre right and a quarter up, a 40 mm lens on 36 mm gives 355.6 px of focal length."""
+    """At 4 m, half a meter right and a quarter up, a 40 mm lens on 36 mm gives 355.6 px of focal length."""
     camera = Camera(40.0, 36.0, (320, 240), turned(0.0))
     pixel, depth = camera.project([0.5, 0.0, 1.25])
     np.testing.assert_allclose(pixel, [160 + 320 * 40 / 36 * 0.5 / 4, 120 - 320 * 40 / 36 * 0.25 / 4])
@@ -45,7 +45,7 @@ def test_a_shift_to_the_right_and_up_moves_the_picture_left_and_down_in_image_wi
     np.testing.assert_allclose(shifted - straight, [-32.0, 16.0])
 
 
-def test_distortion_scales_normalised_coordinates_by_its_polynomial() -> None:
+def test_distortion_scales_normalized_coordinates_by_its_polynomial() -> None:
     """A point at (0.5, 0.25) has r² = 0.3125."""
     camera = Camera(36.0, 36.0, (100, 100), turned(0.0, (0.0, -1.0, 0.0)), distortion=(0.1, -0.02, 0.003))
     factor = 1 + 0.1 * 0.3125 - 0.02 * 0.3125**2 + 0.003 * 0.3125**3
@@ -77,7 +77,7 @@ def test_jacobians_agree_with_central_differences(distortion: tuple[float, float
 
 @pytest.mark.parametrize("distortion", DISTORTIONS)
 def test_rays_lead_back_through_the_pixels_they_came_from(distortion: tuple[float, float, float]) -> None:
-    """A point two metres along any pixel's ray is seen at that pixel, through the distortion and back."""
+    """A point two meters along any pixel's ray is seen at that pixel, through the distortion and back."""
     camera = Camera(30.0, 36.0, (640, 480), turned(-0.7), 0.02, 0.04, distortion)
     pixels = np.stack(np.meshgrid(np.linspace(0, 640, 9), np.linspace(0, 480, 7)), axis=-1)
     origin, direction = camera.rays(pixels)

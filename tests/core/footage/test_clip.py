@@ -11,12 +11,12 @@ from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
-    """An even image of one grey level."""
+    """An even image of one gray level."""
     return np.full((size[1], size[0], 3), level, dtype=np.uint8)
 
 
 def level(index: int) -> int:
-    """The grey level of a frame: so far from its neighbours' that the encoder cannot leave it out."""
+    """The gray level of a frame: so far from its neighbors' that the encoder cannot leave it out."""
     return 30 + index * 67 % 200
 
 
@@ -88,7 +88,7 @@ def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) ->
         np.full((8, 9, 4), 200, dtype=np.uint8),
         np.full((8, 9), 200 * 257, dtype=np.uint16),
     ],
-    ids=["grey", "16 bit", "alpha", "16 bit grey"],
+    ids=["gray", "16 bit", "alpha", "16 bit gray"],
 )
 def test_every_depth_and_channel_count_becomes_eight_bit_color(tmp_path: Path, image: np.ndarray) -> None:
     """A level of 200 stays 200 in three channels."""

@@ -242,7 +242,7 @@ def test_no_take_of_ours_is_suspected(take_folder: Callable[[str], Path], reposi
         (np.full((48, 64, 3), 250, dtype=np.uint8), "one color"),
         (np.tile(np.arange(64, dtype=np.uint8)[None, :, None] * 3, (48, 1, 3)), "no colors"),
     ],
-    ids=["black", "white", "grey"],
+    ids=["black", "white", "gray"],
 )
 def test_why_nothing_can_be_found_is_known(picture: np.ndarray, why: str) -> None:
     """Of clips in which no color could be."""

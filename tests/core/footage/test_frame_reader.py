@@ -12,30 +12,30 @@ from keymark.core.footage.clips.frame_reader import FrameReader
 FPS = 30.0
 
 
-def grey(index: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
+def gray(index: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
     """A picture whose level tells its index."""
     return np.full((size[1], size[0], 3), 20 + 8 * (index % 25), dtype=np.uint8)
 
 
 def test_stepping_forward_decodes_each_frame_once() -> None:
     """Steps, short jumps, the same frame again and going back all give the frame that was asked for."""
-    source = Drawn([grey(index) for index in range(50)], fps=FPS)
+    source = Drawn([gray(index) for index in range(50)], fps=FPS)
     reader = FrameReader(Clip(Path("drawn"), source))
     for index in range(20):
-        assert (reader.image_at(index / FPS) == grey(index)).all()
+        assert (reader.image_at(index / FPS) == gray(index)).all()
     assert source.decoded == 21  # one ahead, to know when a frame ends
     for index in (19, 19, 22, 5, 49, 48):
-        assert (reader.image_at(index / FPS) == grey(index)).all()
+        assert (reader.image_at(index / FPS) == gray(index)).all()
     assert source.decoded <= 21 + 3 + 4 + 3 + 4
 
 
 def test_outside_the_clip_there_is_no_frame() -> None:
     """The last frame lasts as long as the others."""
-    reader = FrameReader(Clip(Path("drawn"), Drawn([grey(index) for index in range(5)], fps=FPS)))
+    reader = FrameReader(Clip(Path("drawn"), Drawn([gray(index) for index in range(5)], fps=FPS)))
     assert reader.image_at(-0.5 / FPS) is None
     assert reader.image_at(5.2 / FPS) is None
-    assert (reader.image_at(4.8 / FPS) == grey(4)).all()
-    assert (reader.image_at(0.0) == grey(0)).all()
+    assert (reader.image_at(4.8 / FPS) == gray(4)).all()
+    assert (reader.image_at(0.0) == gray(0)).all()
 
 
 def test_times_between_and_rounded_stamps_show_the_frame_that_has_begun() -> None:
@@ -48,10 +48,10 @@ def test_times_between_and_rounded_stamps_show_the_frame_that_has_begun() -> Non
             """Round."""
             return ((round(time, 3), image) for time, image in super().onward(first))
 
-    reader = FrameReader(Clip(Path("drawn"), Rounded([grey(index) for index in range(40)], fps=FPS)))
+    reader = FrameReader(Clip(Path("drawn"), Rounded([gray(index) for index in range(40)], fps=FPS)))
     for index in (0, 1, 2, 3, 31, 32, 11, 38):
-        assert (reader.image_at(index / FPS) == grey(index)).all()
-        assert (reader.image_at((index + 0.7) / FPS) == grey(index)).all()
+        assert (reader.image_at(index / FPS) == gray(index)).all()
+        assert (reader.image_at((index + 0.7) / FPS) == gray(index)).all()
 
 
 def test_uneven_frames_are_found_by_their_times() -> None:
@@ -63,12 +63,12 @@ def test_uneven_frames_are_found_by_their_times() -> None:
 
         def onward(self, first: int):  # noqa: ANN202
             """Those that were kept."""
-            return ((kept[index] / FPS, grey(kept[index])) for index in range(first, len(kept)))
+            return ((kept[index] / FPS, gray(kept[index])) for index in range(first, len(kept)))
 
-    reader = FrameReader(Clip(Path("uneven"), Uneven([grey(index) for index in kept], fps=FPS)))
+    reader = FrameReader(Clip(Path("uneven"), Uneven([gray(index) for index in kept], fps=FPS)))
     for index in (3, 19, 20, 21, 35, 50, 9, 57):
         expected = index if index < 20 else index - index % 2
-        assert (reader.image_at(index / FPS) == grey(expected)).all()
+        assert (reader.image_at(index / FPS) == gray(expected)).all()
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2, 290, 291, 150, 140), (299, 0, 131)])
@@ -77,7 +77,7 @@ def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> N
     path = tmp_path / "long.mp4"
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), FPS, (64, 48))
     for index in range(300):
-        writer.write(grey(index))
+        writer.write(gray(index))
     writer.release()
     reader = FrameReader(Clip.open(path))
     for index in order:
@@ -87,6 +87,6 @@ def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> N
 def test_numbered_images_are_read_one_by_one(tmp_path: Path) -> None:
     """Their rate is what the scene says."""
     for index in range(6):
-        cv2.imwrite(str(tmp_path / f"img_{index}.png"), grey(index))
+        cv2.imwrite(str(tmp_path / f"img_{index}.png"), gray(index))
     reader = FrameReader(Clip.open(tmp_path, fps=10.0))
-    assert (reader.image_at(0.31) == grey(3)).all() and (reader.image_at(0.12) == grey(1)).all()
+    assert (reader.image_at(0.31) == gray(3)).all() and (reader.image_at(0.12) == gray(1)).all()

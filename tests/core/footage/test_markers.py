@@ -86,8 +86,8 @@ def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_color() 
     balls: list[Ellipse] = [(RED, (300.0 - 3.0 * index, 40.0), (14.0, 14.0), 0.0) for index in range(40)]
     images = [draw([*moving(index), balls[index]], rng) for index in range(40)]
     truth = np.array([path(index) for index in range(40)])
-    centre = np.stack([truth + [9.0, -7.0], np.tile([250.5, 120.5], (40, 1))], axis=1)
-    expected = ExpectedRegions(centre[:38], np.full((38, 2), 30.0))  # a container may claim too few frames
+    center = np.stack([truth + [9.0, -7.0], np.tile([250.5, 120.5], (40, 1))], axis=1)
+    expected = ExpectedRegions(center[:38], np.full((38, 2), 30.0))  # a container may claim too few frames
     tracks = finish(track_markers(clip_of(images), STYLES, expected))
     apart = np.linalg.norm(truth - [ball[1] for ball in balls], axis=1) > 45.0
     assert np.abs(tracks.centroid[apart, 0] - truth[apart]).max() < 0.3
@@ -154,26 +154,26 @@ def test_one_sample_off_in_light_still_teaches_the_markers_color() -> None:
     np.testing.assert_allclose(shaded, right, rtol=0.1)
 
 
-@pytest.mark.parametrize("grey", [(128, 128, 128), (12, 12, 12), (235, 235, 235)])
-def test_a_marker_without_a_hue_is_told_from_a_colored_wall(grey: tuple[int, int, int]) -> None:
+@pytest.mark.parametrize("gray", [(128, 128, 128), (12, 12, 12), (235, 235, 235)])
+def test_a_marker_without_a_hue_is_told_from_a_colored_wall(gray: tuple[int, int, int]) -> None:
     """Black and white sleeves: a sample whose three channels are equal is learned and followed."""
     rng = np.random.default_rng(3)
     images = []
     for index in range(20):
         image = np.full((SIZE[1], SIZE[0], 3), (60, 130, 170), dtype=np.uint8)
-        cv2.ellipse(image, (80 + 6 * index, 120), (30, 15), 0.0, 0, 360, grey, -1)
+        cv2.ellipse(image, (80 + 6 * index, 120), (30, 15), 0.0, 0, 360, gray, -1)
         images.append(np.clip(image + rng.normal(0, 2.0, image.shape), 0, 255).astype(np.uint8))
-    tracks = finish(track_markers(clip_of(images), (MarkerStyle("grey", "forearm.L", grey),)))
+    tracks = finish(track_markers(clip_of(images), (MarkerStyle("gray", "forearm.L", gray),)))
     truth = np.array([[80.5 + 6.0 * index, 120.5] for index in range(20)])
     assert tracks.visible.all() and np.abs(tracks.centroid[:, 0] - truth).max() < 1.0
 
 
-def test_a_grey_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
+def test_a_gray_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
     """Seven hundredths of a color's range tell the two apart."""
     rng = np.random.default_rng(3)
-    grey = (128, 128, 128)
-    images = [draw([(grey, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
-    tracks = finish(track_markers(clip_of(images), (MarkerStyle("grey", "forearm.L", grey),)))
+    gray = (128, 128, 128)
+    images = [draw([(gray, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
+    tracks = finish(track_markers(clip_of(images), (MarkerStyle("gray", "forearm.L", gray),)))
     truth = np.array([[80.0 + 6.0 * index, 90.0] for index in range(20)])
     assert tracks.visible.all() and np.median(np.abs(tracks.centroid[:, 0] - truth)) < 0.5
 
@@ -210,11 +210,11 @@ def test_rendered_takes_agree_with_the_exactly_visible_pixels(
     tracks = finish(track_markers(Clip.open(folder / "clip.mp4"), styles))
     for marker, key in enumerate(tracks.names):
         pixels = np.array(truth[key]["pixels"])
-        centre = np.array([place or [np.nan, np.nan] for place in truth[key]["centroid_px"]], dtype=float)
+        center = np.array([place or [np.nan, np.nan] for place in truth[key]["centroid_px"]], dtype=float)
         seen = tracks.visible[:, marker]
         assert not (seen & (pixels == 0)).any(), f"{key} is found where it is hidden"
         assert np.count_nonzero(~seen & (pixels >= 40)) <= 1, f"{key} is missed"
         both = seen & (pixels > 0)
-        error = np.linalg.norm(tracks.centroid[both, marker] - centre[both], axis=1)
+        error = np.linalg.norm(tracks.centroid[both, marker] - center[both], axis=1)
         assert np.median(error) < 0.8 and np.quantile(error, 0.95) < 2.5
         assert 0.8 < np.median(tracks.area[both, marker] / pixels[both]) < 1.2

@@ -36,7 +36,7 @@ def test_a_rectangle_of_whole_pixels_has_exactly_the_rectangles_moments() -> Non
     np.testing.assert_allclose(second, [[16 / 12, 0.0], [0.0, 3.0]], atol=1e-12)
 
 
-def test_the_first_pixels_centre_lies_at_a_half() -> None:
+def test_the_first_pixels_center_lies_at_a_half() -> None:
     """The origin is the outer corner of the first pixel; a pixel alone has the variance of a square."""
     centroid, second = measured(np.ones((1, 1)))
     np.testing.assert_allclose(centroid, [0.5, 0.5])
@@ -69,7 +69,7 @@ def test_moments_of_pieces_add_up() -> None:
 
 
 def test_moments_agree_with_opencvs_up_to_the_pixels_own_size() -> None:
-    """OpenCV counts from pixel centres and takes pixels for points."""
+    """OpenCV counts from pixel centers and takes pixels for points."""
     weights = np.random.default_rng(4).uniform(0, 1, (30, 40)).astype(np.float32)
     theirs = cv2.moments(weights)
     centroid, second = measured(weights)

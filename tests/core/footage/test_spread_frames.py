@@ -18,7 +18,7 @@ SIZE = (64, 48)
 
 
 def level(index: int) -> int:
-    """The grey level of a frame: far from its neighbours'."""
+    """The gray level of a frame: far from its neighbors'."""
     return 30 + index * 67 % 200
 
 

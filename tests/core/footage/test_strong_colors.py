@@ -19,7 +19,7 @@ def test_the_markers_are_among_the_strong_colors() -> None:
     assert apart.min() > 0.03 and all(0.0 < color.share < 0.1 for color in found)
 
 
-def test_of_grey_pictures_there_is_nothing_to_say() -> None:
+def test_of_gray_pictures_there_is_nothing_to_say() -> None:
     """Nor of none."""
     assert strong_colors([np.full((48, 64, 3), 90, dtype=np.uint8)]) == () == strong_colors([])
 

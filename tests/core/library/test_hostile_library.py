@@ -60,7 +60,7 @@ BOMBS: dict[str, Callable[[], bytes]] = {
     "a long name": lambda: bomb(**{"t" * 3_000_000: 0}),
     "a long title": lambda: bomb(title="t" * 3_000_000),
     "a long identifier": lambda: bomb(identifier="a" * 3_000_000),
-    "a long licence": lambda: bomb(license="A" * 3_000_000),
+    "a long license": lambda: bomb(license="A" * 3_000_000),
     "many postures": lambda: bomb(postures=VALID["postures"][:1] * 2000),
     "many steps": lambda: bomb(motions=[VALID["motions"][0] | {"steps": [STEP] * 50_000}]),
     "many motions": lambda: bomb(motions=[VALID["motions"][0]] * 101),

@@ -11,7 +11,7 @@ from keymark.core.library.library_file import read_library
 TOOLS = Path(__file__).resolve().parents[3] / "tools"
 sys.path.insert(0, str(TOOLS))
 
-from libraries.balance import balanced_over, centre_of_mass, mass_of  # noqa: E402
+from libraries.balance import balanced_over, center_of_mass, mass_of  # noqa: E402
 from libraries.moment import Arm, Foot, Hand, Moment, Turn, mirrored, moment  # noqa: E402
 from libraries.placing import moved, pivoted  # noqa: E402
 from libraries.solving import BALL, BODY, posture_of  # noqa: E402
@@ -107,7 +107,7 @@ def test_who_stands_on_one_leg_could_stay_there() -> None:
     for posture in held:
         pose = BODY.pose(posture.posture)
         ankle = BODY.points(pose)[BODY.skeleton.point_names.index("ankle.R")]
-        mass = centre_of_mass(BODY, pose)
+        mass = center_of_mass(BODY, pose)
         assert abs(mass[0] - ankle[0]) < 0.04, posture.name
         assert -0.66 * foot < mass[1] - ankle[1] < 0.29 * foot, posture.name
 

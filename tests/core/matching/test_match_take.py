@@ -31,7 +31,7 @@ VIEW = np.array([[1.0, 0.0, 0.0], [0.0, 0.2, -0.98], [0.0, 0.98, 0.2]])
 
 
 def camera(frames: int = 0) -> Camera:
-    """A camera four metres before the performer, a little above; one that drifts where frames are given."""
+    """A camera four meters before the performer, a little above; one that drifts where frames are given."""
     rotation, _ = np.linalg.qr(VIEW)
     rotation *= np.sign(np.diag(rotation.T @ VIEW))
     matrix = np.eye(4)
@@ -105,7 +105,7 @@ def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, heading_deg: float) -> None:
-    """Another body and other habits leave a few centimetres; the wrong leg in front would be some fifteen."""
+    """Another body and other habits leave a few centimeters; the wrong leg in front would be some fifteen."""
     truth = performed(walking, np.radians(heading_deg))
     choice = run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0))
     rooted, absolute = errors_m(choice, truth)
@@ -137,7 +137,7 @@ def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) 
 
 
 def test_an_unknown_floor_is_found_by_the_sizes(walking: Library) -> None:
-    """Where the scene's floor is far below z = 0, that is noticed; within a few decimetres it is z = 0."""
+    """Where the scene's floor is far below z = 0, that is noticed; within a few decimeters it is z = 0."""
     truth = performed(walking, np.radians(35.0), floor_m=-1.0)
     choice = run(match_take(*filmed(truth, camera()), [walking]))
     assert choice.match is not None

@@ -34,7 +34,7 @@ def test_a_moving_camera_is_taken_at_its_frame() -> None:
     np.testing.assert_allclose(depth, np.broadcast_to(np.array([[4.0], [5.0], [6.0]]), (3, 13)), atol=1e-12)
 
 
-def test_the_papers_variance_is_kept_in_metres() -> None:
+def test_the_papers_variance_is_kept_in_meters() -> None:
     """10⁵ mm² are 0.1 m²."""
     assert depths.DEPTH_VARIANCE_M2 == pytest.approx(1e5 * 1e-6)
 

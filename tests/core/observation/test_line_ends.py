@@ -26,7 +26,7 @@ MARKED = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 FORWARD = np.array([[1.0, 0, 0, 0], [0, 0, -1, -4], [0, 1, 0, 0], [0, 0, 0, 1]])
 """A camera 4 m before the performer and level with the hips, looking along +Y."""
 CAMERA = Camera(40.0, 36.0, (320, 240), FORWARD)
-PIXELS_PER_METRE = 40.0 / 36.0 * 320 / 4.0
+PIXELS_PER_METER = 40.0 / 36.0 * 320 / 4.0
 
 
 def test_the_rest_posture_gives_values_worked_out_by_hand() -> None:
@@ -35,11 +35,11 @@ def test_the_rest_posture_gives_values_worked_out_by_hand() -> None:
     actor = BODY.actor.segments_m
     trunk, forearm = seen[0], seen[1]
     assert trunk[X] == pytest.approx(160.0)
-    assert trunk[Y] == pytest.approx(120.0 - 0.5 * actor["trunk"] * PIXELS_PER_METRE)
+    assert trunk[Y] == pytest.approx(120.0 - 0.5 * actor["trunk"] * PIXELS_PER_METER)
     assert abs(trunk[ANGLE]) == pytest.approx(np.pi / 2)
     assert trunk[LOG_RATIO] == pytest.approx(np.log(1.0 + (actor["trunk"] / (0.185 * 1.75)) ** 2))
     elbow = 0.5 * actor["shoulder_width"] + actor["upper_arm.L"]
-    assert forearm[X] == pytest.approx(160.0 + (elbow + 0.5 * actor["forearm.L"]) * PIXELS_PER_METRE)
+    assert forearm[X] == pytest.approx(160.0 + (elbow + 0.5 * actor["forearm.L"]) * PIXELS_PER_METER)
     assert forearm[ANGLE] == pytest.approx(0.0, abs=1e-12)
 
 

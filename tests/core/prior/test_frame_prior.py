@@ -36,7 +36,7 @@ def test_a_single_keyframe_goes_nowhere() -> None:
 
 
 def test_between_two_both_count_and_more_surely() -> None:
-    """The interpolation is believed; both neighbours are starts."""
+    """The interpolation is believed; both neighbors are starts."""
     belief = belief_from_keyframes(KEYFRAMES, 32, 30.0)
     alone = belief_from_keyframes(KEYFRAMES[:2], 32, 30.0)
     assert np.all(belief.std < alone.std)

@@ -56,7 +56,7 @@ def test_velocity_is_continuous_across_a_keyframe() -> None:
     st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=7),
     st.lists(st.integers(1, 12), min_size=6, max_size=6),
 )
-def test_no_component_overshoots_its_neighbouring_keyframes(values: list[float], gaps: list[int]) -> None:
+def test_no_component_overshoots_its_neighboring_keyframes(values: list[float], gaps: list[int]) -> None:
     """Between two keyframes a coordinate stays between their values."""
     indices = [0, *np.cumsum(gaps[: len(values) - 1]).tolist()]
     curve = interpolate(place_only(values, indices), indices[-1] + 1).translation[:, 2]

@@ -29,16 +29,16 @@ def motion() -> Motion:
     return Motion(BODY, 30.0, 1, np.arange(FRAMES) / 30.0, posture, points, unknown, (0,), "map")
 
 
-def moved(motion: Motion, metres: list[float]) -> Motion:
+def moved(motion: Motion, meters: list[float]) -> Motion:
     """The same motion somewhere else."""
     delta = np.zeros(len(BODY.skeleton.dof_names))
-    delta[:3] = metres
+    delta[:3] = meters
     posture = motion.posture.plus(np.tile(delta, (FRAMES, 1)))
     return replace(motion, posture=posture, points=BODY.points(BODY.pose(posture)))
 
 
 def plain(scale: int = 1) -> Image:
-    """A grey frame."""
+    """A gray frame."""
     return np.full((scale * SIZE[1], scale * SIZE[0], 3), 128, dtype=np.uint8)
 
 

@@ -58,8 +58,8 @@ def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: st
     result = run(reconstruct(take, method))
     seen = run(review(take, result, np.arange(24) + 1.0))
     assert seen.observed.shape[:2] == seen.predicted.shape[:2] == (24, 5)
-    centres = [np.nanmean(outline, axis=2) for outline in (seen.observed, seen.predicted)]
-    assert np.nanmedian(np.linalg.norm(centres[0] - centres[1], axis=-1)) < 3.0
+    centers = [np.nanmean(outline, axis=2) for outline in (seen.observed, seen.predicted)]
+    assert np.nanmedian(np.linalg.norm(centers[0] - centers[1], axis=-1)) < 3.0
     assert np.nanmedian(seen.reprojection_px) < 3.0
     assert seen.nearness[list(take.keyframe_indices)] == pytest.approx(1.0)
     known = method != "interpolation"

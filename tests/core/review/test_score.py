@@ -32,7 +32,7 @@ def test_the_truth_scores_zero() -> None:
 
 
 def test_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
-    """Thirty millimetres to the side: that much in mpjpe, none in rooted; keyframes count in mpjpe_all."""
+    """Thirty millimeters to the side: that much in mpjpe, none in rooted; keyframes count in mpjpe_all."""
     points = TRUTH.copy()
     points[1:] += [0.03, 0.0, 0.0]
     score = score_points(points, TRUTH, [0], EYE_ALONG_Y)
@@ -64,7 +64,7 @@ def test_a_moving_camera_splits_each_frame_from_where_it_is() -> None:
 
 
 def test_jitter_and_skate_are_per_frame() -> None:
-    """One ankle slides a centimetre each frame while it stands; an error that alternates is jitter."""
+    """One ankle slides a centimeter each frame while it stands; an error that alternates is jitter."""
     standing = np.repeat(TRUTH[:1], FRAMES, axis=0)
     points = standing.copy()
     points[:, LEFT_ANKLE, 0] += 0.01 * np.arange(FRAMES)

@@ -31,19 +31,19 @@ def camera_at(y_m: float) -> list[list[float]]:
     return [MATRIX_WORLD[0], [*MATRIX_WORLD[1][:3], y_m], *MATRIX_WORLD[2:]]
 
 
-def moved(metres: float) -> Change:
+def moved(meters: float) -> Change:
     """All keyframes so far aside."""
 
     def change(_: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         for row in rows:
-            row["points"] = {name: [x + metres, y, z] for name, (x, y, z) in row["points"].items()}
+            row["points"] = {name: [x + meters, y, z] for name, (x, y, z) in row["points"].items()}
 
     return change
 
 
-def lengths(metres: float) -> Change:
+def lengths(meters: float) -> Change:
     """An actor of equal lengths."""
-    return lambda take, _: take["actor"].update(segments_m=dict.fromkeys(take["actor"]["segments_m"], metres))
+    return lambda take, _: take["actor"].update(segments_m=dict.fromkeys(take["actor"]["segments_m"], meters))
 
 
 def many_keyframes(count: int) -> Change:

@@ -54,7 +54,7 @@ def test_a_take_is_read_with_everything_in_it(folder: Path) -> None:
 
 
 def test_points_are_fitted_to_a_posture_that_reaches_them(folder: Path) -> None:
-    """Points of the actor's own body are reached to within a millimetre."""
+    """Points of the actor's own body are reached to within a millimeter."""
     take = read_take(folder)
     truth = BODY.points(BODY.pose(true_postures(FRAMES)))
     for keyframe in take.keyframes:

@@ -166,12 +166,12 @@ def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
         )
     )
     middle = np.mean([points[name] for name in _ends(style.segment)], axis=0)
-    (centre,), _ = known.camera.project(middle[None])
+    (center,), _ = known.camera.project(middle[None])
     clip = keymark("core.footage.clips.clip").Clip.open(known.clip, fps=known.fps)
     _, _, image = next(iter(clip.frames()))
     rows, columns = np.mgrid[: image.shape[0], : image.shape[1]]
     pixels = np.stack([columns, rows], axis=-1) + 0.5
-    near = np.linalg.norm(pixels - centre, axis=-1) < SEARCH_PX * image.shape[1]
+    near = np.linalg.norm(pixels - center, axis=-1) < SEARCH_PX * image.shape[1]
     wrong = np.linalg.norm(image[..., ::-1].astype(float) - style.color_srgb, axis=-1)
     wrong[~near] = np.inf
     return pixels[np.unravel_index(np.argmin(wrong), wrong.shape)]

@@ -73,7 +73,7 @@ def _side_steps(work: Composer) -> None:
     names = ["standing"]
     leaving, landing = Foot(here.x + 0.20, -0.02, 8.0, 18.0, 0.06), replace(there, pitch=14.0)
     pushing, closing = replace(behind, pitch=6.0), Foot(0.14, -0.01, -8.0, 20.0, 0.05)
-    for name, left, right, centre, arms, bend, lean in (
+    for name, left, right, center, arms, bend, lean in (
         ("leaving", leaving, behind, 0.03, _raised(46, 12, 24), 18, -2),
         ("landing", landing, behind, 0.13, _raised(74, 8, 18), 18, -1),
         ("apart", there, pushing, 0.26, _raised(90, 6, 12), 16, 0),
@@ -87,7 +87,7 @@ def _side_steps(work: Composer) -> None:
             pelvis=Turn(bow=4, lean=-lean),
             waist=Turn(bow=3, lean=lean),
         )
-        names.append(work.pose(f"side step: {name}", balanced_over(posed, centre), "side step"))
+        names.append(work.pose(f"side step: {name}", balanced_over(posed, center), "side step"))
     steps = [(name, beat * BEAT_S) for name, beat in zip(names, (0.0, 0.5, 0.78, 1.0, 1.55), strict=True)]
     work.motion("side step", steps, 2.0 * BEAT_S, cyclic=True, travel=(far, 0.0, 0.0))
 
@@ -123,12 +123,12 @@ def _step_touches(work: Composer) -> None:
         legs=Foot(0.32, 0.0, 10.0), arms=Arm(14, 35, 10, 34), bend=20, pelvis=Turn(bow=5), waist=Turn(bow=4)
     )
     work.pose("step touch: apart", balanced_over(stride), "step touch")
-    for name, posed, centre in (
+    for name, posed, center in (
         ("step touch: touching", touch, 0.29),
         ("step touch: passing", passing, 0.25),
         ("leg curl", curl, 0.31),
     ):
-        posed = balanced_over(posed, centre)
+        posed = balanced_over(posed, center)
         work.pose(f"{name} left", posed, "step touch")
         work.pose(f"{name} right", mirrored(posed), "step touch")
     passing_left, passing_right = (f"step touch: passing {side}" for side in ("left", "right"))

@@ -157,8 +157,8 @@ def _along_a_bend(made: Composer) -> None:
     walk = Walk(falls, 0.5 * BEND_S, BEND)
 
     turn = hinge(np.array([0.0, 0.0, 1.0]), np.asarray(np.radians(BEND_DEG)))
-    centre = np.array([radius, 0.0, 0.0])
-    way = centre - turn @ centre
+    pivot = np.array([radius, 0.0, 0.0])
+    way = pivot - turn @ pivot
     made.cycle(
         "walk along a bend",
         lambda phase: leading(walk.at(phase * BEND_S), 5.0, 12.0),
