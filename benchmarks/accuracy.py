@@ -12,16 +12,14 @@ from typing import Any
 
 import numpy as np
 from charts import COLORS, Curve, Labels, draw_chart
-from numpy.typing import NDArray
 from takes import chosen_takes, load_project, write_results
 from trials import INTERPOLATIONS, Trial, read_trial
 
 load_project()
 
+from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
-
-Array = NDArray[np.float64]
 
 KEYFRAMES = {"exact": "keyframes.json", "by hand": "keyframes_noisy.json"}
 ESTIMATES = ("ekf", "map")

@@ -16,7 +16,6 @@ import numpy as np
 from clock import processor_time
 from keyframing import exact_postures, hand_posed
 from long_clip import lengthened, with_one_moved
-from numpy.typing import NDArray
 from takes import GROUPS, chosen_takes, group_of, load_project, write_results
 
 load_project()
@@ -28,8 +27,6 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.take.take import Take, read_take  # noqa: E402
 from trials import Trial  # noqa: E402
-
-Array = NDArray[np.float64]
 
 LONG_S = 100.0
 """Length of the clip that --long makes of the first take."""

@@ -6,12 +6,10 @@ Blender's handles are 1/2.5614 of a gap long instead of 1/3, which bends time a 
 """
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body import rotations
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 HANDLES_PER_GAP = 3.0
 

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from takes import OUTPUT, load_project
 
 load_project()
 
+from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.report.axes import Axes  # noqa: E402
 from keymark.core.report.canvas import (  # noqa: E402
     ACCENT,
@@ -23,8 +23,6 @@ from keymark.core.report.canvas import (  # noqa: E402
     ticks,
     write_png,
 )
-
-Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 1200, 520
 ROW, ROW_NAMES = 24, 330

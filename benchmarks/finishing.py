@@ -12,22 +12,19 @@ from typing import Any
 import numpy as np
 from clock import processor_time
 from keyframing import exact_postures, hand_posed, keyed
-from numpy.typing import NDArray
 from takes import GROUPS, chosen_takes, group_of, load_project, write_results
 from trials import Trial, read_trial
 
 load_project()
 
 from _rig import quaternion_rig, rig_values  # noqa: E402
+from keymark.core.arrays import Array, IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.finish.hermite import fit_keys  # noqa: E402
 from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys  # noqa: E402
 from keymark.core.finish.planted_feet import plant_feet, tolerances  # noqa: E402
 from keymark.core.finish.rig import Rig  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 TOLERANCES_MM = (5, 10, 20)
 BAKED_MM = TOLERANCES_MM[0]
@@ -99,7 +96,7 @@ def with_planted_feet(trial: Trial, posture: Posture, rig: Rig) -> Row:
     return row
 
 
-def point_places(rig: Rig, trial: Trial) -> Indices:
+def point_places(rig: Rig, trial: Trial) -> IndexArray:
     """(13,) which of the rig's joints and ends is each principal point."""
     body = trial.take.body
     rest = Posture.stack([keyframe.posture for keyframe in trial.take.keyframes])
@@ -113,14 +110,14 @@ def keys_a_bone(keys: ReducedKeys) -> float:
     return float(np.mean([len(spline.keys) for spline in keys.splines]))
 
 
-def even_keys(rig: Rig, times: Array, values: list[Array], posed: Indices, tolerance_m: float) -> float:
+def even_keys(rig: Rig, times: Array, values: list[Array], posed: IndexArray, tolerance_m: float) -> float:
     """The fewest evenly spaced keys, the posed frames besides, that hold every point within a tolerance.
 
     Found by halving, as if more keys never made it worse.
     """
     goal, last = rig.show(values).points, len(times) - 1
 
-    def keys_of(count: int) -> Indices:
+    def keys_of(count: int) -> IndexArray:
         even = np.round(np.linspace(0, last, count)).astype(np.intp)
         return np.asarray(np.union1d(even, posed))
 

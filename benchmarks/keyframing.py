@@ -6,20 +6,18 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from takes import ROOT, load_project
 from trials import Trial
 
 load_project()
 sys.path.append(str(ROOT / "tools"))  # the studio that films takes knows how people err
 
+from keymark.core.arrays import IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.marker_speed import marker_speed, propose_keyframes  # noqa: E402
 from studio.posing import ERROR_RMS_M, pose_by_hand  # noqa: E402
-
-Array = NDArray[np.float64]
 
 SEED = 20
 
@@ -41,7 +39,7 @@ def hand_posed(trial: Trial, exact: Posture, rms_m: float = ERROR_RMS_M) -> Post
     return exact.plus(rms_m / ERROR_RMS_M * posed.minus(exact))
 
 
-def spread_frames(trial: Trial, count: int, *, snap: bool = False) -> NDArray[np.intp]:
+def spread_frames(trial: Trial, count: int, *, snap: bool = False) -> IndexArray:
     """Frames, the first and the last among them, evenly spaced or moved to where the markers are slow."""
     speed = marker_speed(trial.tracks) if snap else np.zeros(len(trial.truth))
     return propose_keyframes(speed, count)

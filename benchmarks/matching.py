@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from keyframing import exact_postures
-from numpy.typing import NDArray
 from takes import chosen_takes, load_project, write_results
 
 load_project()
@@ -31,8 +30,6 @@ from keymark.core.review.score import Score, read_truth  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take, read_take  # noqa: E402
 from trials import Trial  # noqa: E402
-
-Array = NDArray[np.float64]
 
 FITTING: dict[str, tuple[str, ...]] = {
     "walk": ("walking",),

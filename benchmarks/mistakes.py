@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 from keyframing import exact_postures, keyed
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from takes import load_project
 from trials import Trial
 
 load_project()
 
+from keymark.core.arrays import Array, IndexArray  # noqa: E402
 from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
@@ -21,8 +22,6 @@ from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
-Array = NDArray[np.float64]
-
 
 def mistimed(trial: Trial, shifts: ArrayLike) -> Trial:
     """The trial with every keyframe's posture some frames (K,) late; the same frames are scored."""
@@ -32,7 +31,7 @@ def mistimed(trial: Trial, shifts: ArrayLike) -> Trial:
     return replace(trial, take=replace(trial.take, keyframes=tuple(late)))
 
 
-def shifted(index: ArrayLike, shifts: ArrayLike, frame_count: int) -> NDArray[np.intp]:
+def shifted(index: ArrayLike, shifts: ArrayLike, frame_count: int) -> IndexArray:
     """Rising frames moved by shifts, as far as the clip and the order of the frames allow."""
     at = np.asarray(index, dtype=np.intp) + np.asarray(shifts, dtype=np.intp)
     order = np.arange(len(at))
@@ -64,7 +63,7 @@ def posed_through_lens(trial: Trial, factor: float) -> Trial:
     return replace(other, take=replace(other.take, keyframes=keyframes), truth=truth)
 
 
-def _deeper(camera: Camera, points: Array, frame: NDArray[np.intp], factor: float) -> Array:
+def _deeper(camera: Camera, points: Array, frame: IndexArray, factor: float) -> Array:
     """Steps (N, 3) [m] along the viewing axis that put the hips of N postures `factor` times as deep."""
     hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
     middle = points[:, hips].mean(axis=1)

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from clock import processor_time
 from keyframing import exact_postures, hand_posed, keyed
-from numpy.typing import NDArray
 from takes import GROUPS, chosen_takes, group_of, load_project, write_results
 from trials import Trial, read_trial
 
@@ -26,8 +25,6 @@ from keymark.core.estimate.terms.regions import ObservedRegions  # noqa: E402
 from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.prior.frame_prior import Belief, belief_from_keyframes, belief_from_standing  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
-
-Array = NDArray[np.float64]
 
 STARTS = ("standing", "earlier", "between")
 """No keyframe yet; all earlier ones; those before and after."""

@@ -12,22 +12,19 @@ from typing import Any
 
 import numpy as np
 from keyframing import exact_postures, hand_posed, keyed, random_source, spread_frames
-from numpy.typing import NDArray
 from scipy.stats import spearmanr
 from takes import GROUPS, chosen_takes, group_of, load_project, write_results
 from trials import Trial, read_trial
 
 load_project()
 
+from keymark.core.arrays import IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.confidence import TOLERANCE_SHARE  # noqa: E402
 from keymark.core.review.review import review  # noqa: E402
 from keymark.core.review.weak_frames import NEAREST  # noqa: E402
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 PER_100_FRAMES = (4, 8)
 """So few that another helps much, and nearly as many as a finished take has."""
@@ -95,19 +92,19 @@ def judge(trial: Trial, postures: Posture, count: int) -> Judged:
     )
 
 
-def error_with(trial: Trial, postures: Posture, frames: Indices, index: int) -> float:
+def error_with(trial: Trial, postures: Posture, frames: IndexArray, index: int) -> float:
     """Mean error [m] over all frames and points with one keyframe more."""
     more = keyed(trial, postures, np.union1d(frames, [index]))
     return float(np.linalg.norm(more.estimated("map").points - trial.truth, axis=-1).mean())
 
 
-def middle_of_widest_gap(frames: Indices) -> int:
+def middle_of_widest_gap(frames: IndexArray) -> int:
     """The frame in the middle of the first of the widest gaps."""
     widest = int(np.diff(frames).argmax())
     return int(frames[widest] + frames[widest + 1]) // 2
 
 
-def random_frames(trial: Trial, frames: Indices) -> list[int]:
+def random_frames(trial: Trial, frames: IndexArray) -> list[int]:
     """Some frames no nearer to a keyframe than those that are suggested, as far as there are any."""
     every = np.arange(len(trial.truth))
     distance = np.abs(every[:, None] - frames).min(axis=1)

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
 from takes import load_project
 
 load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
+from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
@@ -18,8 +17,6 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.core.take.take import Take, read_take  # noqa: E402
-
-Array = NDArray[np.float64]
 
 INTERPOLATIONS = {
     "linear": interpolate_linearly,

@@ -9,14 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from keymark.core.arrays import Array, BoolArray
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run, within
 from keymark.core.take.take import read_take
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 STEP = 6
 """Every sixth frame is rendered; keyframes are among them by chance only."""
@@ -92,7 +90,7 @@ def distances(rendered: RegionTracks, footage: RegionTracks, shift: int = 0) -> 
     return np.asarray(apart[both & np.isfinite(apart)])
 
 
-def _well_seen(tracks: RegionTracks) -> NDArray[np.bool_]:
+def _well_seen(tracks: RegionTracks) -> BoolArray:
     """(F, M) whether a marker shows enough of itself."""
     area = np.nan_to_num(tracks.area)
     return np.asarray(area >= LEAST_AREA_SHARE * area.max(axis=0))

@@ -14,7 +14,6 @@ from pathlib import Path
 import bpy
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tests"), str(Path(__file__).resolve().parent)]
@@ -22,6 +21,7 @@ from _boot import load_package  # noqa: E402
 
 load_package()
 
+from keymark.core.arrays import BoolArray  # noqa: E402
 from keymark.core.body.posture_fields import rounded  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
@@ -93,7 +93,7 @@ def make(described: Described, output: Path, threads: int | None) -> None:
 
 def _masks(
     performer: Performer, performance: Performance, room: BuiltRoom, described: Described
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """(F, M, height, width) where each marker is exactly visible in the middle of each exposure."""
     place_camera(described.camera)
     frames = []
@@ -105,9 +105,7 @@ def _masks(
     return np.stack(frames)
 
 
-def _write_data(
-    output: Path, performance: Performance, masks: NDArray[np.bool_], described: Described
-) -> None:
+def _write_data(output: Path, performance: Performance, masks: BoolArray, described: Described) -> None:
     indices = performance.middles
     body = performance.body
     points = principal_points(performance, indices)
@@ -147,7 +145,7 @@ def _keep_points_only(path: Path) -> None:
     _write_json(path, {"keyframes": keyframes})
 
 
-def _visibility(masks: NDArray[np.bool_]) -> dict[str, dict[str, list]]:
+def _visibility(masks: BoolArray) -> dict[str, dict[str, list]]:
     """Visible pixels and their centroid [px] by marker and frame; null where none is visible."""
     rows, columns = np.indices(masks.shape[2:]) + 0.5
     visible: dict[str, dict[str, list]] = {}
@@ -161,7 +159,7 @@ def _visibility(masks: NDArray[np.bool_]) -> dict[str, dict[str, list]]:
     return visible
 
 
-def _eyedropper(clip: Path, masks: NDArray[np.bool_]) -> tuple[MarkerStyle, ...]:
+def _eyedropper(clip: Path, masks: BoolArray) -> tuple[MarkerStyle, ...]:
     """One color a marker, as found in the encoded footage: the median inside its region over the clip."""
     capture = cv2.VideoCapture(str(clip))
     images = np.stack([capture.read()[1] for _ in masks])[..., ::-1]

@@ -1,12 +1,10 @@
 """Turning about the vertical."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from . import rotations
 from .posture import Posture
-
-Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 

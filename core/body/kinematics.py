@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from . import rotations
 from .actor import Actor
 from .human import HUMAN
 from .posture import Posture
 from .skeleton import Placement, Skeleton
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

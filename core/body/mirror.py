@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .actor import Actor
 from .posture import Posture
 from .skeleton import Skeleton
-
-Array = NDArray[np.float64]
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 """What the plane makes of each coordinate."""

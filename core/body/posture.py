@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from . import rotations
 from .skeleton import Skeleton
 
-Array = NDArray[np.float64]
-Index = int | slice | NDArray[np.intp] | NDArray[np.bool_] | tuple[slice | None, ...]
+Index = int | slice | IndexArray | BoolArray | tuple[slice | None, ...]
 
 
 @dataclass(frozen=True, eq=False)

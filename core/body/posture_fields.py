@@ -4,15 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
 from .posture import Posture
 from .skeleton import Skeleton
-
-Array = NDArray[np.float64]
 
 FARTHEST_M = 1000.0
 LARGEST_ANGLE_RAD = 4.0 * np.pi

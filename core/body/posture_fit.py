@@ -8,13 +8,11 @@ lowers the cost: plain Gauss-Newton wanders off by decimeters here.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray
 from .kinematics import Body
 from .posture import Posture
 from .posture_guess import guess_posture
-
-Array = NDArray[np.float64]
 
 POINT_STD_M = 0.003
 NEUTRAL_STD_RAD = {
@@ -111,7 +109,7 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
     return PostureFit(posture, residual)
 
 
-def _choose(mask: NDArray[np.bool_], first: Posture, second: Posture) -> Posture:
+def _choose(mask: BoolArray, first: Posture, second: Posture) -> Posture:
     return Posture(
         first.skeleton,
         np.where(mask[:, None], first.translation, second.translation),

@@ -1,14 +1,12 @@
 """A first posture from thirteen points by geometry alone, close enough for a local fit to succeed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from . import rotations
 from .kinematics import Body
 from .posture import Posture
 from .skeleton import SIDES
-
-Array = NDArray[np.float64]
 
 STRAIGHT = 0.15
 """Sine of the bend below which a limb's plane is taken from its rest pose rather than from its bend."""

@@ -7,12 +7,10 @@ fall to zero where they do not, limited so that no component overshoots its post
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from . import rotations
 from .posture import Posture
-
-Array = NDArray[np.float64]
 
 MONOTONE_LIMIT = 3.0
 """Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone."""
@@ -45,7 +43,7 @@ def straight_course(posed: Posture, knots: Array, at: Array) -> Posture:
     return posed[stretch].plus(share[:, None] * posed[1:].minus(posed[:-1])[stretch])
 
 
-def stretches(knots: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
+def stretches(knots: Array, at: Array) -> tuple[IndexArray, Array]:
     """Between which two knots (K,) each time (T,) lies, by the first of them, and how long after that one."""
     held = np.clip(at, knots[0], knots[-1])
     stretch = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)
@@ -65,7 +63,7 @@ def _tangents(slope: Array, gap: Array) -> Array:
 
 
 def _hermite(
-    posed: Posture, step: Array, gap: Array, tangent: Array, stretch: NDArray[np.intp], elapsed: Array
+    posed: Posture, step: Array, gap: Array, tangent: Array, stretch: IndexArray, elapsed: Array
 ) -> Array:
     """Tangent steps (F, D) from each time's earlier posture."""
     skeleton = posed.skeleton

@@ -5,10 +5,9 @@ References: Solà, Deray, Atchuthan (2018), *A micro Lie theory for state estima
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
+from ..arrays import Array, BoolArray
 
 SMALL_ANGLE = 1e-4
 """Below this angle [rad] the closed forms lose digits and their series are used."""
@@ -58,7 +57,7 @@ def cross_matrix(vector: Array) -> Array:
     return matrix
 
 
-def _tangent(rotation_vector: Array) -> tuple[Array, Array, NDArray[np.bool_], Array]:
+def _tangent(rotation_vector: Array) -> tuple[Array, Array, BoolArray, Array]:
     """[v]x, the angle, whether it is too small for closed forms, and an angle that may be divided by."""
     v = np.asarray(rotation_vector, dtype=np.float64)
     angle = np.linalg.norm(v, axis=-1)[..., None, None]

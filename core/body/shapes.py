@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from . import rotations
 from .kinematics import Body, Pose
-
-Array = NDArray[np.float64]
 
 # Half-widths (lateral, sagittal) at a segment's start and end, as shares of stature.
 HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
@@ -84,7 +82,7 @@ class PieceStack:
     """Several pieces side by side, so that all are placed and seen in one go."""
 
     segments: tuple[str, ...]
-    joint: NDArray[np.intp]
+    joint: IndexArray
     """(Q,) the joint each piece is fixed to."""
     start: Array
     """(Q, 3), like the other fields of `Piece` stacked."""

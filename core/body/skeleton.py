@@ -12,9 +12,9 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array, BoolArray, IndexArray
+
 Vector = tuple[float, float, float]
 Placement = dict[str, Vector]
 """A place in the parent's frame: for each of the actor's lengths a factor on x, y and z."""
@@ -107,7 +107,7 @@ class Skeleton:
         return tuple(i for i, joint in enumerate(self.joints) if joint.kind is JointKind.HINGE)
 
     @cached_property
-    def ball_dofs(self) -> NDArray[np.intp]:
+    def ball_dofs(self) -> IndexArray:
         """(B, 3) indices of the rotational degrees of freedom of each ball."""
         first = [
             self.dof_starts[i] + (3 if self.joints[i].kind is JointKind.FREE else 0) for i in self.ball_joints
@@ -115,7 +115,7 @@ class Skeleton:
         return np.asarray(first, dtype=np.intp)[:, None] + np.arange(3)
 
     @cached_property
-    def hinge_dofs(self) -> NDArray[np.intp]:
+    def hinge_dofs(self) -> IndexArray:
         """(H,) indices of the hinge angles."""
         return np.asarray([self.dof_starts[i] for i in self.hinge_joints], dtype=np.intp)
 
@@ -125,7 +125,7 @@ class Skeleton:
         return np.array([self.joints[i].axis for i in self.hinge_joints]).reshape(-1, 3)
 
     @cached_property
-    def moved_by(self) -> NDArray[np.bool_]:
+    def moved_by(self) -> BoolArray:
         """(J, D) whether each degree of freedom moves each joint's frame."""
         moved = np.zeros((len(self.joints), self.dof_count), dtype=bool)
         for i, joint in enumerate(self.joints):
@@ -135,7 +135,7 @@ class Skeleton:
         return moved
 
     @cached_property
-    def limbs(self) -> tuple[NDArray[np.intp], ...]:
+    def limbs(self) -> tuple[IndexArray, ...]:
         """Degrees of freedom by part of the body: first the trunk, then each chain of joints that leaves it.
 
         The trunk are the joints that others branch from.

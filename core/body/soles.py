@@ -5,13 +5,11 @@ the shin is upright.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .kinematics import Body, Pose
 from .posture import Posture
 from .skeleton import SIDES
-
-Array = NDArray[np.float64]
 
 HEEL_BEHIND = 0.32
 """From the ankle, as a share of the length from ankle to tip: about a quarter of a foot lies behind the ankle

@@ -1,15 +1,13 @@
 """How a person stands when nothing else is known: upright, arms hanging, facing -Y."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .heading import headed
 from .kinematics import Body
 from .posture import Posture
 from .shapes import HEAD_OVERSHOOT
 from .skeleton import SIDES
-
-Array = NDArray[np.float64]
 
 ARMS_LOWERED_RAD = float(np.radians(75.0))
 """From the T pose; sleeves keep the arms from the trunk."""

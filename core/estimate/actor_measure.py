@@ -10,8 +10,9 @@ to each other says more. Arms that point anywhere say nothing of their lengths; 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, IndexArray
 from ..body.actor import Actor
 from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
@@ -33,8 +34,6 @@ from .calibration import (
 from .performer_placement import ground_place
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import student_weight
-
-Array = NDArray[np.float64]
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are found, left and right alike; hands and feet follow from the height."""
@@ -144,7 +143,7 @@ class _Problem:
     """
 
     camera: Camera
-    frame: NDArray[np.intp]
+    frame: IndexArray
     average: Actor
     height_m: float
     place: Array

@@ -5,14 +5,11 @@ not from the library's own, which are lifted by feet that cannot bend.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.soles import sole_heights_m
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 TOUCHING_PERCENT = 30.0
 """In at least so many of the keyframes some sole is on the floor: more than half are, but for runners."""
@@ -21,7 +18,7 @@ SHOE_M = 0.012
 FOOTING_STD_M = 0.03
 
 
-def lower_ankle_m(body: Body, matched: Posture, index: Whole, frames: int) -> Array:
+def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
     """(F,) usual height of the lower ankle [m].
 
     Args:

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.linalg.lapack import dtrtri
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 REACH = 2
 """A frame is coupled to at most this many frames after it."""

@@ -7,14 +7,12 @@ center of the belief, so that few or badly posed keyframes change little.
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..footage.camera import Camera
 from ..observation.regions import MarkerPlacement, RegionModel
 from .terms.regions import ObservedRegions, feature_rows
-
-Array = NDArray[np.float64]
 
 PARAMETERS = tuple(field.name for field in fields(MarkerPlacement) if field.name != "segment")
 PRIOR_STD = np.array([0.08, 0.08, 0.012, 0.012, 0.20])
@@ -30,7 +28,7 @@ class KnownFrames:
 
     pose: Pose
     """Forward kinematics of K postures."""
-    frame: NDArray[np.intp]
+    frame: IndexArray
     """(K,) their indices in the clip."""
     observed: ObservedRegions
     """Regions of those K frames."""

@@ -4,12 +4,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +22,7 @@ class ClipState:
     body: Body
     prior: Posture
     """A batch of F postures."""
-    frame: NDArray[np.intp]
+    frame: IndexArray
     """(F,) their places in the clip, by which a moving camera knows its pose."""
     factor: Array
     """(D, D) the matrix L [m, rad]."""

@@ -7,10 +7,10 @@ section 5.4.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.stats import chi2, t
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 SIGMAS_OF_95_PERCENT = 1.96
 

@@ -8,9 +8,8 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import chunks
+from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.appearance import Appearance, learn_appearance
@@ -22,8 +21,6 @@ from .contour_search import Edges, find_edges
 from .keyframe_evidence import evenly_chosen
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
 from .terms.term import student_weight
-
-Array = NDArray[np.float64]
 
 LEARNED_FRAMES = 32
 CHUNK_FRAMES = 50
@@ -50,7 +47,7 @@ class ContourEvidence:
     model: ContourModel
     """The contours of the performer's own parts."""
 
-    def term(self, posture: Posture, frame: NDArray[np.intp]) -> Generator[float, None, ContourTerm]:
+    def term(self, posture: Posture, frame: IndexArray) -> Generator[float, None, ContourTerm]:
         """Measure the edges near the contours of F postures, as far as they are known.
 
         It yields the fraction done.
@@ -75,7 +72,7 @@ class ContourEvidence:
 
 
 def learn_contours(
-    body: Body, camera: Camera, album: Album, posture: Posture, keyframes: NDArray[np.intp]
+    body: Body, camera: Camera, album: Album, posture: Posture, keyframes: IndexArray
 ) -> Generator[None, None, ContourEvidence | None]:
     """Learn how performer and background look, and the shapes of the performer's parts.
 
@@ -106,7 +103,7 @@ def learn_contours(
 
 
 def _learn(
-    model: ContourModel, album: Album, posture: Posture, frame: NDArray[np.intp]
+    model: ContourModel, album: Album, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, Appearance]:
     count = min(LEARNED_FRAMES, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
@@ -124,8 +121,8 @@ def _look(
     album: Album,
     appearance: Appearance,
     posture: Posture,
-    frame: NDArray[np.intp],
-    pictures: tuple[NDArray[np.uint8], NDArray[np.bool_]],
+    frame: IndexArray,
+    pictures: tuple[Image, BoolArray],
 ) -> tuple[ContourPrediction, Edges]:
     pose = model.body.pose(posture)
     predicted = model.evaluate(pose, frame)
@@ -136,7 +133,7 @@ def _look(
 
 
 def _fitted(
-    model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: NDArray[np.intp]
+    model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, ContourModel]:
     """The model with shapes that explain the edges of postures known best."""
     stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)

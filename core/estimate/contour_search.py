@@ -9,15 +9,12 @@ curve density algorithm*, fit curves to two sides' statistics): colors that do n
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
 from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
 from ..observation.occlusion import HIDDEN_DEPTH_M, Covers, outline_depth
-
-Array = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 REACH = 6
 """How far along the normal an edge is looked for, in pixels of the pictures."""
@@ -45,7 +42,7 @@ def find_edges(
     model: ContourModel,
     predicted: ContourPrediction,
     pose: Pose,
-    frame: NDArray[np.intp],
+    frame: IndexArray,
     pictures: Image,
     factor: int,
     appearance: Appearance,
@@ -84,12 +81,12 @@ def find_edges(
 
 def _evidence(
     appearance: Appearance,
-    part: NDArray[np.intp],
-    behind: NDArray[np.intp],
-    row: NDArray[np.intp],
-    column: NDArray[np.intp],
+    part: IndexArray,
+    behind: IndexArray,
+    row: IndexArray,
+    column: IndexArray,
     seen: Image,
-) -> tuple[Array, NDArray[np.bool_]]:
+) -> tuple[Array, BoolArray]:
     """Log likelihood ratios (E, K) of parts to what lies behind them, and whether both are known (E,)."""
     own = appearance.part(part[:, None], seen)
     other = np.empty_like(own)
@@ -117,7 +114,7 @@ def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
 
 def _surroundings(
     model: ContourModel, predicted: ContourPrediction, parts: Covers, factor: int
-) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+) -> tuple[IndexArray, BoolArray]:
     """Which part lies behind each contour sample, -1 for none, and whether its edge is there to be seen."""
     normal = factor * predicted.normal
     own = np.eye(len(model.parts.segments), dtype=bool)[model.part_of]

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaincinv  # scipy.stats, which has chi2 by name, takes a second to import
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
@@ -33,8 +33,6 @@ from ..progress import Part, Preview
 from . import fuzzy
 from .filter_options import FilterOptions
 from .measurement_update import normalized_innovation_squared, update
-
-Array = NDArray[np.float64]
 
 LEAST_QUALITY = 0.05
 """Below this a region's noise grows no further; its gate still holds."""
@@ -63,9 +61,9 @@ class FilterResult:
     """(F, D, D) of a tangent step at each posture."""
     normalized_innovation_squared: Array
     """(F,) of all rows that were used; χ² with `row_count` degrees of freedom if the model is right."""
-    row_count: NDArray[np.intp]
+    row_count: IndexArray
     """(F,) number of rows that were used."""
-    gated: NDArray[np.bool_]
+    gated: BoolArray
     """(F, M) whether a marker was so unlikely that it was believed in part only."""
 
 
@@ -76,7 +74,7 @@ class Correction:
     state: State
     normalized_innovation_squared: float
     row_count: int
-    gated: NDArray[np.bool_]
+    gated: BoolArray
     """(M,)."""
 
 
@@ -190,7 +188,7 @@ class FuzzyKalmanFilter:
 
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
-    ) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
+    ) -> tuple[list[Array], list[Array], BoolArray]:
         """Scaled rows and innovations of the markers seen; which of them are past their gate, (M,)."""
         predicted = self.line_ends.evaluate(pose, frame)
         std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))

@@ -11,8 +11,8 @@ from collections.abc import Generator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
 from .calibration import (
@@ -27,8 +27,6 @@ from .calibration import (
 from .posing_error import posing_covariance, velocities
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import student_weight
-
-Array = NDArray[np.float64]
 
 LEAST_TRUSTED = 0.3
 """Regions hidden or doubted further than this do not judge a keyframe."""
@@ -101,7 +99,7 @@ def read_keyframes(
     observed: ObservedRegions,
     width_px: Array,
     posture: Posture,
-    frame: NDArray[np.intp],
+    frame: IndexArray,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate the markers on the keyframes and judge the keyframes by the markers.
 
@@ -145,7 +143,7 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
 
 
-def evenly_chosen(frame: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+def evenly_chosen(frame: IndexArray, most: int) -> IndexArray:
     """Which of the keyframes at increasing frames speak for all: one more or less changes little of it."""
     if len(frame) <= most:
         return np.arange(len(frame))
@@ -275,7 +273,7 @@ def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -
     return change, np.asarray(squared[..., 0, 0])
 
 
-def _distrust(squared: Array, usable: NDArray[np.bool_]) -> Array:
+def _distrust(squared: Array, usable: BoolArray) -> Array:
     """(M,) factors: each marker's median misfit against what it should be, or the others' if larger."""
     # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
     usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3

@@ -8,17 +8,14 @@ misses across the line of sight it misses along it too. The library is left out 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import chunks
+from ..arrays import Array, chunks
 from ..body.posture import Posture
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..prior.performer_offset import unforeseen
-
-Array = NDArray[np.float64]
 
 FEWEST_POSED = 2
 """Fewer posed keyframes than these have nothing between them."""

@@ -9,16 +9,14 @@ from collections.abc import Generator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
 from .match_error import match_covariance
 from .posing_error import posing_covariance
 from .terms.regions import ObservedRegions, RegionNoise
-
-Array = NDArray[np.float64]
 
 FEWEST_POSED = 2
 """Fewer posed keyframes than these calibrate nothing."""
@@ -30,7 +28,7 @@ def read_trust(
     observed: ObservedRegions,
     width_px: Array,
     posture: Posture,
-    frame: NDArray[np.intp],
+    frame: IndexArray,
     doubt: Array,
 ) -> Generator[None, None, KeyframeEvidence]:
     """The evidence of keyframes of which some may be matched; arguments as `read_keyframes`.

@@ -6,14 +6,12 @@ line of sight follows from where the markers are seen, the one along it from lit
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..footage.camera import Camera
 from ..observation.depths import DEPTH_STD_M
-
-Array = NDArray[np.float64]
 
 JOINT_STD_DEG = {
     "pelvis": 9.0,
@@ -48,7 +46,7 @@ def joint_std_rad(skeleton: Skeleton) -> Array:
     return np.radians(degrees)
 
 
-def match_covariance(posture: Posture, camera: Camera, frame: NDArray[np.intp]) -> Array:
+def match_covariance(posture: Posture, camera: Camera, frame: IndexArray) -> Array:
     """The usual error of K matched keyframes, as covariance (K, D, D) of the posture's tangent."""
     index = np.arange(posture.skeleton.dof_count)
     covariance = np.zeros((len(frame), len(index), len(index)))
@@ -59,7 +57,7 @@ def match_covariance(posture: Posture, camera: Camera, frame: NDArray[np.intp]) 
     return covariance
 
 
-def depth_std_m(index: NDArray[np.intp], matched: NDArray[np.bool_], frames: int) -> Array:
+def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
 
     Args:
@@ -71,7 +69,7 @@ def depth_std_m(index: NDArray[np.intp], matched: NDArray[np.bool_], frames: int
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def undecided_covariance(points: Array, camera: Camera, index: NDArray[np.intp], doubt: Array) -> Array:
+def undecided_covariance(points: Array, camera: Camera, index: IndexArray, doubt: Array) -> Array:
     """What matched keyframes leave open of points (F, P, 3), as covariance (F, P, 3, 3) [m²].
 
     Args:

@@ -7,10 +7,9 @@ section 5.2.6 for Joseph's form, 5.4 for the normalized innovation squared.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 
 class Update(NamedTuple):

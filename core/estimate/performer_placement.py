@@ -6,8 +6,9 @@ against each other. Without any region the body is placed so that the picture ho
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, BoolArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.standing_posture import facing_rad, hip_height_m, standing_posture
@@ -15,8 +16,6 @@ from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
-
-Array = NDArray[np.float64]
 
 FILLED_SHARE = 0.7
 """Share of the picture's height that a body fills of which nothing is seen."""
@@ -116,7 +115,7 @@ def ground_place(
     return np.asarray(location + far[0] * down)
 
 
-def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> NDArray[np.bool_]:
+def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> BoolArray:
     """(M,) the markers to be placed by: the trunk and the shins, else whatever is seen."""
     if regions is None:
         return np.zeros(len(segments), dtype=bool)
@@ -125,17 +124,17 @@ def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> NDArray[
     return np.asarray(trunk if trunk.any() else seen)
 
 
-def _bound(segments: tuple[str, ...], *parts: str) -> NDArray[np.bool_]:
+def _bound(segments: tuple[str, ...], *parts: str) -> BoolArray:
     return np.array([segment.split(".")[0] in parts for segment in segments])
 
 
-def _center(centroid: Array, known: NDArray[np.bool_]) -> Array:
+def _center(centroid: Array, known: BoolArray) -> Array:
     return np.asarray(centroid[known].mean(axis=0))
 
 
 def _relative_size(
     segments: tuple[str, ...],
-    known: NDArray[np.bool_],
+    known: BoolArray,
     shown: Array,
     shown_area: Array,
     seen: Array,

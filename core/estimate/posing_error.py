@@ -7,12 +7,10 @@ sizes are not.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-
-Array = NDArray[np.float64]
 
 POINT_STD_M = 0.014
 """Error of each point along each axis [m]."""
@@ -33,7 +31,7 @@ def posing_covariance(body: Body, pose: Pose) -> Array:
     return np.asarray(0.5 * (covariance + np.swapaxes(covariance, -1, -2)))
 
 
-def velocities(keyframes: Posture, frame: NDArray[np.intp]) -> Array:
+def velocities(keyframes: Posture, frame: IndexArray) -> Array:
     """How K keyframes' postures move, (K, D) of the tangent per frame: the parabola through three of them."""
     if len(frame) < 2:
         return np.zeros((len(frame), keyframes.skeleton.dof_count))

@@ -4,10 +4,9 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from ..arrays import chunks
+from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
@@ -30,8 +29,6 @@ from .match_error import undecided_covariance
 from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .unobserved_variance import unseen_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
-
-Array = NDArray[np.float64]
 
 CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6

@@ -9,8 +9,8 @@ believed is among the candidates, so the markers never make the posture less pro
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.region_tracks import ExpectedRegions
@@ -25,8 +25,6 @@ from .terms.limits import LimitTerm
 from .terms.quadratic import QuadraticBuilder
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
 from .terms.term import NormalEquations, Term
-
-Array = NDArray[np.float64]
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 LARGEST_STEP = 0.4
@@ -78,7 +76,7 @@ def fit_frame(
 
 
 def calibrated(
-    model: RegionModel, observed: ObservedRegions, keyframes: Posture, frame: NDArray[np.intp]
+    model: RegionModel, observed: ObservedRegions, keyframes: Posture, frame: IndexArray
 ) -> KeyframeEvidence:
     """What keyframes tell of the markers, where there are enough of them to tell.
 

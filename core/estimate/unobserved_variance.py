@@ -10,11 +10,9 @@ still: 47 to 68 % in three of the six.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.skeleton import Skeleton
-
-Array = NDArray[np.float64]
 
 GRACE_S = 0.25
 """Time for which the estimate's own covariance holds."""
@@ -30,8 +28,8 @@ FARTHEST_M = 2.0
 def unseen_variance(
     skeleton: Skeleton,
     segments: tuple[str, ...],
-    visible: NDArray[np.bool_],
-    keyframes: NDArray[np.intp],
+    visible: BoolArray,
+    keyframes: IndexArray,
     time_s: Array,
 ) -> Array:
     """What is open of postures (F, D), beyond their covariance, where nothing tells of them [m², rad²].
@@ -60,7 +58,7 @@ def unseen_variance(
     return std**2
 
 
-def _since(told: NDArray[np.bool_], time_s: Array) -> Array:
+def _since(told: BoolArray, time_s: Array) -> Array:
     """(F,) time from the nearest frame of which something tells, beyond the grace [s]."""
     if not told.any():
         return np.full(len(time_s), FARTHEST_M / WALKED_M_PER_S)

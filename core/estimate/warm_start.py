@@ -12,9 +12,9 @@ Of 100 s with a keyframe moved or added, measured against estimating all anew: 0
 from dataclasses import fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from ..arrays import Array, BoolArray
 from ..footage.camera import Camera
 from .calibration import PRIOR_STD, placement_values
 from .keyframe_evidence import KeyframeEvidence, keyframe_information
@@ -22,9 +22,6 @@ from .posing_error import posing_covariance, velocities
 from .terms.regions import ObservedRegions
 from .window_problem import ClipProblem
 from .windows import Window, windows
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 SAME = 1e-7
 """Differences of a posture's unknowns [m, rad] that come of reading it from Blender once more."""
@@ -90,7 +87,7 @@ def _same_factor(one: Array, other: Array) -> bool:
     return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME_FACTOR)
 
 
-def changed_frames(earlier: ClipProblem, now: ClipProblem) -> Mask:
+def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) frames of which anything differs but the evidence: prior, keyframe, or what was seen."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
     changed |= _seen_differently(earlier.observed, now.observed)
@@ -103,13 +100,13 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> Mask:
     return changed
 
 
-def _footed_differently(earlier: ClipProblem, now: ClipProblem) -> Mask:
+def _footed_differently(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     if earlier.footing_m is None or now.footing_m is None:
         return np.full(now.frames, earlier.footing_m is not now.footing_m)
     return np.abs(now.footing_m - earlier.footing_m) > SAME_FOOTING_M
 
 
-def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> Mask:
+def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> BoolArray:
     changed = np.zeros(len(one.quality), dtype=bool)
     for field in fields(ObservedRegions):
         a, b = getattr(one, field.name), getattr(other, field.name)
@@ -118,7 +115,7 @@ def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> Mask:
     return changed
 
 
-def revised_windows(changed: Mask, length: int, margin: int) -> list[Window]:
+def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
     """Windows around changed frames (F,), in order; none overlaps another in what it keeps.
 
     Args:
@@ -147,7 +144,7 @@ def revised_windows(changed: Mask, length: int, margin: int) -> list[Window]:
     ]
 
 
-def revised_share(changed: Mask, margin: int) -> Array:
+def revised_share(changed: BoolArray, margin: int) -> Array:
     """(F,) how much of each frame is of the new estimate, in its windows, and not of the earlier one.
 
     Both are right a while away from the change; from one to the other there must not be a jump.

@@ -10,8 +10,8 @@ annealed, so that early steps do not lock on to a wrong visibility.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
@@ -29,8 +29,6 @@ from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import changed_frames, held, revised_share, revised_windows, same_setting
 from .window_problem import ClipProblem
 from .windows import Window, windows
-
-Array = NDArray[np.float64]
 
 MARKERS_SHARE = 0.5
 """Share of the work that is done before contours are looked for."""

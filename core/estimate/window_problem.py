@@ -4,8 +4,8 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
@@ -25,8 +25,6 @@ from .terms.smoothness import SmoothnessTerm
 from .terms.stillness import StillnessTerm
 from .terms.term import NormalEquations, Term
 from .windows import Window
-
-Array = NDArray[np.float64]
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
 FAR_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
@@ -58,7 +56,7 @@ class ClipProblem:
     """(D, D) of the deviation's accelerations."""
     prior: Posture
     """A batch of F postures."""
-    keyframes: NDArray[np.intp]
+    keyframes: IndexArray
     """(K,) frames whose prior was posed."""
     observed: ObservedRegions
     width_px: Array
@@ -66,7 +64,7 @@ class ClipProblem:
     step_s: Array
     """(F - 1,) time between frames [s]."""
     noise: RegionNoise
-    matched: NDArray[np.bool_]
+    matched: BoolArray
     """(K,) which keyframes nobody posed."""
     depth_std_m: Array
     """(F,) how far the prior's depths may be off [m]."""

@@ -8,11 +8,9 @@ section 7.5). The handles' heights are then `value + slope * length / 3` and `va
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dpbsv
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from ..arrays import Array, BoolArray, IndexArray
 
 SLOPE_TRUST = 0.05
 """Weight of the frames' own slope at a key [frames]: it decides where no frame lies between two keys."""
@@ -24,7 +22,7 @@ BAND = 3
 class Spline:
     """K keys of C curves that share their frames."""
 
-    keys: Indices
+    keys: IndexArray
     """(K,) positions of the keys among the frames, rising."""
     values: Array
     """(K, C)."""
@@ -35,7 +33,7 @@ class Spline:
         """Values (N, C) at the frames `first` to `last`, both included, which lie between the outer keys."""
         return self._at(times, np.arange(first, last + 1))
 
-    def with_keys(self, times: Array, new: Indices) -> "Spline":
+    def with_keys(self, times: Array, new: IndexArray) -> "Spline":
         """The spline with further keys on its own curve (between its outer keys): nothing moves yet."""
         fresh = np.setdiff1d(new, self.keys).astype(np.intp)
         keys = np.concatenate([self.keys, fresh])
@@ -56,11 +54,11 @@ class Spline:
         """The keys of the curves `first` up to but without `last`."""
         return Spline(self.keys, self.values[:, first:last], self.slopes[:, first:last])
 
-    def _pieces(self, frames: Indices) -> Indices:
+    def _pieces(self, frames: IndexArray) -> IndexArray:
         """(N,) the stretch between two keys that each frame lies in."""
         return np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
 
-    def _at(self, times: Array, frames: Indices) -> Array:
+    def _at(self, times: Array, frames: IndexArray) -> Array:
         piece = self._pieces(frames)
         v0, m0, v1, m1 = _basis(times, self.keys, frames, piece).T[..., None]
         return np.asarray(
@@ -70,7 +68,7 @@ class Spline:
             + m1 * self.slopes[piece + 1]
         )
 
-    def _slope_at(self, times: Array, frames: Indices) -> Array:
+    def _slope_at(self, times: Array, frames: IndexArray) -> Array:
         piece = self._pieces(frames)
         start = times[self.keys[piece]]
         length = (times[self.keys[piece + 1]] - start)[:, None]
@@ -83,7 +81,7 @@ class Spline:
         )
 
 
-def fit_keys(times: Array, data: Array, keys: Indices, exact: Indices) -> Spline:
+def fit_keys(times: Array, data: Array, keys: IndexArray, exact: IndexArray) -> Spline:
     """The spline with given keys that is nearest to the data in the sense of least squares.
 
     Args:
@@ -96,7 +94,7 @@ def fit_keys(times: Array, data: Array, keys: Indices, exact: Indices) -> Spline
     return refit(times, data, start, 0, len(keys) - 1, exact)
 
 
-def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exact: Indices) -> Spline:
+def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exact: IndexArray) -> Spline:
     """Fit the keys `first` to `last` (counted among the keys, both included) anew; all others stay.
 
     Args:
@@ -127,7 +125,7 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     return Spline(spline.keys, values, slopes)
 
 
-def _normal_equations(times: Array, data: Array, keys: Indices) -> tuple[Array, Array]:
+def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Array, Array]:
     """What the frames from the first to the last of K keys ask of values and slopes in turn.
 
     Returns:
@@ -150,14 +148,14 @@ def _normal_equations(times: Array, data: Array, keys: Indices) -> tuple[Array, 
     return band, right
 
 
-def _among(keys: Indices, chosen: Indices) -> NDArray[np.bool_]:
+def _among(keys: IndexArray, chosen: IndexArray) -> BoolArray:
     """(K,) whether each key is one of the rising, chosen frames."""
     if not len(chosen):
         return np.zeros(len(keys), dtype=bool)
     return np.asarray(chosen[np.minimum(np.searchsorted(chosen, keys), len(chosen) - 1)] == keys)
 
 
-def _basis(times: Array, keys: Indices, frame: Indices, piece: Indices) -> Array:
+def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray) -> Array:
     """(N, 4) factors of the earlier key's value and slope and of the later one's, at each frame."""
     at = times[keys]
     start, length = at[piece], np.diff(at)[piece]
@@ -171,13 +169,13 @@ def _basis(times: Array, keys: Indices, frame: Indices, piece: Indices) -> Array
     return basis
 
 
-def _slopes(times: Array, data: Array, keys: Indices) -> Array:
+def _slopes(times: Array, data: Array, keys: IndexArray) -> Array:
     """(K, C) the data's slope at each key, from the frames beside it."""
     before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
     return np.asarray((data[after] - data[before]) / (times[after] - times[before])[:, None])
 
 
-def _solve(band: Array, right: Array, held: NDArray[np.bool_], known: Array) -> Array:
+def _solve(band: Array, right: Array, held: BoolArray, known: Array) -> Array:
     """Solve a banded system in which some unknowns are known: their rows and columns are taken out."""
     fixed = np.where(held[:, None], known, 0.0)
     for apart in range(1, BAND + 1):

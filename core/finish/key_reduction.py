@@ -13,14 +13,11 @@ from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from .hermite import Spline
 from .keyed_body import KeyedBody
 from .rig import Rig
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 GENEROUS = 0.5
 """Share of the tolerance within which keys are added first: the choice among them comes by taking away."""
@@ -53,7 +50,7 @@ def reduce_keys(
     times: Array,
     values: Sequence[Array],
     tolerance_m: float | Array,
-    exact: Indices,
+    exact: IndexArray,
     whole_pose: bool = False,
 ) -> Generator[float, None, ReducedKeys]:
     """Find few keys whose curves keep all joints and ends within a tolerance.
@@ -106,7 +103,7 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
         body.show()
 
 
-def _places_for_keys(body: KeyedBody, blame: Array) -> list[Indices]:
+def _places_for_keys(body: KeyedBody, blame: Array) -> list[IndexArray]:
     """For each group the frames that should become keys, or be pinned, at most one from key to key."""
     most = blame.max(axis=0)
     places = []

@@ -4,14 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
 from .hermite import Spline, fit_keys, refit
 from .rig import Rig, Shown
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 REACH = 3
 """How many keys on either side of a new or removed one are fitted anew."""
@@ -39,7 +36,7 @@ class KeyedBody:
         times: Array,
         values: Sequence[Array],
         tolerance_m: Array,
-        exact: Indices,
+        exact: IndexArray,
         groups: Sequence[tuple[int, ...]],
     ) -> None:
         """Keys at the first, the last and the exact frames only.
@@ -87,7 +84,7 @@ class KeyedBody:
                 found[bone] = spline.columns(first, last)
         return tuple(found[bone] for bone in range(len(self.rig.bones)))
 
-    def insert(self, group: int, frames: Indices, everywhere: bool) -> None:
+    def insert(self, group: int, frames: IndexArray, everywhere: bool) -> None:
         """Add keys to a group and fit all its keys anew, or only those near the new ones.
 
         A frame that is a key already is pinned: from now on the key has the goal's own value.
@@ -124,7 +121,7 @@ class KeyedBody:
         self.shown.rotation[:, trial.frames] = trial.shown.rotation
         self.shown.points[trial.frames] = trial.shown.points
 
-    def blame(self, group: int, off: NDArray[np.bool_]) -> Array:
+    def blame(self, group: int, off: BoolArray) -> Array:
         """How far a group's own error moves a point that is off.
 
         Args:

@@ -9,16 +9,14 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
 from .contacts import STRAY_M, Contact, find_contacts
 from .rig import Rig
-
-Array = NDArray[np.float64]
 
 FADE_S = 0.2
 """How long a correction takes to fade on either side of a rest."""
@@ -111,7 +109,7 @@ def tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequenc
     return allowed
 
 
-def _changing(body: Body) -> NDArray[np.intp]:
+def _changing(body: Body) -> IndexArray:
     """Degrees of freedom that may change: the hips' place and the legs."""
     names = body.skeleton.dof_names
     return np.array([i for i, name in enumerate(names) if _kind(name) in CHANGE_STD], dtype=np.intp)
@@ -123,7 +121,7 @@ def _kind(name: str) -> str:
     return f"{first}.{last.partition('_')[0]}" if first == "pelvis" else first
 
 
-def _goal(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _goal(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[Array, BoolArray]:
     """Where each ankle shall be, (F, 2, 3), and the frames in which that is elsewhere than before."""
     goal = places.copy()
     touched = np.zeros(len(time_s), dtype=bool)
@@ -155,8 +153,8 @@ def _step(
     posture: Posture,
     ankles: list[int],
     goal: Array,
-    touched: NDArray[np.bool_],
-    dofs: NDArray[np.intp],
+    touched: BoolArray,
+    dofs: IndexArray,
     std: Array,
     delta: Array,
     time_s: Array,
@@ -180,7 +178,7 @@ def _step(
     return equations.factorise().solve(-gradient)
 
 
-def _changed(posture: Posture, delta: Array, touched: NDArray[np.bool_]) -> Posture:
+def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:
     """The posture with changes (F, D) in the touched frames; the others keep their very numbers."""
     moved = posture.plus(delta)
     return Posture(

@@ -17,10 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.intp]
-Image = NDArray[np.uint8]
+from ..arrays import Array, BoolArray, Image, IndexArray
 
 NOTHING: Final = -1
 """Label of pixels where no part of the body is."""
@@ -64,17 +61,17 @@ class Appearance:
         steady: whether the background stands still, so that what differs from it is something else.
     """
 
-    parts: FloatArray
-    color: FloatArray
-    deviation: FloatArray
+    parts: Array
+    color: Array
+    deviation: Array
     known: BoolArray
     steady: bool
 
-    def part(self, index: IntArray, pixels: Image) -> FloatArray:
+    def part(self, index: IndexArray, pixels: Image) -> Array:
         """Return the log density of pixels (..., 3) as parts of index (...), broadcast against them."""
         return np.asarray(self.parts[index, _cells(pixels)])
 
-    def background(self, row: IntArray, column: IntArray, pixels: Image) -> FloatArray:
+    def background(self, row: IndexArray, column: IndexArray, pixels: Image) -> Array:
         """Return the log density of pixels (..., 3) as the background at rows and columns (...).
 
         In float64: exponentials of float32 differ between versions of numpy in their last digit, and edges
@@ -116,7 +113,7 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
     return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 
-def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IntArray:
+def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IndexArray:
     """Return the color cells seen inside parts and well outside them, each part's after the last's."""
     rows, columns = np.nonzero(_interior(label) & (label != NOTHING))
     inside = label[rows, columns].astype(np.intp) * _CELLS + _cells(image[rows, columns])
@@ -124,7 +121,7 @@ def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) ->
     return np.concatenate([inside, parts * _CELLS + _cells(image[sparse][~near[sparse]])])
 
 
-def _cells(pixels: Image) -> IntArray:
+def _cells(pixels: Image) -> IndexArray:
     """Return the color cell of pixels (..., 3), coarser than those that tell markers apart."""
     reduced = (pixels >> (8 - _BITS)).astype(np.intp)
     return np.asarray((reduced[..., 0] << 2 * _BITS) | (reduced[..., 1] << _BITS) | reduced[..., 2])
@@ -137,7 +134,7 @@ def _interior(label: NDArray[np.int8]) -> BoolArray:
     return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
 
 
-def _log_densities(counts: IntArray) -> FloatArray:
+def _log_densities(counts: IndexArray) -> Array:
     """Return the logarithm of smoothed histograms (rows, cells) as densities per level³."""
     smoothed = counts.astype(np.float64).reshape(-1, _LEVELS, _LEVELS, _LEVELS)
     for _ in range(3):  # each time along what is the last axis, and turns them
@@ -148,7 +145,7 @@ def _log_densities(counts: IntArray) -> FloatArray:
     return np.asarray(density.astype(np.float32))
 
 
-def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[Array, Array]:
     """Return the median color (rows, columns, 3) and the largest channel's deviation of free pixels."""
     color = _median(stack, free)
     distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), free)

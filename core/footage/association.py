@@ -13,15 +13,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IntArray
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import MOMENT_POWERS
 from .segmentation.regions import Regions
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 _HIDING_COST: Final = 4.0
 """Cost of hiding at all: a marker seen a moment ago is seen again in 98 of 100 frames."""
@@ -66,19 +62,19 @@ class Candidates:
     """
 
     frame: IntArray
-    moments: FloatArray
-    box: FloatArray
-    certainty: FloatArray
+    moments: Array
+    box: Array
+    certainty: Array
     clipped: BoolArray
     start: IntArray
 
     @property
-    def centroid(self) -> FloatArray:
+    def centroid(self) -> Array:
         """Centroids, (N, 2) px."""
         return np.asarray(self.moments[:, 1:3] / self.moments[:, :1])
 
     @property
-    def area(self) -> FloatArray:
+    def area(self) -> Array:
         """Areas, (N,) px."""
         return np.asarray(self.moments[:, 0])
 
@@ -152,7 +148,7 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     return np.asarray(around[index] >= _STILL_SHARE * frames)
 
 
-def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
+def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """Return the index of the marker's main region in each frame, (F,); -1 where it is hidden.
 
     Args:
@@ -197,7 +193,7 @@ def main_path(found: Candidates, unary: FloatArray, size_px: float) -> IntArray:
 
 def region_costs(
     found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
-) -> FloatArray:
+) -> Array:
     """Return the cost of taking each region for the marker, (N,), by area, color, rest and expected place.
 
     Args:
@@ -222,7 +218,7 @@ def rivals_costs(
     expected: ExpectedRegions | None,
     marker: int,
     rivals: Sequence[int],
-) -> FloatArray:
+) -> Array:
     """Return what each region costs more, (N,), because markers of the same color may be what it is.
 
     Args:
@@ -240,7 +236,7 @@ def rivals_costs(
     return np.asarray(cost)
 
 
-def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> FloatArray:
+def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> Array:
     """Return how far each region lies from the marker's expected place, (N,) in radii; NaN where unknown."""
     relative = np.full(len(found.frame), np.nan)
     if expected is not None:

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..files.fields import Fields
 from .camera_fields import read_distortion, read_poses, read_resolution
-
-FloatArray = NDArray[np.float64]
 
 LENGTHS_MM = (0.1, 100_000.0)
 """A focal length or a sensor's width lies between these [mm]."""
@@ -46,7 +45,7 @@ class Camera:
     lens_mm: float
     sensor_width_mm: float
     resolution: tuple[int, int]
-    matrix_world: FloatArray
+    matrix_world: Array
     shift_x: float = 0.0
     shift_y: float = 0.0
     distortion: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -111,12 +110,12 @@ class Camera:
         return self.lens_mm / self.sensor_width_mm * self.resolution[0]
 
     @property
-    def principal_point(self) -> FloatArray:
+    def principal_point(self) -> Array:
         """Pixel the optical axis meets, (2,): the image's center moved against the shifts."""
         width, height = self.resolution
         return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
 
-    def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Take world points (..., 3) in meters to camera coordinates (..., 3) in meters.
 
         Args:
@@ -133,24 +132,24 @@ class Camera:
             return np.asarray(offset @ rotation)
         return np.asarray(np.einsum("...ji,...j->...i", rotation, offset))
 
-    def sight(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def sight(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Return the unit directions (..., 3), in world axes, in which world points (..., 3) are seen."""
         _, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
         return np.asarray(offset / np.linalg.norm(offset, axis=-1, keepdims=True))
 
-    def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Return the distance along the viewing axis (...) in meters of world points (..., 3)."""
         return -self.world_to_camera(points, frame)[..., 2]
 
-    def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Return d depth / d world point, (..., 3): the viewing direction, the same for every point."""
         rotation, _ = self.pose(frame)
         points = np.asarray(points, dtype=np.float64)
         shape = np.broadcast_shapes(points.shape, rotation[..., 2].shape)
         return np.array(np.broadcast_to(-rotation[..., 2], shape))
 
-    def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+    def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
         """Project world points to the image.
 
         Args:
@@ -167,12 +166,12 @@ class Camera:
         # Columns and rows lie in planes of their own in memory, as those who compute with them like best.
         return np.moveaxis(np.stack([column + scale * x, row - scale * y]), 0, -1), depth
 
-    def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def project_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Return d pixel / d world point, (..., 2, 3) in pixels per meter; NaN behind the camera."""
         rotation, _ = self.pose(frame)
         return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
 
-    def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> FloatArray:
+    def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
         """Return how pixels move with the bodies that hold their points, in the camera's own axes.
 
         This is the interaction matrix of visual servoing (Chaumette & Hutchinson 2006, *Visual servo control,
@@ -201,7 +200,7 @@ class Camera:
         rates *= self.focal_px * np.array([1.0, -1.0]).reshape(2, *[1] * (rates.ndim - 1))
         return np.moveaxis(rates, (0, 1), (-2, -1))
 
-    def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+    def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
         """Return the line of sight of each pixel.
 
         Args:
@@ -219,7 +218,7 @@ class Camera:
         camera /= np.linalg.norm(camera, axis=-1, keepdims=True)
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
-    def pose(self, frame: ArrayLike | None = None) -> tuple[FloatArray, FloatArray]:
+    def pose(self, frame: ArrayLike | None = None) -> tuple[Array, Array]:
         """Return the camera's orientation (..., 3, 3), its axes as columns, and its place (..., 3) in meters.
 
         Args:
@@ -236,19 +235,19 @@ class Camera:
         return matrix[..., :3, :3], matrix[..., :3, 3]
 
     @staticmethod
-    def _normalized(camera: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _normalized(camera: Array) -> tuple[Array, Array, Array]:
         """Return x, y at unit depth, NaN behind the camera, and the depth."""
         depth = -camera[..., 2]
         before = np.where(depth > 0.0, depth, np.nan)
         return camera[..., 0] / before, camera[..., 1] / before, depth
 
-    def _radial_factor(self, radius_squared: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _radial_factor(self, radius_squared: Array) -> tuple[Array, Array]:
         """Return the distortion factor and its derivative by the squared radius."""
         k1, k2, k3 = self.distortion
         factor = 1.0 + radius_squared * (k1 + radius_squared * (k2 + radius_squared * k3))
         return factor, k1 + radius_squared * (2.0 * k2 + 3.0 * k3 * radius_squared)
 
-    def _undistort(self, distorted: FloatArray) -> FloatArray:
+    def _undistort(self, distorted: Array) -> Array:
         """Invert the radial polynomial by Newton's method on the radius, from the distorted radius."""
         if not any(self.distortion):
             return distorted

@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import shown
 from ..files.number_lists import number_array
-
-FloatArray = NDArray[np.float64]
 
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0
@@ -64,7 +62,7 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
     return float(padded[0]), float(padded[1]), float(padded[2])
 
 
-def read_poses(fields: Fields) -> FloatArray:
+def read_poses(fields: Fields) -> Array:
     """Return the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
     A uniform scale, as Blender's camera objects may carry, is taken out: it does not change what a camera
@@ -81,7 +79,7 @@ def read_poses(fields: Fields) -> FloatArray:
     return fixed if poses is None else poses
 
 
-def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> FloatArray:
+def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:
     matrices = number_array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
         raise InputError(f"{fields.at(name)}: {name} has the wrong form; it must be {valid}")
@@ -95,7 +93,7 @@ def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> FloatArray:
     return stacked.reshape(matrices.shape)
 
 
-def _first_fault(matrices: FloatArray) -> tuple[int, str] | None:
+def _first_fault(matrices: Array) -> tuple[int, str] | None:
     """Return the index of the first of (F, 4, 4) that is no pose, and what is wrong with it."""
     last = np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1) > _ROTATION_TOLERANCE
     far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
@@ -121,7 +119,7 @@ def _first_fault(matrices: FloatArray) -> tuple[int, str] | None:
     )
 
 
-def _scaled(matrices: FloatArray) -> FloatArray:
+def _scaled(matrices: Array) -> Array:
     """Return the upper left of (F, 4, 4), each with a uniform scale taken out, (F, 3, 3)."""
     linear = matrices[:, :3, :3]
     return np.asarray(linear / np.cbrt(np.linalg.det(linear))[:, None, None])

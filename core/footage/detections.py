@@ -10,13 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Array, Image
 from .segmentation.regions import Regions
-
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -45,7 +40,7 @@ class Sightings:
     """
 
     regions: tuple[Regions, ...]
-    time_s: FloatArray
+    time_s: Array
     size: tuple[int, int]
     lessons: tuple[Lesson, ...]
     samples: Mapping[int, Image]

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 FULL_FRAME_MM = 36.0
 """Long side of the full-frame sensor that focal lengths are compared on [mm]."""

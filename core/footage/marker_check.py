@@ -6,8 +6,8 @@ from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IntArray
 from .association import Candidates, candidates
 from .clips.clip_samples import ClipSamples
 from .colors.clip_colors import ClipColors
@@ -19,9 +19,6 @@ from .region_assignment import DEAREST_PIECE, own_regions
 from .region_tracks import ExpectedRegions
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -111,7 +108,7 @@ def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
     return ExpectedRegions(expected.center[rows], expected.radius[rows])
 
 
-def _cheapest(found: Candidates, cost: FloatArray, _length_px: float) -> IntArray:
+def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
     """Return each frame's cheapest region, (F,), -1 where none is cheap; no path joins samples."""
     path = np.full(len(found.start) - 1, -1, dtype=np.int64)
     for frame, (first, end) in enumerate(zip(found.start[:-1], found.start[1:], strict=True)):
@@ -122,7 +119,7 @@ def _cheapest(found: Candidates, cost: FloatArray, _length_px: float) -> IntArra
 
 
 def _likenesses(
-    names: Sequence[str], colors: ClipColors, found: Sequence[Candidates], areas: Sequence[FloatArray]
+    names: Sequence[str], colors: ClipColors, found: Sequence[Candidates], areas: Sequence[Array]
 ) -> dict[int, Likeness]:
     """Return what else looks like each marker, by its index, from its area in every frame."""
     claims = color_claims(colors.model)
@@ -145,7 +142,7 @@ def _likenesses(
 
 
 def _readout(
-    name: str, area: FloatArray, size: tuple[int, int], likeness: Likeness, complaint: str | None
+    name: str, area: Array, size: tuple[int, int], likeness: Likeness, complaint: str | None
 ) -> MarkerReadout:
     """Return a marker's readout from its area (N,) in px, 0 where it is not seen."""
     sampled, found = len(area), int(np.count_nonzero(area))

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from .association import candidates, main_path
 from .clips.clip import Clip
 from .colors.clip_colors import ClipColors
@@ -20,8 +20,6 @@ from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import NO_REGIONS, Regions, find_regions
 from .segmentation.working_image import halvings, measuring_image
-
-FloatArray = NDArray[np.float64]
 
 _STRETCH_BYTES: Final = 100_000_000
 """Memory for the images that wait until the colors are learned: five seconds of video and more."""
@@ -80,7 +78,7 @@ def tell_markers(
     return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
 
 
-def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple[list[Regions], FloatArray]]:
+def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple[list[Regions], Array]]:
     """Find the regions of every frame, and the frames' times.
 
     The images of the clip's first stretch wait, reduced, until the colors are learned from them; later ones
@@ -88,7 +86,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
     """
     times = halvings(clip.size)
     longest = _STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
-    waiting: list[NDArray[np.uint8]] = []
+    waiting: list[Image] = []
     regions: list[Regions] = []
     time_s: list[float] = []
     for index, stamp, image in clip.frames():
@@ -112,7 +110,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
 
 
 def _regions_of_stretch(
-    waiting: list[NDArray[np.uint8]], colors: ClipColors, regions: list[Regions], frame_count: int
+    waiting: list[Image], colors: ClipColors, regions: list[Regions], frame_count: int
 ) -> Generator[float, None, None]:
     """Learn the colors from images on the measuring grid; append their regions and let go of them."""
     colors.learn(waiting)
@@ -129,7 +127,7 @@ def _tracks(
     styles: Sequence[MarkerStyle],
     groups: Sequence[Sequence[int]],
     expected: ExpectedRegions | None,
-    time_s: FloatArray,
+    time_s: Array,
     size: tuple[int, int],
 ) -> RegionTracks:
     """Tell which regions are the markers', over the whole clip at once."""

@@ -5,14 +5,10 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 
+from ..arrays import Array, BoolArray, IntArray
 from .association import Candidates
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 _AREA_WINDOW: Final = 31
 """Frames about each in which the marker's full area is looked for: it turns and comes nearer more slowly."""
@@ -29,14 +25,14 @@ class OwnRegion(NamedTuple):
         share: (F,) share of its largest piece in its area.
     """
 
-    moments: FloatArray
+    moments: Array
     clipped: BoolArray
-    certainty: FloatArray
-    share: FloatArray
+    certainty: Array
+    share: Array
 
 
 def join_pieces(
-    found: Candidates, path: IntArray, cost: FloatArray, reach_px: float, most_cost: float
+    found: Candidates, path: IntArray, cost: Array, reach_px: float, most_cost: float
 ) -> OwnRegion:
     """Add to each frame's main region the pieces that an arm before the marker cut off from it.
 
@@ -63,7 +59,7 @@ def join_pieces(
     return OwnRegion(moments, clipped, certainty, share)
 
 
-def region_quality(own: OwnRegion) -> FloatArray:
+def region_quality(own: OwnRegion) -> Array:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
     The product of the area against the full area seen in frames around, of clipping by the image's border, of
@@ -81,7 +77,7 @@ def region_quality(own: OwnRegion) -> FloatArray:
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
 
 
-def _box_gap(box: FloatArray, other: FloatArray) -> FloatArray:
+def _box_gap(box: Array, other: Array) -> Array:
     """Return the distances between boxes (N, 4) and others (N, 4)."""
     across = np.maximum(other[:, 0] - box[:, 2], box[:, 0] - other[:, 2])
     down = np.maximum(other[:, 1] - box[:, 3], box[:, 1] - other[:, 3])

@@ -6,15 +6,12 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IntArray
 from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
 from .pieces import OwnRegion, join_pieces
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 DEAREST_PIECE: Final = 10.0
 """Highest cost of what is taken for a piece of a marker."""
@@ -24,7 +21,7 @@ def own_regions(
     found: Sequence[Candidates],
     groups: Sequence[Sequence[int]],
     expected: ExpectedRegions | None,
-    choose: Callable[[Candidates, FloatArray, float], IntArray],
+    choose: Callable[[Candidates, Array, float], IntArray],
 ) -> dict[int, OwnRegion]:
     """Return what is each marker's in every frame, by the marker's index.
 
@@ -56,7 +53,7 @@ def own_regions(
     return own
 
 
-def _length(found: Candidates, clutter: NDArray[np.bool_], usual_area: float) -> float:
+def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
     """Return the marker's length in px: the long axis of regions of the usual size."""
     full = ~clutter & (found.area >= 0.7 * usual_area)
     if not full.any():

@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray
 from .clips.clip_timing import is_variable_frame_rate
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,12 +28,12 @@ class RegionTracks:
     """
 
     names: tuple[str, ...]
-    centroid: FloatArray
-    second_moment: FloatArray
-    area: FloatArray
-    quality: FloatArray
+    centroid: Array
+    second_moment: Array
+    area: Array
+    quality: Array
     clipped: BoolArray
-    time_s: FloatArray
+    time_s: Array
     size: tuple[int, int]
     notes: tuple[str, ...] = ()
 
@@ -99,8 +96,8 @@ class ExpectedRegions:
         radius: (F, M) px, a generous bound of how far the region's centroid may lie from there.
     """
 
-    center: FloatArray
-    radius: FloatArray
+    center: Array
+    radius: Array
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.

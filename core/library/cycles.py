@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.heading import about_up
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_spline import straight_course
 from .library import Travel
 from .posture_shape import headings_rad, moved, shapes
-
-Array = NDArray[np.float64]
 
 FEWEST_CYCLES = 1.9
 """So many must be seen: two, but for what is missing at the clip's ends."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.heading import about_up
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -13,8 +13,6 @@ from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .posture_shape import ankle_heights, headings_rad, moved, shapes
 from .texts import LONGEST_NAME, identifier_from
-
-Array = NDArray[np.float64]
 
 FEWEST, MOST = 10, 40
 """Postures of a library, where nobody says how many."""
@@ -126,7 +124,7 @@ def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
 
 def spread_frames(
     shape: Array, time_s: Array, duration_s: float, count: int | None, *, cyclic: bool
-) -> NDArray[np.intp]:
+) -> IndexArray:
     """Frames spread out in shape and in time: each next one is the furthest from all chosen.
 
     Args:

@@ -1,8 +1,8 @@
 """A library's motion as it runs on: its postures at any time, over as many cycles as it takes."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.heading import UP, about_up, headed
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -10,8 +10,6 @@ from ..body.posture_spline import smooth_course, stretches
 from ..body.soles import lower_sole_m
 from .library import Library, LibraryMotion
 from .transfer import applied
-
-Array = NDArray[np.float64]
 
 NEIGHBORS = 2
 """So many postures before and after a cycle shape the curve within it."""

@@ -1,14 +1,12 @@
 """Postures as they are compared: their shape, whatever place and heading they have, and these."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.heading import about_up, headed
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-
-Array = NDArray[np.float64]
 
 ANKLE_OVER_SOLE = 0.36
 """Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""

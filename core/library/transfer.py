@@ -1,7 +1,6 @@
 """A library's posture on an actor of other proportions."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..body.actor import Actor
 from ..body.kinematics import Body
@@ -9,8 +8,6 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..body.soles import lower_sole_m
 from .library import LibraryPosture
-
-Array = NDArray[np.float64]
 
 SAME_M = 1e-6
 """Lengths that differ by less are the same; files keep fewer digits than memory does."""

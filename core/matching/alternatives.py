@@ -1,14 +1,11 @@
 """What else a frame may show, and how probable each is."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, SingleArray
 from ..body.posture import Posture
 from .candidate import Candidate, MatchedFrame
 from .state_path import Path
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
 
 MOST = 6
 LOOKED_AT = 150
@@ -25,7 +22,7 @@ wrong libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 13, 
 
 
 def alternatives(
-    path: Path, share: Single, frame: int, index: int, chosen: Posture, nearest: int, explained: float
+    path: Path, share: SingleArray, frame: int, index: int, chosen: Posture, nearest: int, explained: float
 ) -> MatchedFrame:
     """The chosen posture of a frame and distinct ones beside it, the likelier first.
 

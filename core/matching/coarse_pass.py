@@ -3,15 +3,13 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import IndexArray
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from .emissions import Fit, Turned, sweep
 from .frame_likelihood import Sight, sights
 from .noise_scales import Habits, scale
-
-Whole = NDArray[np.intp]
 
 FLOOR_STD_M = 0.05
 """A performer's hips are that much higher or lower than the library's."""
@@ -35,7 +33,7 @@ class Glance:
 
 
 def glance(
-    camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: Whole, states: Turned
+    camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: IndexArray, states: Turned
 ) -> Glance:
     """Look at some frames with no floor known.
 

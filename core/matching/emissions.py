@@ -3,15 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, SingleArray
 from .frame_likelihood import Sight, square_root
 from .marker_moments import Solids
 from .noise_scales import DEGREES
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
-Whole = NDArray[np.intp]
 
 DEARER = 15.0
 """What explains a frame so much worse than the best is out of the question there, whatever comes before."""
@@ -27,9 +23,9 @@ class Turned:
 
     heading_rad: Array
     """(H,)."""
-    numbers: Single
+    numbers: SingleArray
     """(3 M + 2, N H) the markers' middles, the height, 1."""
-    spread: Single
+    spread: SingleArray
     """(M, 6, N H) entries xx, yy, zz, xy, xz, yz."""
     shape: tuple[int, int]
     """N, H."""
@@ -56,13 +52,13 @@ def turned(solids: Solids, headings: int) -> Turned:
 class Fit:
     """The K states that explain a frame best; all others are out of the question there."""
 
-    states: Whole
+    states: IndexArray
     """(K,) increasing."""
-    cost: Single
+    cost: SingleArray
     """(K,) negative logarithm of the likelihood, up to a constant of the footage."""
-    hips: Single
+    hips: SingleArray
     """(3, K) where the hips are [m]."""
-    ground: Single
+    ground: SingleArray
     """(3, K) where the floor below them is, by the posture's height above it [m]."""
 
     def row(self, state: int) -> int:
@@ -72,7 +68,7 @@ class Fit:
         return row if known else int(self.cost.argmin())
 
 
-def sweep(sight: Sight, turned: Turned, posed: Single | None = None) -> Fit:
+def sweep(sight: Sight, turned: Turned, posed: SingleArray | None = None) -> Fit:
     """Find the states that explain a frame, each at the best place for it.
 
     Args:
@@ -108,7 +104,7 @@ def sweep(sight: Sight, turned: Turned, posed: Single | None = None) -> Fit:
     return Fit(states[kept], cost[kept], hips[:, kept], ground)
 
 
-def _best(cost: Single, dearer: float, most: int) -> Whole:
+def _best(cost: SingleArray, dearer: float, most: int) -> IndexArray:
     """Which are at most so much dearer than the cheapest, and how many at most."""
     kept = np.flatnonzero(cost <= cost.min() + np.float32(dearer))
     if len(kept) > most:
@@ -116,7 +112,7 @@ def _best(cost: Single, dearer: float, most: int) -> Whole:
     return kept
 
 
-def _extent_error(sight: Sight, spread: Single, marker: int, depth: Single) -> Single:
+def _extent_error(sight: Sight, spread: SingleArray, marker: int, depth: SingleArray) -> SingleArray:
     """Squared difference of the extents seen and predicted, in standard deviations."""
     a, b = sight.axes[marker]
     product = [(a, a), (a, b), (b, b)]
@@ -142,6 +138,6 @@ def _products(u: Array, v: Array) -> list[float]:
     ]
 
 
-def _student(squared: Single, dimensions: int) -> Single:
+def _student(squared: SingleArray, dimensions: int) -> SingleArray:
     factor = np.float32(0.5 * (DEGREES + dimensions))
     return np.asarray(factor * np.log1p(squared / np.float32(DEGREES)))

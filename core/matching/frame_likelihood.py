@@ -10,15 +10,12 @@ product.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from .noise_scales import Habits
 from .posed_constraints import HIPS_STD_M, Anchors
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 MIDDLE_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
 """How far a marker lies from where the same moment of another performer's motion has it, the hips aligned."""
@@ -64,9 +61,9 @@ class Sight:
     """What is added to costs, so that performers of other habits can be compared."""
     pixel: float
     """What a pixel spans per meter of depth."""
-    seen: NDArray[np.bool_]
+    seen: BoolArray
     """(M,) markers that are seen."""
-    whole: NDArray[np.bool_]
+    whole: BoolArray
     """(M,) those whose region is not cut off."""
 
 
@@ -74,7 +71,7 @@ def sights(
     camera: Camera,
     tracks: RegionTracks,
     segments: tuple[str, ...],
-    frames: Whole,
+    frames: IndexArray,
     floor_m: float | None,
     floor_std_m: float,
     habits: Habits | None = None,

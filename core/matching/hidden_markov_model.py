@@ -12,13 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, SingleArray
 from .emissions import Fit, Turned
 from .frame_likelihood import Sight
 from .posture_sequences import Chains
 from .transitions import Move, Roads, moves
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
 
 JUMP_RATE = 0.4
 """Jumps to another posture per second: a movement of a kind takes a few seconds."""
@@ -57,7 +55,7 @@ class Lattice:
             if index % AT_ONCE == 0:
                 yield
 
-    def best_path(self) -> Generator[None, None, NDArray[np.intp]]:
+    def best_path(self) -> Generator[None, None, IndexArray]:
         """(T,) states of the best way through (Viterbi)."""
         score = self._log_likelihood(0)
         sources = []
@@ -80,7 +78,7 @@ class Lattice:
             last.append(int(source[last[-1]]))
         return np.array([fit.states[row] for fit, row in zip(self.fits, last[::-1], strict=True)])
 
-    def posterior(self) -> Generator[None, None, tuple[list[Single], float]]:
+    def posterior(self) -> Generator[None, None, tuple[list[SingleArray], float]]:
         """Of each frame the probability of its states, (K,); and the logarithm of the whole evidence."""
         steps = self._steps
         forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
@@ -106,12 +104,12 @@ class Lattice:
             shares.append(_share(forward[index - 1] + backward))
         return shares[::-1], evidence
 
-    def _heading(self, index: int) -> NDArray[np.intp]:
+    def _heading(self, index: int) -> IndexArray:
         """(K,) which heading each of a frame's states has."""
         return np.asarray(self.fits[index].states % len(self.turned.heading_rad))
 
     @cached_property
-    def _leap_turns(self) -> Single:
+    def _leap_turns(self) -> SingleArray:
         """(H, H) logarithm of what a jump between two headings is more probable than between any."""
         count = len(self.turned.heading_rad)
         apart = np.abs(np.arange(count)[:, None] - np.arange(count))
@@ -120,7 +118,7 @@ class Lattice:
         share = (1.0 - LEAP_ANYHOW) * kept / kept.sum(axis=0) + LEAP_ANYHOW / count
         return np.asarray(np.log(share * count), dtype=np.float32)
 
-    def _leaps(self, score: Single, index: int) -> tuple[NDArray[np.int32], Single]:
+    def _leaps(self, score: SingleArray, index: int) -> tuple[NDArray[np.int32], SingleArray]:
         """(H,) from which of a frame's states a jump into each heading comes best, and its score."""
         count = len(self.turned.heading_rad)
         most, heading = np.full(count, -np.inf, dtype=np.float32), self._heading(index)
@@ -132,7 +130,7 @@ class Lattice:
         origin = through.argmax(axis=0)
         return row[origin], through[origin, np.arange(count)]
 
-    def _leapt(self, score: Single, index: int) -> Single:
+    def _leapt(self, score: SingleArray, index: int) -> SingleArray:
         """(H,) logarithm of the sum over a frame's states of what leads by a jump into each heading."""
         least = float(score.max())
         share = np.exp(score - np.float32(least), dtype=np.float64)
@@ -148,15 +146,15 @@ class Lattice:
     def _roads(self) -> Roads:
         return Roads(self.chains, self.turned.heading_rad)
 
-    def _log_likelihood(self, index: int) -> Single:
+    def _log_likelihood(self, index: int) -> SingleArray:
         return self.fits[index].cost * np.float32(-self.tempering)
 
 
-def _share(log_probability: Single) -> Single:
+def _share(log_probability: SingleArray) -> SingleArray:
     share = np.exp(log_probability - log_probability.max())
     return np.asarray(share / share.sum())
 
 
-def _log_sum(values: Single) -> float:
+def _log_sum(values: SingleArray) -> float:
     most = float(values.max())
     return most + float(np.log(np.exp(values - most, dtype=np.float64).sum()))

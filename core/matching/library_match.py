@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, SingleArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
@@ -17,7 +17,7 @@ from ..progress import Part, scaled
 from .alternatives import alternatives
 from .candidate import MatchedFrame
 from .coarse_pass import FLOOR_STD_M, Glance, glance
-from .emissions import Fit, Single, Turned, sweep, turned
+from .emissions import Fit, Turned, sweep, turned
 from .frame_likelihood import Sight, sights
 from .hidden_markov_model import Lattice
 from .marker_moments import Solids, marker_solids
@@ -27,9 +27,6 @@ from .posture_sequences import Chains, library_chains
 from .refinement import Course, Refinement
 from .sequence_table import CourseTable
 from .state_path import Path
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 HEADINGS = 24
 SWEPT_AT_ONCE = 16
@@ -48,7 +45,7 @@ class Sought:
     tracks: RegionTracks
     segments: tuple[str, ...]
     """The segment of each marker."""
-    keyframes: Whole
+    keyframes: IndexArray
     """(K,) frames to be told the posture of."""
     anchors: Anchors
     """What is posed."""
@@ -79,7 +76,7 @@ class Prepared:
     chains: Chains
     solids: Solids
     states: Turned
-    sampled: Whole
+    sampled: IndexArray
     """(T,) the frames to look at."""
     glance: Glance
 
@@ -98,7 +95,7 @@ def prepared_anew(sought: Sought, prepared: Prepared) -> Prepared:
     return replace(prepared, sampled=sampled, glance=first)
 
 
-def _first_look(sought: Sought, states: Turned) -> tuple[Whole, Glance]:
+def _first_look(sought: Sought, states: Turned) -> tuple[IndexArray, Glance]:
     told = np.concatenate([sought.keyframes, sought.anchors.frames])
     sampled = sampled_frames(sought.tracks, told)
     return sampled, glance(sought.camera, sought.tracks, sought.segments, sampled, states)
@@ -151,7 +148,7 @@ def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[Li
     return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, course, likelihood)
 
 
-def _swept(seen: Sequence[Sight], states: Turned, posed: Sequence[Single | None]) -> Part[list[Fit]]:
+def _swept(seen: Sequence[Sight], states: Turned, posed: Sequence[SingleArray | None]) -> Part[list[Fit]]:
     """The states that explain each frame."""
     fits = []
     for index, (sight, cost) in enumerate(zip(seen, posed, strict=True)):
@@ -161,7 +158,7 @@ def _swept(seen: Sequence[Sight], states: Turned, posed: Sequence[Single | None]
     return fits
 
 
-def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Whole:
+def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | IndexArray) -> IndexArray:
     """The frames to look at: evenly spaced, the first, the last and the keyframes."""
     count = tracks.frame_count
     duration = float(tracks.time_s[-1] - tracks.time_s[0]) / max(count - 1, 1)
@@ -169,7 +166,7 @@ def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | Whole) -> Wh
     return np.unique(np.concatenate([np.arange(0, count, stride), [count - 1], keyframes])).astype(np.intp)
 
 
-def _every_frame(table: CourseTable, course: Course, frames: Whole, frame_count: int) -> Posture:
+def _every_frame(table: CourseTable, course: Course, frames: IndexArray, frame_count: int) -> Posture:
     """(F,) postures of the whole clip."""
     time, heading, hips = course.values[:, 0], course.values[:, 1], course.values[:, 2:]
     found = table.posture(course.chain, time, heading, hips)

@@ -7,14 +7,12 @@ makes every heading cheap.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.shapes import PieceStack
 from ..observation.regions import MarkerPlacement
-
-Array = NDArray[np.float64]
 
 ACROSS = 1.0 / 3.0
 """A cylinder's silhouette is flat across: its spread there is a third of the squared radius."""

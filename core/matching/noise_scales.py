@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array, BoolArray
 
 DEGREES = 4.0
 """Of Student's t, by which what is far off counts less."""
@@ -33,7 +32,7 @@ class Habits:
         return cls(np.ones(markers), np.ones(markers), np.ones(markers))
 
 
-def scale(residual: Array, seen: NDArray[np.bool_], tempering: float) -> Array:
+def scale(residual: Array, seen: BoolArray, tempering: float) -> Array:
     """(M,) by what deviations are to be multiplied to explain residuals, by Student's t.
 
     Args:

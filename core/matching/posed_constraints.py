@@ -5,16 +5,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, SingleArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.soles import sole_heights_m
 from ..prior.keyframes import Keyframe
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
-Whole = NDArray[np.intp]
 
 HIPS_STD_M = 0.03
 """Of the hips' place in a posed keyframe: what a person errs by."""
@@ -29,7 +25,7 @@ class Anchors:
     """K posed keyframes, in order of time."""
 
     body: Body
-    frames: Whole
+    frames: IndexArray
     """(K,) positions in the clip."""
     postures: tuple[Posture, ...]
 
@@ -67,7 +63,7 @@ class Anchors:
         found = np.flatnonzero(self.frames == frame)
         return self.hips[found[0]] if len(found) else None
 
-    def cost(self, frame: int, points: Array, heading_rad: Array) -> Single | None:
+    def cost(self, frame: int, points: Array, heading_rad: Array) -> SingleArray | None:
         """How unlike a posed frame the states are.
 
         Args:

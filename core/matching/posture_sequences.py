@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.heading import UP
 from ..body.kinematics import Body
 from ..body.mirror import mirrored
@@ -18,9 +18,6 @@ from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion
 from ..library.motion_playback import course
 from ..library.transfer import applied
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 STEP_M = 0.045
 """Points move about so far from one posture of a chain to the next: well below what performers differ by."""
@@ -67,7 +64,7 @@ class Chains:
     library: Library
     body: Body
     chains: tuple[Chain, ...]
-    start: Whole = field(init=False)
+    start: IndexArray = field(init=False)
     """(C + 1,) where each chain begins."""
 
     def __post_init__(self) -> None:
@@ -84,7 +81,7 @@ class Chains:
         return Posture.concatenate([chain.posture for chain in self.chains])
 
     @cached_property
-    def chain_of(self) -> Whole:
+    def chain_of(self) -> IndexArray:
         """(N,) the chain of each posture."""
         return np.repeat(np.arange(len(self.chains)), np.diff(self.start))
 
@@ -102,7 +99,7 @@ class Chains:
         """Whether left and right are exchanged in one of the N."""
         return self.chains[int(self.chain_of[index])].mirrored
 
-    def advanced(self, steps: int) -> tuple[Whole, Array, Array]:
+    def advanced(self, steps: int) -> tuple[IndexArray, Array, Array]:
         """Where each posture leads.
 
         Args:

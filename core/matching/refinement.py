@@ -9,17 +9,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.heading import about_up
 from .frame_likelihood import Sight, square_root
 from .noise_scales import DEGREES, Habits, scale
 from .posed_constraints import POINTS_COUNT, Anchors
 from .sequence_table import CourseTable, Reading
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 UNKNOWNS = 5
 """Time within the chain [s], heading [rad], place [m]."""
@@ -45,9 +42,9 @@ HELD = 1e-2
 class Course:
     """Where a performer is in a library at T frames."""
 
-    chain: Whole
+    chain: IndexArray
     """(T,)."""
-    joined: NDArray[np.bool_]
+    joined: BoolArray
     """(T - 1,) whether the motion goes on from each frame to the next, and no other begins."""
     values: Array
     """(T, 5) time from the chain's time 0 [s], going on over cycles; heading of the motion's axes then [rad];
@@ -67,7 +64,7 @@ class Refinement:
     floor_std_m: float
     anchors: Anchors | None = None
     """What is posed; each of its frames is one of the T."""
-    anchored: Whole = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    anchored: IndexArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     """(K,) which of the T frames those are."""
 
     def refined(self, course: Course) -> Generator[None, None, Course]:
@@ -88,7 +85,7 @@ class Refinement:
         names = ("weight", "axes", "root", "whole", "location", "backward", "pixel", "root_std_m")
         return tuple(np.array([getattr(sight, name) for sight in self.sights]) for name in names)
 
-    def _sizes(self, chain: Whole, values: Array) -> Array:
+    def _sizes(self, chain: IndexArray, values: Array) -> Array:
         """(M,) how much larger each marker is than on an average body, over the clip.
 
         Clothes and where a color ends are the same in all frames: taken as news in each they would say more
@@ -105,7 +102,7 @@ class Refinement:
                 sizes[marker] = np.exp(np.median(np.log(np.maximum(ratio[known[:, marker], marker], 0.1))))
         return np.clip(sizes, 1.0 / MOST_SIZE, MOST_SIZE)
 
-    def _shown(self, chain: Whole, values: Array) -> tuple[Array, Array]:
+    def _shown(self, chain: IndexArray, values: Array) -> tuple[Array, Array]:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
         _, axes, _, _, location, backward, *_ = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
@@ -125,7 +122,7 @@ class Refinement:
             scale(off, weight > 0.0, self.tempering), scale(extent, whole > 0.0, self.tempering), size
         )
 
-    def residuals(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array, Array]:
+    def residuals(self, chain: IndexArray, values: Array, size: Array) -> tuple[Array, Array, Array]:
         """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T, 1) of the floor."""
         weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
@@ -142,7 +139,7 @@ class Refinement:
         over = values[:, 4] - read.height - self.floor_m
         return off, extent, over[:, None] / self.floor_std_m
 
-    def _footage(self, chain: Whole, values: Array, size: Array) -> tuple[Array, Array]:
+    def _footage(self, chain: IndexArray, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
         now = self.residuals(chain, values, size)
         rows = self._weighted(now, now)
@@ -155,7 +152,7 @@ class Refinement:
         matrix[0] = np.swapaxes(jacobian, -1, -2) @ jacobian + HELD * np.eye(UNKNOWNS)
         return matrix, np.einsum("tri,tr->ti", jacobian, rows)
 
-    def _posed(self, chain: Whole, values: Array, matrix: Array, gradient: Array) -> None:
+    def _posed(self, chain: IndexArray, values: Array, matrix: Array, gradient: Array) -> None:
         """Add what posed keyframes say; not tempered, as nothing else says the same again."""
         if self.anchors is None or not len(self.anchored):
             return
@@ -210,7 +207,7 @@ class Refinement:
         _add(matrix, gradient, (rate[1:] - rate[:-1]) * scale, [block * scale[..., None] for block in blocks])
 
     def _rates(
-        self, chain: Whole, values: Array, duration: Array, joined: NDArray[np.bool_]
+        self, chain: IndexArray, values: Array, duration: Array, joined: BoolArray
     ) -> tuple[Array, Array, Array]:
         """(T - 1, 5) speed, turning and going besides the motion's, and their derivatives by both frames."""
         way = self.table.read(chain, values[:, 0]).way

@@ -4,15 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.heading import about_up, headed
 from ..body.posture import Posture
 from .marker_moments import Solids
 from .posture_sequences import Chains
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +34,7 @@ class CourseTable:
     solids: Solids
 
     @cached_property
-    def _rows(self) -> tuple[Whole, Whole]:
+    def _rows(self) -> tuple[IndexArray, IndexArray]:
         """The posture of each row, and where each chain's rows begin."""
         rows, start = [], [0]
         for first, chain in zip(self.chains.start, self.chains.chains, strict=False):
@@ -64,7 +61,7 @@ class CourseTable:
                 spread[own.stop - 1] = turn @ spread[own.stop - 1] @ turn.T
         return middle, spread, way
 
-    def _between(self, chain: Whole, time_s: Array) -> tuple[Whole, Whole, Array, Whole]:
+    def _between(self, chain: IndexArray, time_s: Array) -> tuple[IndexArray, IndexArray, Array, IndexArray]:
         """(T,) the rows before and after some times, how far between them, and in which cycle."""
         _, start = self._rows
         step = np.array([entry.step_s for entry in self.chains.chains])[chain]
@@ -78,7 +75,7 @@ class CourseTable:
         second = np.minimum(first + 1, start[1:][chain] - 1)
         return first, second, local - low, cycle.astype(np.intp)
 
-    def read(self, chain: Whole, time_s: Array) -> Reading:
+    def read(self, chain: IndexArray, time_s: Array) -> Reading:
         """What the chains hold at some times; before a chain's beginning and after its end it rests."""
         rows, _ = self._rows
         middles, spreads, ways = self._turned
@@ -94,7 +91,7 @@ class CourseTable:
         way = self._carried(between(ways), chain, cycle)
         return Reading(middle, spread, between(self.solids.height[rows]), way)
 
-    def points(self, chain: Whole, time_s: Array) -> Array:
+    def points(self, chain: IndexArray, time_s: Array) -> Array:
         """(T, P, 3) the body's points at some times, relative to the hips [m], in the axes of `read`."""
         rows, start = self._rows
         points = self.solids.points[rows]
@@ -105,7 +102,7 @@ class CourseTable:
         between = (1.0 - weight) * points[first] + weight * points[second]
         return np.asarray(between @ np.swapaxes(self._turn(chain, cycle), -1, -2))
 
-    def posture(self, chain: Whole, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
+    def posture(self, chain: IndexArray, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
         """(T,) postures at some times, with headings of the motion's beginning and places of the hips [m]."""
         rows, start = self._rows
         first, second, share, cycle = self._between(chain, time_s)
@@ -116,15 +113,15 @@ class CourseTable:
         turned = np.array([entry.turn_rad for entry in self.chains.chains])[chain]
         return headed(led, heading_rad + cycle * turned, hips)
 
-    def nearest(self, chain: Whole, time_s: Array) -> Whole:
+    def nearest(self, chain: IndexArray, time_s: Array) -> IndexArray:
         """(T,) which of the N postures of the chains is nearest in time."""
         first, second, share, _ = self._between(chain, time_s)
         return self._rows[0][np.where(share < 0.5, first, second)]
 
-    def _turn(self, chain: Whole, cycle: Whole) -> Array:
+    def _turn(self, chain: IndexArray, cycle: IndexArray) -> Array:
         return about_up(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
 
-    def _carried(self, way: Array, chain: Whole, cycle: Whole) -> Array:
+    def _carried(self, way: Array, chain: IndexArray, cycle: IndexArray) -> Array:
         """Places (T, 3) that come again some cycles later."""
         _, start = self._rows
         ends = self._turned[2][start[1:] - 1]  # (C, 3)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.heading import headed
 from ..body.posture import Posture
 from .emissions import Fit, Turned
@@ -12,9 +12,6 @@ from .frame_likelihood import Sight
 from .posture_sequences import Chains
 from .refinement import Course
 from .transitions import FASTEST
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +22,12 @@ class Path:
     turned: Turned
     sights: list[Sight]
     fits: list[Fit]
-    best: Whole
+    best: IndexArray
     """(T,) state."""
     clock_s: Array
     """(T,) times of the frames."""
 
-    def postures(self, frame: int, rows: Whole) -> Posture:
+    def postures(self, frame: int, rows: IndexArray) -> Posture:
         """The postures of some of a frame's states, in the world."""
         fit = self.fits[frame]
         posture, heading = np.divmod(fit.states[rows], len(self.turned.heading_rad))

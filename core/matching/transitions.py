@@ -3,15 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, Int32Array, SingleArray
 from .emissions import Fit
 from .frame_likelihood import Sight
 from .posture_sequences import Chains
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
-Whole = NDArray[np.int32]
 
 SLOWEST, FASTEST = 0.4, 2.5
 """Of the typical speed."""
@@ -35,9 +31,9 @@ LEAST_PACE = 1e-3
 class Road:
     """One way on for all N H states: so many postures further, so many headings aside."""
 
-    origin: Whole
+    origin: Int32Array
     """(N H,) the state each is reached from; N H where there is none."""
-    way: Single
+    way: SingleArray
     """(2, N H) how the motion travels on it [m], in the world."""
 
 
@@ -63,7 +59,7 @@ class Roads:
         columns = np.arange(count)
         bins = count / (2.0 * np.pi)
 
-        def states(posture: NDArray[np.intp], turned: Array, offset: int) -> Whole:
+        def states(posture: IndexArray, turned: Array, offset: int) -> Int32Array:
             aim = np.rint(turned * bins).astype(int)[:, None] + offset
             state = posture[:, None] * count + (columns + aim) % count
             return np.where(posture[:, None] < 0, total, state).ravel().astype(np.int32)
@@ -104,11 +100,11 @@ class Roads:
 class Move:
     """One way on, for the states of a frame that can be come to by it."""
 
-    origin: Whole
+    origin: Int32Array
     """(R,) which of the earlier frame's states."""
-    target: Whole
+    target: Int32Array
     """(R,) which of the later frame's."""
-    weight: Single
+    weight: SingleArray
     """(R,) logarithm of the probability."""
 
 
@@ -147,7 +143,7 @@ def moves(roads: Roads, duration_s: float, sights: tuple[Sight, Sight], fits: tu
     return found
 
 
-def _whitening(sights: tuple[Sight, Sight], duration_s: float) -> Single:
+def _whitening(sights: tuple[Sight, Sight], duration_s: float) -> SingleArray:
     """(3, 3) takes differences of places [m] to standard deviations.
 
     What a frame leaves open of the place, mostly along the line of sight, may change from frame to frame.

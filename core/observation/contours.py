@@ -9,16 +9,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..body.shapes import PieceStack, body_pieces
 from ..footage.camera import Camera
 from .occlusion import Covers, covers
 from .outline import View, view_pieces
-
-Array = NDArray[np.float64]
 
 SHARES = (0.2, 0.4, 0.6, 0.8)
 """Where on a part samples lie; its ends are another part's as much."""
@@ -70,12 +68,12 @@ class ContourModel:
         return PieceStack.of(body_pieces(self.body))
 
     @cached_property
-    def part_of(self) -> NDArray[np.intp]:
+    def part_of(self) -> IndexArray:
         """(N,) the part of each sample."""
         return np.repeat(np.arange(len(self.parts.segments)), len(SHARES) * len(SIDES))
 
     @cached_property
-    def adjoining(self) -> NDArray[np.bool_]:
+    def adjoining(self) -> BoolArray:
         """(N, O) the part itself and those it is joined to."""
         joined = np.eye(len(self.parts.segments), dtype=bool)
         segments = {segment.name: segment for segment in self.body.skeleton.segments}
@@ -88,11 +86,11 @@ class ContourModel:
                 joined[child, names.index(above)] = joined[names.index(above), child] = True
         return joined[self.part_of]
 
-    def covers(self, pose: Pose, frame: NDArray[np.intp]) -> Covers:
+    def covers(self, pose: Pose, frame: IndexArray) -> Covers:
         """The outlines of all parts."""
         return covers(self.parts, pose, self.camera, frame)
 
-    def evaluate(self, pose: Pose, frame: NDArray[np.intp]) -> ContourPrediction:
+    def evaluate(self, pose: Pose, frame: IndexArray) -> ContourPrediction:
         """Predict all samples in F frames; `frame` (F,) are their places in the clip."""
         view = view_pieces(self.parts, pose, self.camera, frame)
         part = self.part_of
@@ -133,6 +131,6 @@ def _taper(share: Array) -> Array:
     return np.stack([1.0 - share, share], axis=-1)
 
 
-def _between(view: View, part: NDArray[np.intp], share: Array) -> Array:
+def _between(view: View, part: IndexArray, share: Array) -> Array:
     """(F, N, 3) places on the parts' axes."""
     return np.asarray(view.start[:, part] + share[:, None] * (view.end - view.start)[:, part])

@@ -5,13 +5,12 @@ own, with a noise wide enough to yield to everything else.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-
-Array = NDArray[np.float64]
 
 DEPTH_VARIANCE_M2 = 0.1
 """Variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²."""
@@ -42,5 +41,5 @@ def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
     return np.asarray(rows * body.skeleton.moved_by[[point.joint for point in body.skeleton.points]])
 
 
-def _per_point(frame: ArrayLike | None) -> NDArray[np.intp] | None:
+def _per_point(frame: ArrayLike | None) -> IndexArray | None:
     return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross_matrix
 from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
@@ -19,8 +20,6 @@ from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import axis_angle_difference, characteristics
-
-Array = NDArray[np.float64]
 
 X, Y, ANGLE, LOG_RATIO = range(4)
 """Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
@@ -58,7 +57,7 @@ class LineEnds:
         return np.array([2.0 * np.mean([piece.half_widths[:, 0] for piece in parts]) for parts in pieces])
 
     @cached_property
-    def _places(self) -> tuple[NDArray[np.intp], Array, Array]:
+    def _places(self) -> tuple[IndexArray, Array, Array]:
         """Joints (A,) and local places (A, 3) of all that makes an end, and its share in each, (M, 2, A)."""
         joints: list[int] = []
         local: list[Array] = []
@@ -172,7 +171,7 @@ def _squared_shape(line: Array, width_px: Array) -> Array:
     return np.asarray(np.sum(line**2, axis=-1) / width_px**2)
 
 
-def _per_end(frame: ArrayLike | None) -> NDArray[np.intp] | None:
+def _per_end(frame: ArrayLike | None) -> IndexArray | None:
     return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None, None]
 
 

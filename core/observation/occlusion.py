@@ -7,14 +7,12 @@ the camera there. Both edges are soft, so that the prediction changes smoothly w
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Pose
 from ..body.shapes import PieceStack
 from ..footage.camera import Camera
 from .outline import view_pieces
-
-Array = NDArray[np.float64]
 
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
@@ -40,7 +38,7 @@ class Covers:
     overshoot: Array
     """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
 
-    def pick(self, frame: NDArray[np.intp], part: NDArray[np.intp]) -> "Covers":
+    def pick(self, frame: IndexArray, part: IndexArray) -> "Covers":
         """R parts, each in a frame of its own, with arrays (R, 2)."""
         return Covers(
             self.start[frame, part],
@@ -51,7 +49,7 @@ class Covers:
         )
 
 
-def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> Covers:
+def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> Covers:
     """The image outlines of all parts of the body."""
     view = view_pieces(parts, pose, camera, frame)
     start, start_depth = camera.project(view.start, frame[:, None])
@@ -65,7 +63,7 @@ def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp
     return Covers(start, end, depth, half, past)
 
 
-def visible_share(pixels: Array, depth: Array, parts: Covers, own: NDArray[np.bool_]) -> Array:
+def visible_share(pixels: Array, depth: Array, parts: Covers, own: BoolArray) -> Array:
     """How much of each sample no part hides, 0 to 1.
 
     Args:
@@ -112,7 +110,7 @@ def outline_depth(pixels: Array, parts: Covers) -> Array:
     return np.where(away * away + past * past < half * half, at(parts.depth), np.inf)
 
 
-def _may_hide(pixels: Array, depth: Array, parts: Covers) -> NDArray[np.bool_]:
+def _may_hide(pixels: Array, depth: Array, parts: Covers) -> BoolArray:
     """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
     columns, rows = pixels[..., 0], pixels[..., 1]
     left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)

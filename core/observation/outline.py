@@ -10,14 +10,12 @@ Arrays lead with F frames and Q pieces.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..body.rotations import cross
 from ..body.shapes import PieceStack
 from ..footage.camera import Camera
-
-Array = NDArray[np.float64]
 
 ALONG, ACROSS = 8, 4
 RINGS, SPOKES = 2, 5
@@ -67,7 +65,7 @@ def _unit(vector: Array) -> tuple[Array, Array]:
     return vector / np.maximum(length, TINY)[..., None], length
 
 
-def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: NDArray[np.intp]) -> View:
+def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> View:
     """How the camera sees each piece in each frame."""
     start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)
     matrix = camera.matrix_world[frame][:, None] if camera.is_moving else camera.matrix_world

@@ -4,9 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .occlusion import Covers
-
-Array = NDArray[np.float64]
 
 NOWHERE = 255
 """While drawing, what is -1 as a signed byte."""

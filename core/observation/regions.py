@@ -11,16 +11,14 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
 from .occlusion import covers, visible_share
 from .outline import TINY, Outline, outline, view_pieces
-
-Array = NDArray[np.float64]
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
 """Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
@@ -112,13 +110,13 @@ class RegionModel:
         return PieceStack.of(piece for placement in self.placements for piece in placement.pieces(self.body))
 
     @cached_property
-    def _marker_of(self) -> NDArray[np.intp]:
+    def _marker_of(self) -> IndexArray:
         """(Q,) the marker of each piece."""
         counts = [len(marker_parts(placement.segment)) for placement in self.placements]
         return np.repeat(np.arange(len(counts)), counts)
 
     @cached_property
-    def _first_pieces(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def _first_pieces(self) -> tuple[IndexArray, IndexArray]:
         """The first piece of each marker, and all other pieces."""
         _, first = np.unique(self._marker_of, return_index=True)
         return first, np.setdiff1d(np.arange(len(self._marker_of)), first)
@@ -139,12 +137,12 @@ class RegionModel:
         return PieceStack.of(body_pieces(self.body))
 
     @cached_property
-    def _own(self) -> NDArray[np.bool_]:
+    def _own(self) -> BoolArray:
         """(Q, O) whether a part of the body belongs to the marker of a piece."""
         own = [marker_parts(self.placements[m].segment) for m in self._marker_of]
         return np.array([[part in names for part in self._parts.segments] for names in own])
 
-    def evaluate(self, pose: Pose, frame: NDArray[np.intp], jacobian: bool = False) -> RegionPrediction:
+    def evaluate(self, pose: Pose, frame: IndexArray, jacobian: bool = False) -> RegionPrediction:
         """Predict every marker's region.
 
         Args:
@@ -160,7 +158,7 @@ class RegionModel:
         stretches = [slice(*pair) for pair in zip(edges[:-1], edges[1:], strict=True)]
         return RegionPrediction.concatenate([self._stretch(pose[s], frame[s], jacobian) for s in stretches])
 
-    def _stretch(self, pose: Pose, frame: NDArray[np.intp], jacobian: bool) -> RegionPrediction:
+    def _stretch(self, pose: Pose, frame: IndexArray, jacobian: bool) -> RegionPrediction:
         """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
         samples = outline(self._pieces, view)
@@ -200,7 +198,7 @@ class RegionModel:
         self,
         samples: Outline,
         pose: Pose,
-        frame: NDArray[np.intp],
+        frame: IndexArray,
         factor: Array,
         weighted: Array,
         centerd: Array,
@@ -231,7 +229,7 @@ class RegionModel:
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
         return {"centroid_jacobian": derived[:, :, :2], "moment_jacobian": derived[:, :, 2:]}
 
-    def _to_world(self, rows: Array, frame: NDArray[np.intp]) -> Array:
+    def _to_world(self, rows: Array, frame: IndexArray) -> Array:
         """Derivatives (F, Q, K, 6) by a motion in the camera's axes as ones by the motion in the world's."""
         rotation, location = self.camera.pose(frame[:, None])
         turned = np.swapaxes(rotation, -1, -2)

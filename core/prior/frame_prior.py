@@ -4,16 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..body.standing_posture import turned
 from ..observation.depths import DEPTH_STD_M
 from .interpolation import interpolate
 from .keyframes import Keyframe
-
-Array = NDArray[np.float64]
 
 # How far postures of the same person lie apart at two moments that have nothing to do with each other
 # [m, rad]: round numbers for lively motion. Head and what no marker shows stay nearer to what was posed.

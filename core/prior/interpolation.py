@@ -4,13 +4,11 @@ Before the first and after the last keyframe the posture is held.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.posture import Posture
 from ..body.posture_spline import smooth_course, straight_course
 from .keyframes import Keyframe
-
-Array = NDArray[np.float64]
 
 
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:

@@ -8,13 +8,12 @@ than even spacing; so keyframes are spaced evenly first and then moved to a mini
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter1d
 
+from ..arrays import Array, IndexArray
 from ..errors import InputError
 from ..footage.region_tracks import RegionTracks
-
-Array = NDArray[np.float64]
 
 KEYFRAMES_PER_100_FRAMES = 10.0
 SMOOTHING_FRAMES = 1.0
@@ -69,7 +68,7 @@ def _speed(centroid: Array, time: Array) -> Array:
 
 def propose_keyframes(
     speed: ArrayLike, count: int | None = None, largest_gap: int | None = None
-) -> NDArray[np.intp]:
+) -> IndexArray:
     """Frames worth posing: evenly spaced, then moved to a minimum of the speed nearby.
 
     The first and the last frame are always among them.
@@ -104,7 +103,7 @@ def propose_keyframes(
     return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(GAP_SLACK * gap))
 
 
-def _snap(V: Array, even: NDArray[np.intp], largest_gap: int) -> NDArray[np.intp]:
+def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
     """Move inner keyframes to the lowest minimum within reach, keeping every gap at most `largest_gap`."""
     V = np.where(np.isfinite(V), V, np.inf)
     padded = np.concatenate([[np.inf], V, [np.inf]])

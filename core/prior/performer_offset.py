@@ -10,13 +10,11 @@ Learning*, eq. 2.23).
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.posture import Posture
 from .interpolation import interpolate
 from .keyframes import Keyframe
-
-Array = NDArray[np.float64]
 
 LASTING_SHARE = 0.5
 """Of the difference's variance, what holds all along the clip."""

@@ -7,11 +7,9 @@ amount that every joint has.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.posture import Posture
-
-Array = NDArray[np.float64]
 
 REFERENCE_STEP_S = 1.0 / 30.0
 """Accelerations are stated as second differences at this step."""

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Image = NDArray[np.uint8]
+from ..arrays import Array, Image
+
 Color = tuple[int, int, int]
 """Blue, green, red, 0 to 255."""
 
@@ -150,7 +151,7 @@ def ticks(low: float, high: float, most: int) -> Sequence[float]:
     return [float(step * n) for n in np.arange(first, np.floor(high / step + 1e-9) + 1)]
 
 
-def _fixed(points: NDArray[np.float64]) -> NDArray[np.int32]:
+def _fixed(points: Array) -> NDArray[np.int32]:
     """Points (N, 2) for polygons: (N, 1, 2) in sixteenths, pixel centers at whole numbers."""
     reach = 2.0**14  # far outside every picture; more would overflow
     places = np.clip(points * SCALE - 0.5, -reach, reach)

@@ -7,15 +7,13 @@ from collections.abc import Mapping
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import Canvas, Image
+from .canvas import Canvas
 from .overlay_sheet import paler
 from .stick_figure import draw_figure, stick_figure
-
-Array = NDArray[np.float64]
 
 PICTURES = 6
 SIDE = 160

@@ -4,17 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Image
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion, LibraryPosture
-from .canvas import GRAY, INK, LEFT, RIGHT, Canvas, Color, Image
+from .canvas import GRAY, INK, LEFT, RIGHT, Canvas, Color
 from .captions import cut, plain, wrapped
 from .mannequin import View, draw_mannequin, view_axes
 from .posture_picture import FLESH_M, TILT_RAD, outermost, showing_turn, stage
-
-Array = NDArray[np.float64]
 
 MARGIN = 28
 LEAST_WIDTH, WIDTH = 900, 1520

@@ -6,15 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, BoolArray, Image, SingleArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from .canvas import Image
 from .mannequin_feet import drawn_frames
 from .mannequin_shape import mannequin_surface
-
-Array = NDArray[np.float64]
-Single = NDArray[np.float32]
-"""Accurate enough for pixels, and quicker."""
 
 LIGHT = np.array([-0.5, 0.75, -0.6])
 """From where the light comes, as the eye sees it: right, up, away."""
@@ -114,18 +110,18 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     return np.asarray(np.round(np.clip(reduced, 0.0, 255.0)), dtype=np.uint8)
 
 
-def _moved(place: Single, turn: Array, origin: Array) -> Single:
+def _moved(place: SingleArray, turn: Array, origin: Array) -> SingleArray:
     return np.asarray(place @ turn.T.astype(np.float32) + origin.astype(np.float32))
 
 
-def _pixels(at: Single, size: tuple[int, int]) -> NDArray[np.int32]:
+def _pixels(at: SingleArray, size: tuple[int, int]) -> NDArray[np.int32]:
     """Which pixel each of some points (N, 2) falls into, counted row by row; one more than all: none."""
     column, row = np.floor(at[:, 0]), np.floor(at[:, 1])
     inside = (column >= 0) & (column < size[1]) & (row >= 0) & (row < size[0])
     return np.where(inside, row * size[1] + column, size[0] * size[1]).astype(np.int32)
 
 
-def _shadow(view: View, place: Single, size: tuple[int, int]) -> Single:
+def _shadow(view: View, place: SingleArray, size: tuple[int, int]) -> SingleArray:
     """How much of the light from above is missing, 0 to 1, on the floor z = 0."""
     mask = np.zeros(size[0] * size[1] + 1, dtype=np.float32)
     at, _ = view.project(place * np.array([1.0, 1.0, 0.0], dtype=np.float32))
@@ -133,7 +129,7 @@ def _shadow(view: View, place: Single, size: tuple[int, int]) -> Single:
     return np.asarray(cv2.GaussianBlur(mask[:-1].reshape(size), (0, 0), SOFTNESS_M * view.scale))
 
 
-def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Single]:
+def _nearest(seen: SingleArray, size: tuple[int, int]) -> tuple[NDArray[np.int32], SingleArray]:
     """Which point is seen in each pixel of the larger picture, -1 where none, and how far away it is [m].
 
     Args:
@@ -157,13 +153,13 @@ def _nearest(seen: Single, size: tuple[int, int]) -> tuple[NDArray[np.int32], Si
     return nearest, np.asarray(level, dtype=np.float32)
 
 
-def _shaded(color: Single, lit: Single) -> Single:
+def _shaded(color: SingleArray, lit: SingleArray) -> SingleArray:
     """Colors (N, 3) where so much light (N,) falls, -1 to 1."""
     brightness = DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit)
     return np.asarray(1.12 * color * brightness[:, None] + SHEEN * np.clip(lit, 0.0, 1.0)[:, None] ** 12)
 
 
-def _edges(depth: Single) -> NDArray[np.bool_]:
+def _edges(depth: SingleArray) -> BoolArray:
     """Where something much nearer is beside: around the figure, and where a limb passes before another."""
     near = cv2.erode(depth, cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)))
     return np.asarray(depth - near > EDGE_M)

@@ -1,14 +1,12 @@
 """Feet as pictures show them: turned at the ankle where the skeleton's, rigid with the shin, would dip."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.skeleton import SIDES
 from ..body.soles import sole_places
-
-Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -10,15 +10,13 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray, SingleArray
 from ..body.kinematics import Body
 from ..body.shapes import Piece, body_pieces
 from ..body.soles import HEEL_BEHIND
 from .canvas import LEFT, RIGHT, Color
 from .mannequin_feet import foot_frame
-
-Array = NDArray[np.float64]
 
 TRUNK: Color = (186, 182, 180)
 BAND: Color = (235, 232, 230)
@@ -35,13 +33,13 @@ ROUNDING = {"chest": 0.35, "pelvis": 0.6, "hand": 1.0}
 class Surface:
     """Points of the skin, fixed in frames."""
 
-    frame: NDArray[np.intp]
+    frame: IndexArray
     """(N,) the frame that moves each point: a joint's, or a foot's, of `mannequin_feet`."""
-    place: NDArray[np.float32]
+    place: SingleArray
     """(N, 3) in that frame [m]."""
-    normal: NDArray[np.float32]
+    normal: SingleArray
     """(N, 3) unit directions outwards."""
-    color: NDArray[np.float32]
+    color: SingleArray
     """(N, 3) blue, green, red."""
 
     @cached_property

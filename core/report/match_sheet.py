@@ -3,17 +3,15 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..body.posture import Posture
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
-from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas, Image
+from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .overlay_sheet import paler
 from .stick_figure import draw_figure, legend, posed_figure
-
-Array = NDArray[np.float64]
 
 CELL_WIDTH = 300
 COLUMNS = 5

@@ -4,17 +4,15 @@ from collections.abc import Mapping
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.ellipse import ellipse_outline
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import INK, WHITE, Canvas, Color, Image
+from .canvas import INK, WHITE, Canvas, Color
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
-
-Array = NDArray[np.float64]
 
 CELL_WIDTH = 400
 COLUMNS = 4

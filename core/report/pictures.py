@@ -4,14 +4,14 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import SCALE, Image, write_jpg, write_png
+from .canvas import SCALE, write_jpg, write_png
 from .contact_sheet import chosen_frames
 from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import film_strip
@@ -30,7 +30,7 @@ MATCHES = "matches.png"
 
 
 def write_pictures(
-    folder: Path, take: Take, motion: Motion, tracks: RegionTracks, speed: NDArray[np.float64]
+    folder: Path, take: Take, motion: Motion, tracks: RegionTracks, speed: Array
 ) -> tuple[Path, ...]:
     """Write all pictures; one more pass over the clip fetches the frames shown.
 

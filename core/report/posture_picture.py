@@ -1,16 +1,13 @@
 """A small square picture of a posture, as an asset browser shows it, seen from where its limbs show."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.shapes import HEAD_OVERSHOOT
 from ..body.standing_posture import facing_rad
-from .canvas import Image
 from .mannequin import View, draw_mannequin, view_axes
-
-Array = NDArray[np.float64]
 
 SIZE = 256
 EDGE = 8

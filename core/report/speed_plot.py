@@ -3,12 +3,10 @@
 from collections.abc import Collection
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from .axes import Axes
-from .canvas import ACCENT, INK, LEFT, Canvas, Image, ticks
-
-Array = NDArray[np.float64]
+from .canvas import ACCENT, INK, LEFT, Canvas, ticks
 
 WIDTH, HEIGHT = 1200, 420
 

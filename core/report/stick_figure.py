@@ -4,14 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..take.motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
 
-Array = NDArray[np.float64]
 Projection = Callable[[Array], tuple[Array, Array]]
 """World points (N, 3) to places on the canvas (N, 2) and depths (N,), greater being farther."""
 

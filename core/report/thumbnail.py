@@ -1,13 +1,11 @@
 """A small square picture of a motion: three of its poses side by side, as an asset browser shows it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..take.motion import Motion
-from .canvas import GRAY, Canvas, Image
+from .canvas import GRAY, Canvas
 from .stick_figure import draw_figure, stick_figure
-
-Array = NDArray[np.float64]
 
 SIZE = 256
 PAPER = (250, 249, 248)

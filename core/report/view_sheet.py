@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Image
 from ..footage.camera import Camera
 from ..take.motion import Motion
-from .canvas import GRAY, PALE, Canvas, Image
+from .canvas import GRAY, PALE, Canvas
 from .contact_sheet import LABEL, MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
-
-Array = NDArray[np.float64]
 
 PAPER = (250, 249, 248)
 UP = np.array([0.0, 0.0, 1.0])

@@ -13,10 +13,9 @@ the estimate cannot know of itself:
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammainc
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 TOLERANCE_SHARE = 0.025
 """Of the performer's stature: four to five centimeters of a grown-up's joints."""

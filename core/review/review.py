@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.regions import RegionNoise, limb_widths
@@ -16,8 +17,6 @@ from ..progress import Job, Part, within
 from ..take.take import Take
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
-
-Array = NDArray[np.float64]
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
@@ -58,7 +57,7 @@ class Review:
     """(F,) V_sum [px per frame]."""
     confidence: Array
     """(F,) from 0 to 1; NaN for a method without uncertainty."""
-    keyframe_indices: NDArray[np.intp]
+    keyframe_indices: IndexArray
     """(K,) places in the clip that were given as keyframes."""
     weak_frames: tuple[WeakFrame, ...]
     """Frames worth another keyframe, the worst first."""

@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.human import HUMAN
 from ..body.posture_fields import FARTHEST_M
 from ..errors import InputError
@@ -18,8 +18,6 @@ from ..files.fields import Fields
 from ..files.json_file import read_json, shown
 from ..files.number_lists import number_array
 from ..footage.camera import Camera
-
-Array = NDArray[np.float64]
 
 STANDING_M = 0.004
 """An ankle that truly moves less than this in a frame stands."""

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ..arrays import Array, BoolArray, IndexArray
 
 WEAK_CONFIDENCE = 0.75
 """Frames believed further than this need no keyframe."""
@@ -104,7 +104,7 @@ def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[Wea
     return tuple(_described(evidence, posed, index, worth / found[0][0]) for worth, index in found)
 
 
-def _gap(first: int, last: int, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _gap(first: int, last: int, count: int) -> tuple[IndexArray, IndexArray]:
     """The frames between two keyframes, and how far each is from the nearer one."""
     frame = np.arange(first + 1, last)
     before = frame - first if first >= 0 else np.full(len(frame), count)
@@ -112,9 +112,7 @@ def _gap(first: int, last: int, count: int) -> tuple[NDArray[np.intp], NDArray[n
     return frame, np.minimum(before, after)
 
 
-def _best(
-    squared_error: Array, weak: NDArray[np.bool_], first: int, last: int
-) -> tuple[float, int, int, int]:
+def _best(squared_error: Array, weak: BoolArray, first: int, last: int) -> tuple[float, int, int, int]:
     """The worth of the best new keyframe between two, its index, and the two; 0 where none is weak."""
     frame, distance = _gap(first, last, len(squared_error))
     candidates = frame[weak[frame] & (distance >= NEAREST)]

@@ -5,9 +5,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import chunks
+from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_fields import FARTHEST_M, posture_to_json, read_posture, rounded
@@ -16,8 +15,6 @@ from ..errors import InputError
 from ..files.fields import Fields, listed
 from ..files.json_file import read_json, shown, write_json
 from ..prior.keyframes import Keyframe, Matched
-
-Array = NDArray[np.float64]
 
 NAMES_LONGEST = 200
 FEWEST_KEYFRAMES = 2

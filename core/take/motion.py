@@ -5,12 +5,10 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

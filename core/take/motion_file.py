@@ -6,8 +6,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..body.actor import Actor
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -17,8 +17,6 @@ from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
 from ..files.number_lists import number_array
 from .motion import Motion
-
-Array = NDArray[np.float64]
 
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**29

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.rotations import hinge
@@ -14,8 +14,6 @@ from ...core.body.skeleton import Placement, Skeleton
 from ...core.errors import InputError
 from .bones import BoneModel, bone_models
 from .object_space import object_space
-
-Array = NDArray[np.float64]
 
 LARGEST_MISFIT = 0.01
 """Share of stature by which bones may lie off the skeleton before the armature counts as another one."""

@@ -5,14 +5,12 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 from mathutils import Matrix
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from ...core.body.kinematics import Body
 from ...core.body.shapes import Piece, body_pieces, marker_parts
 from ...core.footage.marker_style import MarkerStyle
 from .actor_lengths import skeleton_bones
-
-Array = NDArray[np.float64]
 
 SIDES_OF_RING = 20
 RINGS_OF_CAP = 4
@@ -53,7 +51,7 @@ def build_body_mesh(
         materials.append(_material(marker.name, marker.color_srgb))
     axes = {model.name: model for model in skeleton_bones(armature_object, body.skeleton)}
     vertices: list[Array] = []
-    faces: list[NDArray[np.intp]] = []
+    faces: list[IndexArray] = []
     colors: list[int] = []
     groups: dict[str, range] = {}
     count = 0
@@ -105,7 +103,7 @@ def _limb(piece: Piece) -> Array:
     return np.stack(rings)
 
 
-def _quads(rings: int) -> NDArray[np.intp]:
+def _quads(rings: int) -> IndexArray:
     """(rings - 1, sides, 4) vertex indices of the bands between neighboring rings."""
     ring = np.arange(rings - 1)[:, None] * SIDES_OF_RING
     side = np.arange(SIDES_OF_RING)[None, :]
@@ -114,7 +112,7 @@ def _quads(rings: int) -> NDArray[np.intp]:
     return np.stack(corners, axis=-1)
 
 
-def _mesh(name: str, vertices: Array, faces: NDArray[np.intp], colors: list[int]) -> bpy.types.Mesh:
+def _mesh(name: str, vertices: Array, faces: IndexArray, colors: list[int]) -> bpy.types.Mesh:
     mesh = bpy.data.meshes.new(f"{name} Body")
     mesh.from_pydata(vertices.tolist(), [], faces.tolist())
     mesh.polygons.foreach_set("material_index", np.array(colors, np.int32))

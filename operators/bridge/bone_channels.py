@@ -5,16 +5,14 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body import rotations
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
 from .actor_lengths import skeleton_bones
 from .bones import BoneModel
 from .object_space import ObjectSpace, object_space
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,13 +14,11 @@ pose is. Editing the rest pose to an A pose, or applying the object's rotation, 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Segment, Skeleton
-
-Array = NDArray[np.float64]
 
 STRAIGHT = 1.0 - 1e-6
 """Cosine above which a segment continues another."""

@@ -4,16 +4,14 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.footage.camera import Camera
 from .footage import Footage
 from .footage_camera import may_move
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
-
-Array = NDArray[np.float64]
 
 STILL = 1e-6
 """Largest change of the camera's matrix [m or 1] that still counts as rounding."""

@@ -3,9 +3,8 @@
 from collections.abc import Callable, Iterable
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.take.motion import Motion
@@ -14,8 +13,6 @@ from .actor_lengths import skeleton_bones
 from .bone_channels import BoneChannels, bone_channels
 from .keys import add_generated_keys, copy_as_generated, ensure_fcurve, remove_generated_keys
 from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
-
-Array = NDArray[np.float64]
 
 
 def posture_columns(

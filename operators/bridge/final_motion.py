@@ -4,8 +4,8 @@ from collections.abc import Generator, Sequence
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
@@ -23,7 +23,6 @@ from .matched_keyframes import untouched_frames
 from .review_curves import is_review_curve
 from .rotation_modes import rotation_path
 
-Array = NDArray[np.float64]
 Channel = tuple[int, int, str, int]
 """Position of a bone in the rig, column of its values, data path and array index of the property."""
 
@@ -150,7 +149,7 @@ def posed_positions(
     keyframe_action: bpy.types.Action | None,
     skeleton: Skeleton,
     frames: Array,
-) -> NDArray[np.intp]:
+) -> IndexArray:
     """Positions among the frames of those that the animator posed."""
     if keyframe_action is None:
         return np.zeros(0, dtype=np.intp)

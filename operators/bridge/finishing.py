@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.finish.contacts import Contact
@@ -27,7 +26,6 @@ from .final_motion import (
 )
 from .rig import read_rig
 
-Array = NDArray[np.float64]
 Note = tuple[str, dict[str, Any]]
 """A sentence's template, and what fills its braces."""
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.errors import InputError
 from ...core.files.output_folder import real_path
@@ -15,8 +15,6 @@ from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
 from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose
 from .keys import add_generated_keys
-
-Array = NDArray[np.float64]
 
 
 def load_footage(path: Path) -> bpy.types.MovieClip:

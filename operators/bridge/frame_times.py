@@ -1,11 +1,9 @@
 """Where the frames of a clip lie on the scene's time line."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.footage.clips.clip_timing import is_variable_frame_rate
-
-Array = NDArray[np.float64]
 
 
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:

@@ -6,14 +6,12 @@ All functions take a single pose or a batch of them: leading axes `...` are thos
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body import rotations
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
 from .bones import BoneModel
-
-Array = NDArray[np.float64]
 
 SWEEPS = 50
 CONVERGED_RAD = 1e-12

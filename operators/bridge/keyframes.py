@@ -6,8 +6,8 @@ from types import MappingProxyType
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
@@ -21,7 +21,6 @@ from .pose import read_posture
 from .rotation_modes import rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
-Array = NDArray[np.float64]
 Matches = Mapping[float, Matched]
 """By scene frame, as `untouched_frames` gives them: what keyframes were matched with that nobody posed."""
 

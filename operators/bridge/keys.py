@@ -12,7 +12,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...core.arrays import Array, BoolArray, SingleArray
+
 Keys = dict[str, NDArray[np.generic]]
 """Properties of N keys by name: (N,), or (N, 2) for places."""
 
@@ -29,7 +30,7 @@ ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "ty
 FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
 
 
-def _generated(keys: Keys) -> NDArray[np.bool_]:
+def _generated(keys: Keys) -> BoolArray:
     """(N,) which keys are Keymark's, with the values it gave them."""
     back = keys["back"]
     changed = (back != _mark(keys)) & (back != UNMARKED)
@@ -37,7 +38,7 @@ def _generated(keys: Keys) -> NDArray[np.bool_]:
     return (keys["type"] == _enum_value("type", "GENERATED")) & ~changed
 
 
-def _mark(keys: Keys) -> NDArray[np.float32]:
+def _mark(keys: Keys) -> SingleArray:
     """(N,) what tells that keys have the values they have now."""
     values = keys["co"][:, 1].astype(np.float32)
     return np.where(values == UNMARKED, np.float32(MARK_OF_ZERO), values)
@@ -241,7 +242,7 @@ def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str
 
 def _keys_on(
     channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array
-) -> Iterator[tuple[bpy.types.FCurve, Keys, NDArray[np.bool_]]]:
+) -> Iterator[tuple[bpy.types.FCurve, Keys, BoolArray]]:
     """The curves of these paths that have keys on any of the frames, their keys, and which those are."""
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:

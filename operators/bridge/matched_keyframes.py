@@ -8,8 +8,8 @@ from collections.abc import Collection, Sequence
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from .actions import channelbag_for, existing_channelbag
@@ -17,8 +17,6 @@ from .actor_lengths import skeleton_bones
 from .fcurves import bone_path, moved_paths, posture_columns
 from .keys import give_to_animator, matched_frames_of, remove_keys, set_matched_keys
 from .rotation_modes import rotation_path
-
-Array = NDArray[np.float64]
 
 DIGITS = 3
 """To which frames are told apart, as in `keyed_frames`."""

@@ -4,11 +4,9 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-
-Array = NDArray[np.float64]
 
 UNEVEN = 1e-4
 """Relative difference of the scales along the axes that still counts as rounding."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from .actor_lengths import skeleton_bones
@@ -13,8 +13,6 @@ from .bone_channels import bone_channels
 from .joint_frames import posture_from_frames
 from .object_space import evaluated, object_space
 from .rotation_modes import set_rotation
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

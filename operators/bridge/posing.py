@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
@@ -31,8 +31,6 @@ from .footage import Footage
 from .frame_times import scene_frames
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
-
-Array = NDArray[np.float64]
 
 STANDS_HERE = 1.5
 """A body whose markers lie farther off than this many times those of one placed anew stands elsewhere."""

@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
@@ -26,7 +26,6 @@ from .object_space import AT_ORIGIN
 from .rig import rig_at_rest
 from .rotation_modes import rotation_path, rotation_values
 
-Array = NDArray[np.float64]
 Values = dict[str, Array]
 """What each turning bone's channels hold, by bone: those of its rotation, for the root then its location."""
 

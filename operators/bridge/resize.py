@@ -5,15 +5,13 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from .actor_lengths import skeleton_bones
 from .bones import bone_models
 from .object_space import object_space
-
-Array = NDArray[np.float64]
 
 
 def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:

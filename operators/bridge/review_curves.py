@@ -8,13 +8,11 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.review.review import Review
 from .actions import channelbag_for
 from .keys import add_generated_keys, remove_generated_keys
-
-Array = NDArray[np.float64]
 
 GROUP = "Keymark Confidence"
 SUFFIX = " (Keymark)"

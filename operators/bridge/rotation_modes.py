@@ -2,12 +2,10 @@
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
-
-Array = NDArray[np.float64]
 
 SMALL_TURN = 1e-7
 """Below this angle [rad] a rotation has no axis of its own and keeps the one before."""

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.marker_style import MarkerStyle
@@ -17,8 +17,6 @@ from .camera_from_scene import read_camera
 from .footage import Footage
 from .frame_times import scene_frames
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
-
-Array = NDArray[np.float64]
 
 READING = "Reading the footage's times"
 

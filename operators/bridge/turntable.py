@@ -10,16 +10,14 @@ from math import atan2, cos, hypot, pi, sin
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from .actions import assign_action, channelbag_for
 from .actor_lengths import skeleton_bones
 from .keys import add_generated_keys
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
-
-Array = NDArray[np.float64]
 
 SAMPLES = 24
 """Frames at which the actor is looked at to find where it moves and faces."""

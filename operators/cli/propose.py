@@ -3,9 +3,7 @@
 import argparse
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...core.arrays import Array, IndexArray
 from ...core.files.json_file import write_whole
 from ...core.footage.markers import track_markers
 from ...core.prior.marker_speed import marker_speed, propose_keyframes
@@ -29,13 +27,13 @@ def propose_command(arguments: argparse.Namespace) -> None:
         console.finish(result, " ".join(str(frame) for frame in frames))
 
 
-def _speed(take: Take) -> Job[NDArray[np.float64]]:
+def _speed(take: Take) -> Job[Array]:
     tracks = yield from within(
         "Following the markers", track_markers(open_clip(take), take.markers), 0.0, 1.0
     )
     return marker_speed(tracks)
 
 
-def _write_picture(path: Path, speed: NDArray[np.float64], indices: NDArray[np.intp], start: int) -> None:
+def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
     picture = speed_plot(speed, [int(index) for index in indices], start)
     write_whole(path, lambda beside: write_png(str(beside), picture))

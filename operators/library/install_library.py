@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.arrays import Image
 from ..shell.error_reports import reported
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
@@ -17,7 +18,6 @@ from .library_choice import chosen_library
 if TYPE_CHECKING:
     from ...core.library.library import Library
     from ...core.progress import Job
-    from ...core.report.canvas import Image
 
 FOLDER = "keymark"
 """In the asset library."""

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, SingleArray
 from ..bridge.footage import Footage
 from ..shell.takes import find_take, footage_of
 
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.marker_style import MarkerStyle
 
-Array = NDArray[np.float64]
 Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...]]
 
 MOST_PREVIEWS = 4
@@ -33,7 +31,7 @@ class ColorMask:
     """Name of the marker, or names of all that bear the color."""
     color: tuple[float, float, float]
     """The marker's color in sRGB, 0 to 1."""
-    coverage: NDArray[np.float32]
+    coverage: SingleArray
     """(rows, columns) share of each pixel of the measuring grid, 0 to 1."""
     outlines: list[Array]
     """Closed outlines (N, 2) in footage pixels, the longest first."""

@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..shell.keyed_frames import forget, has_frame, matched_frames, posed_frames
 from ..shell.takes import actor_of
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from ...core.body.posture import Posture
     from ...core.matching.candidate import Candidate
     from ...core.matching.match_take import LibraryChoice
@@ -87,7 +85,7 @@ def keep_choice(
     take: bpy.types.PropertyGroup,
     choice: "LibraryChoice",
     keyframes: "Sequence[Keyframe]",
-    clip_frames: "NDArray[np.float64]",
+    clip_frames: "Array",
 ) -> None:
     """Key what matching found on the actor, and keep what is known of it, in place of what was found earlier.
 
@@ -130,7 +128,7 @@ def _keep_matches(
     take: bpy.types.PropertyGroup,
     keyframes: "Sequence[Keyframe]",
     known: "Mapping[int, Sequence[Candidate]]",
-    clip_frames: "NDArray[np.float64]",
+    clip_frames: "Array",
 ) -> None:
     for keyframe in keyframes:
         matched = keyframe.matched
@@ -145,9 +143,7 @@ def _keep_matches(
         key_matches(take, frames, [keyframe.posture for keyframe in keyframes])
 
 
-def key_matches(
-    take: bpy.types.PropertyGroup, frames: "NDArray[np.float64]", postures: "Sequence[Posture]"
-) -> None:
+def key_matches(take: bpy.types.PropertyGroup, frames: "Array", postures: "Sequence[Posture]") -> None:
     """Key postures at scene frames (K,) as matched ones, and let the keyframes animate the actor."""
     from ..bridge.actions import assign_action
     from ..bridge.matched_keyframes import write_matched

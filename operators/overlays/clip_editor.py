@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from ..bridge.camera_from_scene import read_lens
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import footage_of
@@ -15,8 +15,6 @@ from .picture import paint
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +27,7 @@ class ClipView:
     focal_px: float
     """Its focal length [px of the footage]."""
 
-    def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
+    def places(self, review: "Review", indices: IndexArray) -> Array:
         """Places (I, 13, 2) of the points in the region; a moving camera's, each as its own frame saw it."""
         return self.footage.to_region(review.image_points[indices])
 

@@ -13,12 +13,12 @@ import bpy
 import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import Array, SingleArray
 from .figures import triangles
 
 Color = tuple[float, float, float, float]
-Array = NDArray[np.float64]
 
 HALO: Color = (0.0, 0.0, 0.0, 0.75)
 """What sets lines off from footage of any brightness."""
@@ -100,7 +100,7 @@ def polygons(corners: ArrayLike, color: ArrayLike) -> None:
     batch.draw(shader)
 
 
-def _positions(places: Array) -> NDArray[np.float32]:
+def _positions(places: Array) -> SingleArray:
     """(V, 3): lines of varying thickness take no plane coordinates."""
     flat = np.zeros((places.size // places.shape[-1], 3), dtype=np.float32)
     flat[:, : places.shape[-1]] = places.reshape(-1, places.shape[-1])

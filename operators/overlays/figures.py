@@ -6,9 +6,9 @@ Places are region pixels unless a function says otherwise. A place that is not f
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ...core.arrays import Array
 
 MOST_DASHES = 1000
 """No line is cut into more dashes: one that reaches far outside a zoomed view gets longer ones."""

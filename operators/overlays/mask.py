@@ -12,8 +12,8 @@ import gpu
 import numpy as np
 from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
-from numpy.typing import NDArray
 
+from ...core.arrays import SingleArray
 from ...core.errors import KeymarkError
 from ..markers.mask_previews import (
     ColorMask,
@@ -27,8 +27,6 @@ from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
 from . import drawing
 from .figures import segments
-
-Array = NDArray[np.float64]
 
 DARKENING: Final = 0.5
 TINT: Final = 0.65
@@ -66,7 +64,7 @@ def draw_masks(preview: Preview, view: FootageView) -> None:
     _names(preview.masks, view)
 
 
-def tinted(masks: Sequence[ColorMask]) -> NDArray[np.float32]:
+def tinted(masks: Sequence[ColorMask]) -> SingleArray:
     """The masks as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
     rows, columns = masks[0].coverage.shape
     picture = np.zeros((rows, columns, 4), dtype=np.float32)

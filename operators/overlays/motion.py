@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from ..shell.footage_view import FootageView
 from ..shell.messages import label
 from ..shell.results import review_of
@@ -22,7 +22,6 @@ from .style import Style, body_scale
 if TYPE_CHECKING:
     from ...core.review.review import Review
 
-Array = NDArray[np.float64]
 
 UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
 """Of a marker that was removed since the reconstruction."""
@@ -37,7 +36,7 @@ class MotionView(Protocol):
     def footage(self) -> FootageView | None:
         """Where the footage is, if the editor shows it."""
 
-    def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
+    def places(self, review: "Review", indices: IndexArray) -> Array:
         """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
 
     def pixels_per_meter(self, review: "Review", index: int) -> Array:

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ..shell.messages import label
 from .drawing import INK
 from .figures import dashes, segments
@@ -15,7 +15,6 @@ from .style import DASH, GAP, Style, paler
 if TYPE_CHECKING:
     from ...core.review.review import Review
 
-Array = NDArray[np.float64]
 MarkerColor = tuple[float, float, float]
 
 

@@ -3,16 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Stroke
 from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, Style, side_color
 
-Array = NDArray[np.float64]
 
-
-def window(index: int, before: int, after: int, frame_count: int) -> NDArray[np.intp]:
+def window(index: int, before: int, after: int, frame_count: int) -> IndexArray:
     """Places of the frames from `before` ones before to `after` ones after one, within the clip."""
     return np.arange(max(0, index - before), min(frame_count, index + after + 1))
 
@@ -20,9 +18,9 @@ def window(index: int, before: int, after: int, frame_count: int) -> NDArray[np.
 def paths(
     names: Sequence[str],
     places: Array,
-    frames: NDArray[np.intp],
+    frames: IndexArray,
     index: int,
-    keyframe_indices: NDArray[np.intp],
+    keyframe_indices: IndexArray,
     style: Style,
 ) -> list[Item]:
     """The ways of N points.

@@ -6,12 +6,11 @@ from itertools import groupby
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import Array
 from . import drawing
 from .drawing import Color
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

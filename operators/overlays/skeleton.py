@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, BoolArray
 from .figures import circles, segments
 from .picture import Fill, Item, Stroke
 from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, Style, side_color
@@ -12,7 +12,6 @@ from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, Style, side_color
 if TYPE_CHECKING:
     from ...core.review.review import Review
 
-Array = NDArray[np.float64]
 
 NECK, PELVIS = "neck", "pelvis"
 """The middle between the shoulders, and between the hips."""
@@ -69,7 +68,7 @@ def _limbs(names: tuple[str, ...], places: Array, style: Style) -> list[Item]:
     ]
 
 
-def _joints(places: Array, uncertain: NDArray[np.bool_], colors: Array, style: Style) -> list[Item]:
+def _joints(places: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
     """Discs, and rings where a point is uncertain."""
     rims = circles(places, style.size(JOINT), 16)
     seen = np.isfinite(places).all(axis=-1)

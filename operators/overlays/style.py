@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from .drawing import Color, faded
 
 LEFT: Color = (0.34, 0.71, 0.91, 1.0)
@@ -53,7 +53,7 @@ class Style:
         return HALO * self.opacity
 
 
-def body_scale(pixels_per_meter: NDArray[np.float64], scale: float) -> float:
+def body_scale(pixels_per_meter: Array, scale: float) -> float:
     """How large a body is drawn of which a meter is so large at each point (N,) [region px]."""
     seen = pixels_per_meter[np.isfinite(pixels_per_meter)]
     meter = float(np.median(seen)) / scale if len(seen) else METER

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, BoolArray
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
 from ..shell.messages import label
 from ..shell.results import Remembered, reading_of, review_of
@@ -16,8 +16,6 @@ from .drawing import Color, faded
 from .figures import diamonds, segments
 from .picture import Fill, Item, Label, Stroke, paint
 from .timeline_figures import graph, in_view, joined, pointers, squares, strip
-
-Array = NDArray[np.float64]
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 
@@ -212,7 +210,7 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     ]
 
 
-def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
+def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) -> list[Item]:
     """Diamonds on the graph: hollow where the actor is still to be posed, filled where it is."""
     if not len(frames):
         return []
@@ -225,7 +223,7 @@ def proposals(frames: Array, level: Array, done: NDArray[np.bool_], timeline: Ti
     ]
 
 
-def matches(frames: Array, level: Array, sure: NDArray[np.bool_], timeline: Timeline) -> list[Item]:
+def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
     """Squares on the graph at keyframes from a library: hollow where in doubt, filled where sure."""
     x = timeline.places(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)

@@ -4,9 +4,8 @@ Places are region pixels.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...core.arrays import Array
 
 UNSURE = np.array([0.90, 0.42, 0.10])
 HALFWAY = np.array([0.93, 0.83, 0.35])

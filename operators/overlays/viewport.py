@@ -5,16 +5,14 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, IndexArray
 from ..shell.footage_view import FootageView, footage_view
 from .motion import picture, shown
 from .picture import paint
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +27,7 @@ class WorldView:
     size: Array
     """(2,) of the region [px]."""
 
-    def places(self, review: "Review", indices: NDArray[np.intp]) -> Array:
+    def places(self, review: "Review", indices: IndexArray) -> Array:
         """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
         return self.project(review.points[indices])
 

@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import Array
 from ...core.footage.camera import Camera
 from ..bridge.camera_from_scene import read_lens
 from .takes import footage_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

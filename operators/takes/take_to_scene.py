@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.take.take import Take, check_frame_count, open_clip, rate_note, read_take
 from ..actor.new_actor import add_actor
 from ..bridge.actions import assign_action
@@ -25,7 +24,7 @@ class OpenedTake:
     """A take whose clip has been gone through."""
 
     take: Take
-    time_s: NDArray[np.float64]
+    time_s: Array
     """(F,) time of each frame [s]."""
     notes: tuple[str, ...]
     """What a person should know, one sentence each."""

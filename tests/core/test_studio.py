@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.review.score import read_truth
-from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 
@@ -20,8 +20,6 @@ from studio.described import Described, posed_frames  # noqa: E402
 from studio.limbs import foot_clearance  # noqa: E402
 from studio.look import MARKERS  # noqa: E402
 from studio.performance import FPS, Performance, principal_points  # noqa: E402
-
-Array = NDArray[np.float64]
 
 OTHERS = [name for name in TAKES if name != DEMONSTRATION.name]
 FASTEST_MPS = 14.0

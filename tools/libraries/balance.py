@@ -3,13 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
-from numpy.typing import NDArray
 
 from .moment import Foot, Moment
 from .solving import BODY, posture_of
-
-Array = NDArray[np.float64]
 
 GRAVITY_MPS2 = 9.81
 SHARES_OF_MASS = {

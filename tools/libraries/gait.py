@@ -10,15 +10,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
 from .moment import SIDES, Ankle, Arm, Foot, Moment, Turn, swung_arm
 from .solving import BODY, ankle_of, hips_height
-
-Array = NDArray[np.float64]
 
 RATE_HZ = 100.0
 STANCE = 0.61

@@ -4,15 +4,13 @@ Joints beyond their range, feet that slide or sink, arms in the trunk.
 """
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryMotion
 from keymark.core.library.motion_playback import course
-from numpy.typing import NDArray
 
 from .solving import BALL, HEEL
-
-Array = NDArray[np.float64]
 
 TRUNK_RADIUS_M = (0.15, 0.105)
 """Half the trunk's width and depth between waist and chest."""

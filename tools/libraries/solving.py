@@ -7,16 +7,14 @@ or ball is on the floor, and the foot as drawn with the skeleton may reach a lit
 from functools import lru_cache
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
-from numpy.typing import NDArray
 from studio.limbs import MIRROR, STRAIGHTEST, X, Y, Z, arm_rotations, leg_rotations, turned
 
 from .moment import SIDES, Ankle, Arm, Foot, Leg, Moment
-
-Array = NDArray[np.float64]
 
 BODY = Body(Actor.from_stature(1.75))
 """Whom the libraries are posed on."""

@@ -6,16 +6,15 @@ are keyed in the world and the legs reach for them, so a planted foot stands exa
 """
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from .curves import Keys, keyed, sway
 from .limbs import turned
 from .performance import SIDES, STEPS_PER_FRAME, Choreography, Performance, compose, stored_times
 
-Array = NDArray[np.float64]
 Step = tuple[float, float, tuple[float, float], float]
 """Frames of lifting and landing, where it lands (x, y) [m], how high it rises on the way [m]."""
 

@@ -4,16 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.footage.camera import Camera
-from numpy.typing import NDArray
 
 from .look import Look
 from .performance import FPS, Choreography, Performance, compose, principal_points, stored_times
 from .surroundings import Room, Thing
 
-Array = NDArray[np.float64]
 Plan = Callable[[Body, Array, np.random.Generator], Choreography]
 SHADOW_CLOSE_BY = (0.08, 0.30, 0.0)
 KEYFRAME_EVERY = 10.0

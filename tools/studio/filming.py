@@ -8,16 +8,14 @@ from pathlib import Path
 import bpy
 import cv2
 import numpy as np
+from keymark.core.arrays import Array, BoolArray, Image
 from keymark.core.footage.camera import Camera
 from mathutils import Matrix
-from numpy.typing import NDArray
 
 from .look import MARKERS
 from .performance import FPS, Performance
 from .performer import Performer
 from .room import BuiltRoom
-
-Array = NDArray[np.float64]
 
 SHUTTER_FRAMES = 0.5
 ROOM_SAMPLES = 24
@@ -167,14 +165,14 @@ def _seam(shape: tuple[int, int], bounds: tuple[int, int, int, int], resolution:
     return np.clip(np.minimum(down[:, None], across[None, :]) / MARGIN_PX, 0.0, 1.0)
 
 
-def add_sensor_noise(image: Array, random: np.random.Generator, strength: float) -> NDArray[np.uint8]:
+def add_sensor_noise(image: Array, random: np.random.Generator, strength: float) -> Image:
     """Eight-bit image with noise that is strongest in the shadows, as a small sensor's is after gamma."""
     spread = strength * (1.4 - 0.8 * image)
     noisy = 255.0 * image + spread * random.standard_normal(image.shape)
     return np.asarray(np.clip(np.rint(noisy), 0, 255), dtype=np.uint8)
 
 
-def encode(images: list[NDArray[np.uint8]], path: Path, quality: str) -> None:
+def encode(images: list[Image], path: Path, quality: str) -> None:
     """Write images as H.264 in MP4, by Blender's sequencer."""
     with tempfile.TemporaryDirectory() as folder:
         for number, image in enumerate(images):
@@ -231,7 +229,7 @@ def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[
             thing.hide_render = False
 
 
-def marker_masks(grays: list[int]) -> NDArray[np.bool_]:
+def marker_masks(grays: list[int]) -> BoolArray:
     """(M, height, width) the pixels in whose center each marker is seen, from one flat render."""
     image = np.rint(255.0 * render(1)[..., 0])
     return np.stack([image == gray for gray in grays])

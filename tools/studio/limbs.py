@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
 from keymark.core.body.rotations import exponential, hinge, logarithm
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 X, Y, Z = np.eye(3)
 MIRROR = np.diag([-1.0, 1.0, 1.0])

@@ -6,10 +6,10 @@ Frames count from 0 and may be fractional; angles are degrees here.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from keymark.core.arrays import Array, IndexArray
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from .limbs import (
@@ -23,7 +23,6 @@ from .limbs import (
     within_reach,
 )
 
-Array = NDArray[np.float64]
 Channels = dict[str, Array]
 
 FPS = 30
@@ -85,13 +84,13 @@ class Performance:
     postures: Posture
     feet: dict[str, Array]
 
-    def at(self, times: Array) -> NDArray[np.intp]:
+    def at(self, times: Array) -> IndexArray:
         """Indices of the stored times nearest to `times` [frames]."""
         step = self.times[1] - self.times[0]
         return np.clip(np.rint((times - self.times[0]) / step), 0, len(self.times) - 1).astype(np.intp)
 
     @property
-    def middles(self) -> NDArray[np.intp]:
+    def middles(self) -> IndexArray:
         """Indices of the stored times in the middle of each frame's exposure."""
         return self.at(np.arange(float(self.frame_count)))
 
@@ -173,6 +172,6 @@ def _ankle(body: Body, side: str, pelvis_rotation: Array, hip: Array, knee: Arra
     return np.asarray((pelvis_rotation @ (leg + out)[..., None])[..., 0])
 
 
-def principal_points(performance: Performance, indices: NDArray[np.intp]) -> Array:
+def principal_points(performance: Performance, indices: IndexArray) -> Array:
     """The true principal points (N, 13, 3) [m] at stored times."""
     return performance.body.points(performance.body.pose(performance.postures[indices]))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
@@ -15,8 +16,6 @@ from .limbs import arm_rotations
 from .look import Color, Look
 from .performance import Performance
 from .performer_shape import body_parts, movers, part_mesh
-
-Array = NDArray[np.float64]
 
 VOXEL_M = 0.009
 SMOOTHING_PASSES = 5

@@ -9,10 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
 Ring = tuple[float, float, float, float]
 """Share of the length, half-width sideways, half-width front to back, shift to the back."""
 

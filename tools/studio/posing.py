@@ -1,11 +1,9 @@
 """Keyframes as a person poses them: better on the screen than in depth, and with habits."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 ERROR_RMS_M = 0.025
 HABIT_SHARE = 0.4

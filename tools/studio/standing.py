@@ -6,14 +6,13 @@ Times are seconds; angles are degrees.
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from .curves import sway
 from .limbs import FreeLeg, foot_clearance, turned
 from .performance import FPS, SIDES, Channels, Choreography
 
-Array = NDArray[np.float64]
 Pose = Mapping[str, float]
 Mix = Sequence[tuple[Array, Pose]]
 

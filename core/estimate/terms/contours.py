@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...observation.contours import SHARES, SIDES, ContourModel
 from ..clip_state import ClipState
 from .term import NormalEquations, student_weight
-
-Array = NDArray[np.float64]
 
 SURFACE_SHARE = 0.2
 """How far a part's contour as a whole may lie from a perfect one, of its half-width: clothes, muscles."""

@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...footage.camera import Camera
 from ...observation import depths
 from ..clip_state import ClipState
 from .term import NormalEquations
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

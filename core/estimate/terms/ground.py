@@ -7,12 +7,10 @@ a single picture says as well.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, IndexArray
 from ..clip_state import ClipState
 from .term import NormalEquations, student_weight
-
-Array = NDArray[np.float64]
 
 DEGREES = 3.0
 """Of Student's t: leaps and stairs are forgiven."""
@@ -41,7 +39,7 @@ class GroundTerm:
         residual, _ = self._residual(state)
         return np.asarray(0.5 * DEGREES * np.log1p(residual**2 / DEGREES))
 
-    def _residual(self, state: ClipState) -> tuple[Array, NDArray[np.intp]]:
+    def _residual(self, state: ClipState) -> tuple[Array, IndexArray]:
         """(F,) in standard deviations, and which point it is."""
         heights = state.body.points(state.pose)[:, list(self.points), 2]
         lower = heights.argmin(axis=1)

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..clip_state import ClipState
 from .term import NormalEquations
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, IndexArray
 from ..block_banded import BlockBanded
 from ..clip_state import ClipState
 from .term import NormalEquations
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +38,7 @@ class QuadraticBuilder:
         """
         self.matrix.add_combination(columns, coefficients, np.asarray(std, dtype=np.float64) ** -2.0)
 
-    def add_blocks(self, frames: NDArray[np.intp], information: Array) -> None:
+    def add_blocks(self, frames: IndexArray, information: Array) -> None:
         """Add full information matrices (K, n, n) about the leading n unknowns of K different frames."""
         count = information.shape[-1]
         self.matrix.diagonal[frames, :count, :count] += information

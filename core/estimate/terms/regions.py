@@ -8,14 +8,12 @@ angle to wrap and nothing singular when the region is round (instead of S_θ and
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, IndexArray
 from ...footage.region_tracks import RegionTracks
 from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
 from .term import NormalEquations, student_weight
-
-Array = NDArray[np.float64]
 
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
@@ -87,9 +85,7 @@ class ObservedRegions:
         quality = np.where(seen, tracks.quality, 0.0)
         return cls(tracks.centroid, moments, axes, deviation, tracks.area, quality)
 
-    def __getitem__(
-        self, index: slice | NDArray[np.intp] | tuple[slice, NDArray[np.intp]]
-    ) -> "ObservedRegions":
+    def __getitem__(self, index: slice | IndexArray | tuple[slice, IndexArray]) -> "ObservedRegions":
         """Some of the frames, or of the frames and markers."""
         return ObservedRegions(
             self.centroid[index],
@@ -135,7 +131,7 @@ def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tupl
     return residual, np.concatenate(rows, axis=-2)
 
 
-def limb_widths(model: RegionModel, places: Array, frame: NDArray[np.intp]) -> Array:
+def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
     """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
     scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
     return np.asarray(scale[:, None] * model.half_widths_m)

@@ -7,12 +7,9 @@ distribution allows for it without loosening the rest of the clip (Lange, Little
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..clip_state import ClipState
 from .term import NormalEquations
-
-Array = NDArray[np.float64]
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 

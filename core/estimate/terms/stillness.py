@@ -10,13 +10,11 @@ once for the speed and once for the height.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, IndexArray
 from ...footage.camera import Camera
 from ..clip_state import ClipState
 from .term import NormalEquations
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +53,7 @@ class StillnessTerm:
             (jacobian[1:] * weight[..., None]).reshape(shape),
         )
 
-    def _standing(self, travel: Array, middle: Array, frame: NDArray[np.intp]) -> Array:
+    def _standing(self, travel: Array, middle: Array, frame: IndexArray) -> Array:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
         sight = self.camera.sight(middle, frame[:, None])
         along = np.sum(travel * sight, axis=-1, keepdims=True) * sight

@@ -3,12 +3,10 @@
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, IndexArray
 from ..block_banded import BlockBanded
 from ..clip_state import ClipState
-
-Array = NDArray[np.float64]
 
 
 class NormalEquations:
@@ -62,7 +60,7 @@ class Term(Protocol):
         ...
 
 
-def student_weight(squared: Array, degrees: float, count: NDArray[np.intp] | int) -> Array:
+def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:
     """Weight of rows under Student's t noise (Lange, Little & Taylor 1989), 1 at zero residual.
 
     Args:

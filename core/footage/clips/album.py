@@ -14,9 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
-
-Image = NDArray[np.uint8]
 
 _QUALITY: Final = 90
 """Of the compression; its error stays below that of the video."""
@@ -31,7 +30,7 @@ class Album:
     """
 
     factor: int = 1
-    _pictures: dict[int, NDArray[np.uint8]] = field(default_factory=dict)
+    _pictures: dict[int, Image] = field(default_factory=dict)
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
@@ -67,7 +66,7 @@ class Album:
         """Whether there is a picture of a frame."""
         return index in self._pictures
 
-    def pictures(self, indices: Sequence[int] | NDArray[np.intp]) -> tuple[Image, NDArray[np.bool_]]:
+    def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
         """Return the small pictures of F frames, (F, rows, columns, 3), and (F,) which of them there are.
 
         Those that are missing are black.

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from ...arrays import Image
 
 _LOOKED_AT: Final = 64
 """Rows and columns that tell enough, about."""
@@ -25,7 +24,7 @@ def is_blank(image: Image) -> bool:
     return not any(_has_contrast(looked_at[..., channel].ravel()) for channel in range(3))
 
 
-def _has_contrast(levels: NDArray[np.uint8]) -> bool:
+def _has_contrast(levels: Image) -> bool:
     stray = int(_STRAY * len(levels))
     ordered = np.partition(levels, (stray, len(levels) - 1 - stray))
     return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > _CONTRAST)

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Image
 from ...errors import InputError
 from .clip_timing import is_variable_frame_rate
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
-
-Image = NDArray[np.uint8]
 
 DEFAULT_SEQUENCE_FPS = 24.0
 """Frame rate of an image sequence whose rate nobody names, as a new Blender scene has."""
@@ -113,7 +111,7 @@ class Clip:
         """
         return self.source.frames()
 
-    def time_stamps(self) -> NDArray[np.float64]:
+    def time_stamps(self) -> Array:
         """Return the time of every frame in seconds, (F,), by a pass that converts no picture."""
         return np.fromiter(self.source.time_stamps(), dtype=np.float64)
 

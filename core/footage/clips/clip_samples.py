@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Image
 from ...errors import InputError
 from ..segmentation.working_image import halvings, measuring_image
 from .clip import Clip
-
-Image = NDArray[np.uint8]
 
 SAMPLED_FRAMES: Final = 24
 """Twice as many as colors are learned from, so that most are judged by colors learned elsewhere."""

@@ -8,12 +8,10 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Image
 from .blank_frames import is_blank
 from .interlacing import combing
-
-Image = NDArray[np.uint8]
 
 _SIDE: Final = 64
 """Rows and columns of the pictures that are compared, about."""

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Image
 from .clip import Clip
 
-Image = NDArray[np.uint8]
 Stamped = tuple[float, Image]
 
 _EARLY: Final = 0.1

@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Image
 from ...errors import InputError
 from ...files.fields import listed
 from .one_image import read_image
-
-Image = NDArray[np.uint8]
 
 MOST_IMAGES: Final = 10**6
 """Of one folder; eleven hours of film."""

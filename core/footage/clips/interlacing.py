@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from ...arrays import Image
 
 _STEP: Final = 8
 """Levels by which neighboring rows differ where a moving edge is combed."""

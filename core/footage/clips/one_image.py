@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import MOST_PIXELS
+from ...arrays import Image
 from ...errors import InputError
 from ...files.regular_file import ordinary_size
 from .opencv_silence import opencv_silence
-
-Image = NDArray[np.uint8]
 
 LARGEST_BYTES: Final = 2**31
 """Of one image: four times the pixels that are read, at sixteen bits."""
@@ -53,7 +52,7 @@ def read_image(path: Path) -> Image:
     return np.ascontiguousarray(image[:, :, :3])
 
 
-def _decoded(data: NDArray[np.uint8]) -> NDArray[Any] | None:
+def _decoded(data: Image) -> NDArray[Any] | None:
     if not data.size or not _is_whole(data.tobytes()):
         return None
     try:

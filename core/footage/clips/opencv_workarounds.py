@@ -6,9 +6,8 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from ...arrays import Image
 
 _DEEP_YUV420: Final = b"Y3\x0b"
 """How FFmpeg names planar YCbCr with colors at half the resolution in more than eight bits; the depth

@@ -15,11 +15,9 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .opencv_silence import opencv_silence
-
-FloatArray = NDArray[np.float64]
 
 MOST_PACKETS: Final = 20_000
 """Of a longer file no more are read: ten minutes of it tell whether the rate varies."""
@@ -38,7 +36,7 @@ class Packets:
         complete: whether that is all the file holds.
     """
 
-    time_s: FloatArray
+    time_s: Array
     complete: bool
 
 

@@ -7,9 +7,10 @@ from typing import Final
 
 import numpy as np
 
+from ...arrays import Image
 from ...errors import InputError
 from ..segmentation.working_image import halvings, measuring_image
-from .clip import Clip, Image
+from .clip import Clip
 from .clip_samples import SAMPLED_FRAMES, ClipSamples, sample_clip
 from .packets import quickly_found
 from .video_file import VideoFile

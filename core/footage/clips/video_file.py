@@ -9,15 +9,13 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Image
 from ...errors import InputError
 from .container import check_container, check_pixels
 from .opencv_silence import opencv_silence
 from .opencv_workarounds import fill_last_rows
 from .video_notes import video_notes
-
-Image = NDArray[np.uint8]
 
 _FALLBACK_FPS = 24.0
 _HIGHEST_PLAUSIBLE_FPS = 2000.0

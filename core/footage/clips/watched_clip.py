@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Image
 from .album import Album
 from .clip import Clip, FrameSource
 from .frame_checks import FrameWatch
-
-Image = NDArray[np.uint8]
 
 
 @dataclass(eq=False)

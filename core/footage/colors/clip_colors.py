@@ -8,8 +8,8 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
 from ..detections import Lesson, Sightings
@@ -19,8 +19,6 @@ from ..segmentation.working_image import halvings, learning_image, measuring_ima
 from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel
 from .color_names import nearest_colors, share_of_color
-
-Image = NDArray[np.uint8]
 
 _SAMPLES: Final = 12
 """Frames that are learned from first; up to three times as many are kept."""
@@ -132,7 +130,7 @@ class ClipColors:
         }
 
     @property
-    def _missing(self) -> NDArray[np.intp]:
+    def _missing(self) -> IndexArray:
         return np.flatnonzero(self._most_found < _FEWEST_LEARNED)
 
     def _learn(self) -> None:
@@ -150,9 +148,7 @@ class ClipColors:
         self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
         self.samples.update(self._samples)
 
-    def _allowed(
-        self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions
-    ) -> NDArray[np.uint8] | None:
+    def _allowed(self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions) -> Image | None:
         """Return where each color may be looked for on the learning grid, (C, rows, columns)."""
         if frame >= len(expected.center):
             return None
@@ -175,7 +171,7 @@ def _mean_color(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def _complaint(style: MarkerStyle, counts: NDArray[np.float64]) -> str:
+def _complaint(style: MarkerStyle, counts: Array) -> str:
     """Say why a color cannot be found among the background's, (CELL_COUNT,) pixels of each color cell."""
     color = list(style.color_srgb)
     share = share_of_color(counts, style.color_srgb)

@@ -7,14 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, BoolArray, Image, IntArray
 from .color_model import ColorDistribution, ColorModel, color_model
 from .color_space import chromaticity
 from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
-
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 # What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
 _SATURATION_DEVIATION: Final = 0.15
@@ -46,14 +43,14 @@ class LearnedColors:
     """
 
     model: ColorModel
-    found: NDArray[np.int64]
-    background_counts: FloatArray
+    found: IntArray
+    background_counts: Array
 
 
 def learn_colors(
     images: Sequence[Image],
     samples_srgb: Sequence[tuple[int, int, int]],
-    allowed: Sequence[NDArray[np.uint8] | None] | None = None,
+    allowed: Sequence[Image | None] | None = None,
 ) -> LearnedColors:
     """Learn each marker's distribution of color and the background's colors.
 
@@ -100,7 +97,7 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
     return ColorDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
 
 
-def fit_distribution(chroma: FloatArray, luma: FloatArray, start: ColorDistribution) -> ColorDistribution:
+def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> ColorDistribution:
     """Fit a distribution to a surface's pixels, robustly, and never narrower than pixel noise.
 
     Args:
@@ -139,7 +136,7 @@ def _within_reach(fitted: ColorDistribution, start: ColorDistribution) -> bool:
     return float(offset @ np.linalg.solve(start.covariance, offset)) <= _FARTHEST
 
 
-def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColorDistribution) -> NDArray[np.bool_]:
+def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolArray:
     """Mark the pixels (N,) to learn from.
 
     What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it
@@ -151,7 +148,7 @@ def _near_sample(chroma: FloatArray, luma: FloatArray, start: ColorDistribution)
     return distance <= np.clip(np.quantile(distance, _LEARNED_SHARE), _NEAR, _FARTHEST)
 
 
-def _allowed(masks: Sequence[PlacedMask], places: NDArray[np.uint8] | None) -> list[PlacedMask]:
+def _allowed(masks: Sequence[PlacedMask], places: Image | None) -> list[PlacedMask]:
     """Return masks, one a marker, without what lies where the marker may not be looked for."""
     if places is None:
         return list(masks)

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...arrays import Array, Image, IndexArray, SingleArray
 from .color_space import (
     CELL_COUNT,
     CELL_WIDTH,
@@ -19,8 +20,7 @@ from .color_space import (
     chromaticity,
 )
 
-FloatArray = NDArray[np.float64]
-ColorArray = NDArray[np.float64] | NDArray[np.float32]
+ColorArray = Array | SingleArray
 
 NOISE_LEVELS: Final = 5.0
 """Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
@@ -49,13 +49,13 @@ class ColorDistribution:
 
     log_luma: float
     log_luma_deviation: float
-    mean: FloatArray
-    slope: FloatArray
-    covariance: FloatArray
+    mean: Array
+    slope: Array
+    covariance: Array
 
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
-    ) -> tuple[FloatArray, FloatArray]:
+    ) -> tuple[Array, Array]:
         """Return the squared Mahalanobis distance and the log density of colors.
 
         Args:
@@ -79,7 +79,7 @@ class ColorDistribution:
         normalizer = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
         return squared, -0.5 * (squared + normalizer)
 
-    def within_reach(self, chroma: ColorArray, luma: ColorArray) -> NDArray[np.intp]:
+    def within_reach(self, chroma: ColorArray, luma: ColorArray) -> IndexArray:
         """Return the indices of all N colors nearer than OUTLIER_DISTANCE, and of some beyond.
 
         No part of a distance is more than the whole of it, and a part is quickly had.
@@ -103,15 +103,15 @@ class ColorModel:
     """
 
     distributions: tuple[ColorDistribution, ...]
-    label: NDArray[np.uint8]
-    probability: NDArray[np.uint8]
+    label: Image
+    probability: Image
 
-    def classify(self, image: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    def classify(self, image: Image) -> tuple[Image, Image]:
         """Return label and probability in 1/255, (rows, columns), of every pixel of an image."""
         cells = cell_index(image)
         return np.take(self.label, cells), np.take(self.probability, cells)
 
-    def labels(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    def labels(self, image: Image) -> Image:
         """Return the label, (rows, columns), of every pixel of an image."""
         return np.take(self.label, cell_index(image))
 
@@ -162,7 +162,7 @@ def weigh(
     background_counts: ArrayLike,
     chroma: ColorArray,
     luma: ColorArray,
-) -> tuple[NDArray[np.intp], FloatArray]:
+) -> tuple[IndexArray, Array]:
     """Return the likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
 
     Args:

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .color_model import ColorModel
 from .color_space import cell_chromaticity, cell_volume
-
-FloatArray = NDArray[np.float64]
 
 _LEAST: Final = 1e-300
 """A density that vanishes everywhere stays zero."""
 
 
-def color_claims(model: ColorModel) -> FloatArray:
+def color_claims(model: ColorModel) -> Array:
     """Return for what the pixels of each color would be taken, (C, C + 1): each color, then none of them.
 
     A pixel drawn from a color's learned density is weighed as the extraction weighs it, by the posterior

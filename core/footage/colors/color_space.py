@@ -11,10 +11,9 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int32]
+from ...arrays import Array, Image, IndexArray, Int32Array, SingleArray
 
 CELL_BITS: Final = 6
 """Bits kept of each channel: 64³ cells hold a color to within two levels, less than compression noise."""
@@ -31,7 +30,7 @@ _BLUE_SCALE: Final = 0.564
 _RED_SCALE: Final = 0.713
 
 
-def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
     """Split colors into chromaticity and luma.
 
     Args:
@@ -51,7 +50,7 @@ def chromaticity(bgr: ArrayLike) -> tuple[FloatArray, FloatArray]:
     return differences / offset_luma[..., None], offset_luma
 
 
-def cell_volume(offset_luma: ArrayLike) -> FloatArray:
+def cell_volume(offset_luma: ArrayLike) -> Array:
     """Return the volume of a cell in (chromaticity, log luma), for densities counted by cells."""
     luma = np.asarray(offset_luma)
     # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
@@ -59,7 +58,7 @@ def cell_volume(offset_luma: ArrayLike) -> FloatArray:
     return np.asarray(CELL_WIDTH**3 * _BLUE_SCALE * _RED_SCALE * _LUMA_BGR[1] / luma**3)
 
 
-def cell_index(image: NDArray[np.uint8]) -> NDArray[np.intp]:
+def cell_index(image: Image) -> IndexArray:
     """Return the cell of every pixel, (rows, columns) in 0..CELL_COUNT-1, of a (rows, columns, 3) image."""
     packed = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2BGRA)).view("<u4")[..., 0]
     cut, last = 8 - CELL_BITS, CELLS_PER_CHANNEL - 1
@@ -69,7 +68,7 @@ def cell_index(image: NDArray[np.uint8]) -> NDArray[np.intp]:
     return index.astype(np.intp)
 
 
-def cell_colors(cells: IntArray | None = None) -> FloatArray:
+def cell_colors(cells: Int32Array | None = None) -> Array:
     """Return the middles of cells, (..., 3) blue, green, red in levels; of all where none are named."""
     index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
     last = CELLS_PER_CHANNEL - 1
@@ -77,7 +76,7 @@ def cell_colors(cells: IntArray | None = None) -> FloatArray:
     return np.asarray(levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0)
 
 
-def cell_chromaticity(cells: IntArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
     """Return chromaticity (N, 2) and offset luma (N,) of the middles of cells.
 
     Half the usual digits are plenty for a color and take half the time.

@@ -9,13 +9,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Image, IndexArray, IntArray
 from ..segmentation.working_image import smooth
 from .color_model import ColorDistribution, weigh
 from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
 
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
-Labels = NDArray[np.uint8]
 _Number = TypeVar("_Number", bound=np.generic)
 
 _CORE_DISTANCE: Final = 7.8
@@ -43,14 +41,14 @@ class PlacedMask(NamedTuple):
 
     left: int
     top: int
-    mask: NDArray[np.uint8]
+    mask: Image
     area: int
 
-    def within(self, place: NDArray[np.uint8]) -> PlacedMask:
+    def within(self, place: Image) -> PlacedMask:
         """Return what of it lies in a mask of the whole image."""
         return _placed(self.left, self.top, self.mask & self.cut(place))
 
-    def interior(self) -> NDArray[np.uint8]:
+    def interior(self) -> Image:
         """Return the mask without its mixed border where that leaves enough of it."""
         inner = cv2.erode(self.mask, _KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
         return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
@@ -76,7 +74,7 @@ class SampledColors:
         rank[self._table] = np.arange(len(self._table))
         self._images = [rank.take(cell) for cell in cells]
 
-    def near(self, distributions: Sequence[ColorDistribution]) -> Labels:
+    def near(self, distributions: Sequence[ColorDistribution]) -> Image:
         """Label each color of the table by the distribution in whose core it lies; 255 for none."""
         pairs = [
             distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
@@ -87,13 +85,13 @@ class SampledColors:
         return np.where(distance < _CORE_DISTANCE, nearest, _NO_MARKER).astype(np.uint8)
 
     def weighed(
-        self, distributions: Sequence[ColorDistribution], pixels: NDArray[np.int64], background: FloatArray
-    ) -> Labels:
+        self, distributions: Sequence[ColorDistribution], pixels: IntArray, background: Array
+    ) -> Image:
         """Label each color of the table by its likeliest marker; 255 where the background is likelier."""
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
         return np.where(probability >= 0.5, label, _NO_MARKER).astype(np.uint8)
 
-    def regions(self, labels: Labels, core: Labels, markers: int) -> list[list[PlacedMask]]:
+    def regions(self, labels: Image, core: Image, markers: int) -> list[list[PlacedMask]]:
         """Return for each frame and marker its connected regions with enough of its core color."""
         result = []
         for image in self._images:
@@ -101,7 +99,7 @@ class SampledColors:
             result.append([_with_core(label, image, core, marker) for marker in range(markers)])
         return result
 
-    def colors(self, masks: Sequence[PlacedMask]) -> tuple[FloatArray, FloatArray]:
+    def colors(self, masks: Sequence[PlacedMask]) -> tuple[Array, Array]:
         """Return chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
         inside = [
             mask.cut(image)[mask.interior().view(np.bool_)]
@@ -111,7 +109,7 @@ class SampledColors:
         index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
-    def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> FloatArray:
+    def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> Array:
         """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighboring cells."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
@@ -125,7 +123,7 @@ class SampledColors:
         return _spread(counts)
 
 
-def _spread(counts: FloatArray) -> FloatArray:
+def _spread(counts: Array) -> Array:
     """Spread counts of cells (CELL_COUNT,) over the neighboring ones."""
     side = CELLS_PER_CHANNEL
     # Two channels are rows and columns of an image with as many channels as cells in the third.
@@ -137,7 +135,7 @@ def _spread(counts: FloatArray) -> FloatArray:
     return np.asarray(lines.ravel(), dtype=np.float64)
 
 
-def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int) -> PlacedMask:
+def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> PlacedMask:
     """Keep regions of which enough is of the core color and which are not most of the image."""
     mask = np.equal(label, marker).view(np.uint8)
     left, top, columns, rows = cv2.boundingRect(mask)
@@ -154,5 +152,5 @@ def _with_core(label: Labels, image: NDArray[np.intp], core: Labels, marker: int
     return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
 
 
-def _placed(left: int, top: int, mask: NDArray[np.uint8]) -> PlacedMask:
+def _placed(left: int, top: int, mask: Image) -> PlacedMask:
     return PlacedMask(left, top, mask, cv2.countNonZero(mask))

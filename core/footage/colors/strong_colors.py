@@ -8,13 +8,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Image
 from ..segmentation.working_image import learning_image, smooth
 from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
-
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 MOST: Final = 12
 """So many colors are named: five markers, skin, and what else is about."""
@@ -88,7 +85,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     return tuple(color for _, color in found[:MOST])
 
 
-def _densest(chroma: FloatArray, weight: FloatArray) -> FloatArray:
+def _densest(chroma: Array, weight: Array) -> Array:
     """Return the chromaticity (2,) that most pixels have."""
     square = np.round(chroma / _STEP).astype(np.int64)
     _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
@@ -96,7 +93,7 @@ def _densest(chroma: FloatArray, weight: FloatArray) -> FloatArray:
     return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))
 
 
-def _median(colors: FloatArray, weight: FloatArray) -> list[int]:
+def _median(colors: Array, weight: Array) -> list[int]:
     """Return the weighted median of each channel, three whole numbers."""
     middle = []
     for channel in colors.T:

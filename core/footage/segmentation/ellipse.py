@@ -1,9 +1,9 @@
 """The outline of a region known by its moments: the even ellipse that has them."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 CORNERS = 32
 

@@ -6,15 +6,14 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...arrays import Array, SingleArray
 
 _FINENESS: Final = 2
 """Points of a pixel and axis that the edge of half coverage is found on."""
 
 
-def mask_outlines(mask: NDArray[np.float32], scale: float) -> list[FloatArray]:
+def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
     """Return the outlines of what a mask covers at least half, the longest first.
 
     Args:

@@ -11,7 +11,8 @@ from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import BoolArray, Image, IndexArray, SingleArray
 
 _WEIGHT: Final = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
@@ -29,11 +30,11 @@ class Coverage(NamedTuple):
         share: (N,) float32 share of each that is covered, in 0..1.
     """
 
-    pixel: NDArray[np.intp]
-    share: NDArray[np.float32]
+    pixel: IndexArray
+    share: SingleArray
 
 
-def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
+def coverage(image: Image, mask: Image) -> Coverage:
     """Return the share of each pixel that the masked regions cover.
 
     The band of two pixels to either side of a region's edge, in which edges are blurred by optics and halved
@@ -68,9 +69,7 @@ def coverage(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> Coverage:
     return Coverage(pixel, share)
 
 
-def _local_mean(
-    color: NDArray[np.float32], weight: NDArray[np.uint8]
-) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+def _local_mean(color: SingleArray, weight: Image) -> tuple[SingleArray, BoolArray]:
     """Return the weighted mean color about every two by two pixels, and where there was any weight."""
     factor = weight.astype(np.float32)
     half = (weight.shape[1] // 2, weight.shape[0] // 2)

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from ...arrays import Array
 
 PIXEL_VARIANCE = 1.0 / 12.0
 """Variance along each axis of a unit square of even weight, in px²."""
@@ -34,13 +34,13 @@ class Characteristics(NamedTuple):
         ratio: S_λ = λ1/λ2 >= 1, of the squared axes.
     """
 
-    x: FloatArray
-    y: FloatArray
-    angle_rad: FloatArray
-    ratio: FloatArray
+    x: Array
+    y: Array
+    angle_rad: Array
+    ratio: Array
 
 
-def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
+def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:
     """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
 
     Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
@@ -61,7 +61,7 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
     return np.array([area, m10, m01, m20, m11, m02])
 
 
-def centroid_and_second_moment(moments: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
     """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
 
     Args:
@@ -111,7 +111,7 @@ def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteri
     return Characteristics(centroid[..., 0], centroid[..., 1], angle, ratio)
 
 
-def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> FloatArray:
+def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> Array:
     """Return first - second wrapped to [-π/2, π/2): an axis has no head, so angles count modulo π."""
     difference = np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64)
     return np.asarray((difference + np.pi / 2.0) % np.pi - np.pi / 2.0)

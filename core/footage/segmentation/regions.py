@@ -10,17 +10,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, BoolArray, Image, IntArray, SingleArray
 from ..colors.color_model import ColorModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
 from .window_sheet import Sheet, Window, lay_out
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-Image = NDArray[np.uint8]
 
 MOST_REGIONS: Final = 8
 """Regions kept of each color in a frame, the largest; a clip's memory is bounded by it."""
@@ -43,9 +39,9 @@ class Regions(NamedTuple):
     """
 
     color: IntArray
-    moments: FloatArray
+    moments: Array
     box: IntArray
-    certainty: FloatArray
+    certainty: Array
     clipped: BoolArray
 
     def part(self, first: int, end: int) -> Regions:
@@ -97,7 +93,7 @@ def find_regions(
     return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
 
 
-def color_masks(image: Image, model: ColorModel) -> NDArray[np.float32]:
+def color_masks(image: Image, model: ColorModel) -> SingleArray:
     """Return the coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
     For previews: it is what the extraction measures, clutter of the markers' colors included.
@@ -134,7 +130,7 @@ class _Components(NamedTuple):
 
     number: NDArray[np.uint16]
     box: IntArray
-    certainty: FloatArray
+    certainty: Array
 
 
 def _components(sheet: Sheet, model: ColorModel) -> _Components:
@@ -191,9 +187,7 @@ def _measure(
     return [every.part(a, b) for a, b in itertools.pairwise(start)]
 
 
-def _moments(
-    owner: NDArray[np.uint16], weight: NDArray[np.float32], x: FloatArray, y: FloatArray, count: int
-) -> FloatArray:
+def _moments(owner: NDArray[np.uint16], weight: SingleArray, x: Array, y: Array, count: int) -> Array:
     """Return raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
     weight_x, weight_y = weight * x, weight * y
     terms = (weight, weight_x, weight_y, weight_x * x, weight_x * y, weight_y * y)

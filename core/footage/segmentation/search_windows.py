@@ -7,7 +7,8 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Image
 
 Box = tuple[int, int, int, int]
 
@@ -17,7 +18,7 @@ MARGIN: Final = 6
 """Pixels about a box when it is measured: border band, and background enough to know its color."""
 
 
-def colored_boxes(label: NDArray[np.uint8], color: int, factor: int) -> list[Box]:
+def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
     """Return boxes (left, top, right, bottom) about all of a color in pixels of the measuring grid.
 
     Args:

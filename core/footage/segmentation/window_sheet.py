@@ -11,11 +11,9 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Image, IntArray
 from .working_image import measuring_image
-
-Image = NDArray[np.uint8]
 
 NO_COLOR = 254
 """Color of the columns between panels; no pixel bears it."""
@@ -46,11 +44,11 @@ class Sheet(NamedTuple):
     """
 
     picture: Image
-    image: NDArray[np.int64]
-    color: NDArray[np.uint8]
-    height: NDArray[np.int64]
-    shift: NDArray[np.int64]
-    scale: NDArray[np.int64]
+    image: IntArray
+    color: Image
+    height: IntArray
+    shift: IntArray
+    scale: IntArray
 
 
 def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:

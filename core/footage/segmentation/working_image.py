@@ -10,9 +10,8 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from ...arrays import Image
 
 _MEASURING_COLUMNS: Final = 320
 """Fewest on which borders are measured finer than any body model predicts them."""

@@ -5,9 +5,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Image
 from ...errors import InputError
 from ...footage.clips.clip import Clip
 from ...footage.clips.spread_frames import glance
@@ -15,8 +13,6 @@ from ...footage.colors.strong_colors import StrongColor, strong_colors
 from ...progress import run
 from ...take.description import KEYFRAMES, OWN, beside
 from ..shoot import Shoot, ShootTake
-
-Image = NDArray[np.uint8]
 
 COLORED_CLIPS = 6
 """Clips whose colors are looked at; they share one performer."""

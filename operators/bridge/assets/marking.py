@@ -7,9 +7,9 @@ import bpy
 import cv2
 import numpy as np
 
+from ....core.arrays import Image
 from ....core.body.human import HUMAN
 from ....core.progress import run, within
-from ....core.report.canvas import Image
 from ....core.report.thumbnail import thumbnail
 from ....core.take.motion import Motion
 from ..actor_lengths import read_body

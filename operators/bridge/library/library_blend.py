@@ -6,10 +6,10 @@ from pathlib import Path
 
 import bpy
 
+from ....core.arrays import Image
 from ....core.errors import InputError
 from ....core.library.library import Library
 from ....core.library.library_fields import MOST_POSTURES
-from ....core.report.canvas import Image
 from ..assets.asset_blend import write_asset_blend
 from ..blend_writer import one_line
 from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets

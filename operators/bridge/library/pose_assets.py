@@ -14,6 +14,7 @@ from typing import Any
 
 import bpy
 
+from ....core.arrays import Image
 from ....core.body.actor import Actor
 from ....core.body.kinematics import Body
 from ....core.errors import InputError
@@ -22,7 +23,6 @@ from ....core.library.library import Library, LibraryPosture
 from ....core.library.library_fields import LONGEST_TAG
 from ....core.library.library_file import library_from_json, library_to_json
 from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
-from ....core.report.canvas import Image
 from ....core.report.posture_picture import posture_picture
 from ..assets.catalogs import catalog_identifier
 from ..assets.marking import AssetDetails, mark_asset

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.body.actor import Actor
 from ....core.body.kinematics import Body
@@ -14,8 +13,6 @@ from ....core.errors import InputError
 from ....core.library.library import Library, LibraryPosture
 from ....core.library.posture_shape import headings_rad, moved
 from ....core.library.transfer import applied
-
-Array = NDArray[np.float64]
 
 
 def as_kept(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> Posture:

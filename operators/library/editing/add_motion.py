@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ....core.arrays import Array
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
@@ -11,8 +12,7 @@ from ...shell.requirements import a_library_here, all_met, idle
 from ...shell.takes import find_take
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 
 class KEYMARK_OT_add_motion(bpy.types.Operator):
@@ -98,7 +98,7 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
 
     def _keyframes(
         self, context: bpy.types.Context, group: bpy.types.PropertyGroup
-    ) -> "tuple[list[str], NDArray[np.float64]]":
+    ) -> "tuple[list[str], Array]":
         """Postures made of the take's keyframes, and their times [s]."""
         import numpy as np
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
-import numpy as np
 
+from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.library.library import LibraryMotion, LibraryPosture, MotionStep
 from ....core.library.library_fields import LONGEST_TAG, MOST_POSTURES
@@ -28,8 +28,6 @@ from .scene_libraries import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ....core.body.kinematics import Body
     from ....core.body.posture import Posture
 
@@ -104,7 +102,7 @@ def keep_motion(
     group: bpy.types.PropertyGroup,
     name: str,
     postures: Sequence[str],
-    time_s: "NDArray[np.float64]",
+    time_s: "Array",
     *,
     cyclic: bool,
 ) -> bpy.types.PropertyGroup:

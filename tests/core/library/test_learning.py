@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
@@ -15,9 +16,6 @@ from keymark.core.library.cycles import average_cycle, find_period_s
 from keymark.core.library.learning import About, learn_library
 from keymark.core.library.library_file import read_library, write_library
 from keymark.core.library.posture_shape import ankle_heights, headings_rad, moved, shapes
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 BODY = Body(Actor.from_stature(1.8))
 COLUMN = {name: place for place, name in enumerate(BODY.skeleton.dof_names)}

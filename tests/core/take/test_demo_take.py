@@ -6,13 +6,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth
 from keymark.core.take.take import Take, open_clip, read_take
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 LARGEST_FOLDER_BYTES = 500_000
 MARKER_ENDS = {

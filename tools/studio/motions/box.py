@@ -1,14 +1,12 @@
 """Boxing: jab, cross, hook, a slip and an uppercut, with steps, pivoting heels and a bounce all the time."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, sprung, sway, uneven_phases
 from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, stepped, tall_m
-
-Array = NDArray[np.float64]
 
 JAB_S, CROSS_S, HOOK_S = 0.46, 0.78, 1.22
 SLIP_S, UPPERCUT_S = 1.70, 2.12

@@ -1,14 +1,12 @@
 """Dancing: feet that slide, hips and chest against each other, arms flung to new poses on uneven beats."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import driven, shock, sprung, uneven_phases
 from ..performance import Choreography
 from ..standing import ARM, Pose, arm, choreography, foot, tall_m
-
-Array = NDArray[np.float64]
 
 BEAT_S, UNEVENNESS = 0.50, 0.10
 ARM_POSES: tuple[Pose, ...] = (

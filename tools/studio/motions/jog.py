@@ -4,14 +4,12 @@ The curves are drawn after those of slow running in Novacheck (1998), *The biome
 """
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import cyclic, flight, shock, sprung, sway, uneven_phases
 from ..performance import FPS, Choreography
 from ..standing import arm, choreography, free
-
-Array = NDArray[np.float64]
 
 STRIDE_S, UNEVENNESS = 0.70, 0.045
 TOE_OFF = 0.37
@@ -67,7 +65,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     return choreography(times, random, pelvis, trunk, arms, free_legs=legs, grounded=np.asarray(height))
 
 
-def _whole(values: Array) -> NDArray[np.float64]:
+def _whole(values: Array) -> Array:
     """The whole numbers that `values` pass."""
     return np.arange(np.ceil(values[0]), np.floor(values[-1]) + 1.0)
 

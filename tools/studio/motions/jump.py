@@ -1,14 +1,12 @@
 """Two countermovement jumps: arms back and up, flight, uneven landing; the second turns and tucks."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, flight, keyed, shock
 from ..performance import Choreography
 from ..standing import arm, choreography, foot, tall_m
-
-Array = NDArray[np.float64]
 
 FIRST_S, SECOND_S = (0.86, 1.37), (2.05, 2.60)
 """Takeoff and landing."""

@@ -1,15 +1,13 @@
 """A front kick with the right leg, then a side kick with the left: chamber, snap, recoil, recovery."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, shock
 from ..limbs import FreeLeg
 from ..performance import Choreography
 from ..standing import arm, choreography, foot, free, stepped, tall_m
-
-Array = NDArray[np.float64]
 
 FRONT_S, SIDE_S = 0.98, 2.24
 """When the legs are stretched."""

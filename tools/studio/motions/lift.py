@@ -1,14 +1,12 @@
 """Bending down for a box, heaving it up, turning with it, putting it high on a shelf, and letting go."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, shock
 from ..performance import Choreography
 from ..standing import HANGING, arm, choreography, foot, stepped, tall_m
-
-Array = NDArray[np.float64]
 
 GRASP_S, UP_S, PUT_S = 1.02, 1.62, 2.62
 DOWN = {"elevation": 62, "forward": 84, "rotation": 26, "flexion": 22, "pronation": -10, "girdle": -2}

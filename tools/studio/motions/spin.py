@@ -1,15 +1,13 @@
 """A full turn on one leg: winding up, arms flung out and drawn in, a stumble, and half a turn back."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, keyed, shock
 from ..limbs import FreeLeg
 from ..performance import Choreography
 from ..standing import arm, choreography, free
-
-Array = NDArray[np.float64]
 
 START_S, END_S = 0.58, 1.36
 BACK_S = (1.95, 2.45)

@@ -1,14 +1,12 @@
 """Jumping jacks: feet apart and together in low flights, arms overhead and down, no two alike."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import cyclic, flight, shock, sprung, sway, uneven_phases
 from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, tall_m
-
-Array = NDArray[np.float64]
 
 PERIOD_S, UNEVENNESS = 0.98, 0.06
 FLIGHTS = ((0.14, 0.40), (0.64, 0.89))

@@ -5,14 +5,12 @@ Control of Human Movement*.
 """
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import cyclic, driven, shock, sprung, sway, uneven_phases
 from ..performance import FPS, Choreography
 from ..standing import arm, choreography, foot, tall_m
-
-Array = NDArray[np.float64]
 
 STRIDE_S, STRIDE_M, UNEVENNESS = 1.0, 1.08, 0.03
 SWING = 0.62

@@ -1,14 +1,12 @@
 """A throw over the shoulder with a run-up of two steps: hips lead, the trunk follows, the arm whips last."""
 
 import numpy as np
+from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body
-from numpy.typing import NDArray
 
 from ..curves import burst, driven, shock
 from ..performance import Choreography
 from ..standing import arm, choreography, foot, stepped, tall_m
-
-Array = NDArray[np.float64]
 
 PLANT_S, RELEASE_S = 0.96, 1.12
 READY = {"elevation": 28, "forward": 50, "rotation": 20, "flexion": 84, "pronation": 20, "girdle": 2}
