@@ -8,15 +8,12 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Blender:
-    """A Blender with a user folder of its own.
-
-    Attributes:
-        command: The words that start it.
-        user: The folder that stands for the user's settings and extensions.
-    """
+    """A Blender with a user folder of its own."""
 
     command: tuple[str, ...]
+    """The words that start it."""
     user: Path
+    """The folder that stands for the user's settings and extensions."""
 
     def run(self, *arguments: str | Path, patience_s: float = 900.0) -> subprocess.CompletedProcess[str]:
         """Run it to its end with `arguments`, without a terminal; standard output and error are kept."""

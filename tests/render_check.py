@@ -30,22 +30,19 @@ KEYFRAMES = "keyframes_noisy.json"
 
 @dataclass(frozen=True)
 class View:
-    """A camera whose footage is compared.
-
-    Attributes:
-        name: `front` or `side`.
-        clip: Its footage in the take's folder.
-        median_px: Largest distance between a marker's two centroids for half of them [px].
-        p95_px: The same for 95 % of them [px].
-        least_share: Of all markers and rendered frames, how many must be compared: it must not pass because
-            next to nothing was found.
-    """
+    """A camera whose footage is compared."""
 
     name: str
+    """`front` or `side`."""
     clip: str
+    """Its footage in the take's folder."""
     median_px: float
+    """Largest distance between a marker's two centroids for half of them [px]."""
     p95_px: float
+    """The same for 95 % of them [px]."""
     least_share: float
+    """Of all markers and rendered frames, how many must be compared: it must not pass because next to
+    nothing was found."""
 
     def camera(self, take: Path, folder: Path) -> str:
         """What the renderer is told: the scene's own camera, or a file in `folder` with the side's."""

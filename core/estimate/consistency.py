@@ -16,17 +16,14 @@ SIGMAS_OF_95_PERCENT = 1.96
 
 
 class Interval(NamedTuple):
-    """An average and the interval it should lie, or the mean lies, in.
-
-    Attributes:
-        average: of the given values.
-        low: lower bound.
-        high: upper bound.
-    """
+    """An average and the interval it should lie, or the mean lies, in."""
 
     average: float
+    """of the given values."""
     low: float
+    """lower bound."""
     high: float
+    """upper bound."""
 
 
 def normalized_squared(vector: ArrayLike, covariance: ArrayLike) -> Array:

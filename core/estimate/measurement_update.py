@@ -13,17 +13,14 @@ from ..arrays import Array
 
 
 class Update(NamedTuple):
-    """What measurements say of a state.
-
-    Attributes:
-        step: (D,) change of the mean.
-        covariance: (D, D) after the update, symmetric.
-        normalized_innovation_squared: νᵀ S⁻¹ ν; χ² with m degrees of freedom if model and noise are right.
-    """
+    """What measurements say of a state."""
 
     step: Array
+    """(D,) change of the mean."""
     covariance: Array
+    """(D, D) after the update, symmetric."""
     normalized_innovation_squared: float
+    """νᵀ S⁻¹ ν; χ² with m degrees of freedom if model and noise are right."""
 
 
 def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> Update:

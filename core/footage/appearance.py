@@ -6,11 +6,8 @@ and shadows as Horprasert, Harwood & Davis 1999 describe them). Each part of the
 where it was never free, has the histogram of its colors instead.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
 
 import cv2
 import numpy as np
@@ -19,53 +16,50 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
-NOTHING: Final = -1
+NOTHING = -1
 """Label of pixels where no part of the body is."""
-_BITS: Final = 5
-_LEVELS: Final = 1 << _BITS
-_CELLS: Final = _LEVELS**3
-_CELL_VOLUME: Final = (256 / _LEVELS) ** 3
-_UNSEEN: Final = 0.02
+BITS = 5
+LEVELS = 1 << BITS
+CELLS = LEVELS**3
+CELL_VOLUME = (256 / LEVELS) ** 3
+UNSEEN = 0.02
 """Share of any surface's colors that a few frames do not show."""
-_BLUR: Final = gaussian_filter1d(np.eye(_LEVELS), 1.0, axis=0, truncate=3.0)
+BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
 """Takes a histogram's levels along an axis to smoothed ones."""
-_STRANGE: Final = float(np.log(_UNSEEN / (_CELLS * _CELL_VOLUME)))
+STRANGE = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
-_MARGIN_PX: Final = 5
+MARGIN_PX = 5
 """A predicted body may lie this far off: what is nearer to it is not taken for background."""
-_FEWEST_FREE: Final = 3
-_HIGHEST: Final = 255
+FEWEST_FREE = 3
+HIGHEST = 255
 """In place of a level that was not free: put last."""
-_SPARSE: Final = 2
+SPARSE = 2
 """Every so many-th row and column tell enough of the colors of all the background."""
-_SMALLEST_DEVIATION, _LARGEST_DEVIATION = 3.0, 12.0
+SMALLEST_DEVIATION, _LARGEST_DEVIATION = 3.0, 12.0
 """Bounds of a background pixel's standard deviation in levels."""
-_STEADY: Final = 6.0
+STEADY = 6.0
 """Most pixels of a background that stands still vary less than this, in levels."""
-_STEADY_SHARE: Final = 0.9
-_DARKEST, _BRIGHTEST, _LIGHT_DEVIATION = 0.55, 1.1, 0.15
+STEADY_SHARE = 0.9
+DARKEST, _BRIGHTEST, _LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light that falls on a background pixel, relative to its usual light."""
-_CHANGED: Final = 0.1
+CHANGED = 0.1
 """Share of pixels that show something else than the background's usual color."""
 
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
-    """Log densities of colors, per level³.
-
-    Attributes:
-        parts: (O + 1, cells) of each part of the body and, last, of all the background.
-        color: (rows, columns, 3) of the background.
-        deviation: (rows, columns) standard deviation of the background's color, in levels.
-        known: (rows, columns) whether the background was seen there often enough.
-        steady: whether the background stands still, so that what differs from it is something else.
-    """
+    """Log densities of colors, per level³."""
 
     parts: Array
+    """(O + 1, cells) of each part of the body and, last, of all the background."""
     color: Array
+    """(rows, columns, 3) of the background."""
     deviation: Array
+    """(rows, columns) standard deviation of the background's color, in levels."""
     known: BoolArray
+    """(rows, columns) whether the background was seen there often enough."""
     steady: bool
+    """Whether the background stands still, so that what differs from it is something else."""
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Return the log density of pixels (..., 3) as parts of index (...), broadcast against them."""
@@ -84,13 +78,13 @@ class Appearance:
         seen = [pixels[..., channel].astype(np.float64) for channel in range(3)]
         power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
         light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
-        light = np.clip(light / np.maximum(power, 1.0), _DARKEST, _BRIGHTEST)
+        light = np.clip(light / np.maximum(power, 1.0), DARKEST, _BRIGHTEST)
         squared = sum((s - light * u) ** 2 for s, u in zip(seen, usual, strict=True)) / deviation**2
         squared += ((light - 1.0) / _LIGHT_DEVIATION) ** 2
         here = np.exp(-0.5 * squared) / (deviation**3 * (2.0 * np.pi) ** 1.5)
-        mixed = (1.0 - _CHANGED) * here + _CHANGED * np.exp(anywhere)
+        mixed = (1.0 - CHANGED) * here + CHANGED * np.exp(anywhere)
         # Blends at an edge are as strange to either side, and must speak for none.
-        mixed = np.log((1.0 - _UNSEEN) * mixed + np.exp(_STRANGE))
+        mixed = np.log((1.0 - UNSEEN) * mixed + np.exp(STRANGE))
         return np.where(self.known[row, column], mixed, anywhere)
 
 
@@ -102,29 +96,29 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
         labels: for each, (rows, columns), which part is seen, `NOTHING` where none is.
         parts: number of parts, O.
     """
-    wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * _MARGIN_PX + 1, 2 * _MARGIN_PX + 1))
+    wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
     body = np.stack([cv2.dilate((label != NOTHING).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
-    counts = np.bincount(np.concatenate(seen), minlength=(parts + 1) * _CELLS).reshape(parts + 1, _CELLS)
+    counts = np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
     color, spread = _middle_and_spread(np.stack(images), ~body)
-    known = np.count_nonzero(~body, axis=0) >= _FEWEST_FREE
-    steady = bool(known.any() and np.mean(spread[known] < _STEADY) >= _STEADY_SHARE)
-    deviation = np.clip(spread, _SMALLEST_DEVIATION, _LARGEST_DEVIATION)
+    known = np.count_nonzero(~body, axis=0) >= FEWEST_FREE
+    steady = bool(known.any() and np.mean(spread[known] < STEADY) >= STEADY_SHARE)
+    deviation = np.clip(spread, SMALLEST_DEVIATION, _LARGEST_DEVIATION)
     return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 
 def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IndexArray:
     """Return the color cells seen inside parts and well outside them, each part's after the last's."""
     rows, columns = np.nonzero(_interior(label) & (label != NOTHING))
-    inside = label[rows, columns].astype(np.intp) * _CELLS + _cells(image[rows, columns])
-    sparse = slice(None, None, _SPARSE), slice(None, None, _SPARSE)
-    return np.concatenate([inside, parts * _CELLS + _cells(image[sparse][~near[sparse]])])
+    inside = label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns])
+    sparse = slice(None, None, SPARSE), slice(None, None, SPARSE)
+    return np.concatenate([inside, parts * CELLS + _cells(image[sparse][~near[sparse]])])
 
 
 def _cells(pixels: Image) -> IndexArray:
     """Return the color cell of pixels (..., 3), coarser than those that tell markers apart."""
-    reduced = (pixels >> (8 - _BITS)).astype(np.intp)
-    return np.asarray((reduced[..., 0] << 2 * _BITS) | (reduced[..., 1] << _BITS) | reduced[..., 2])
+    reduced = (pixels >> (8 - BITS)).astype(np.intp)
+    return np.asarray((reduced[..., 0] << 2 * BITS) | (reduced[..., 1] << BITS) | reduced[..., 2])
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:
@@ -136,12 +130,12 @@ def _interior(label: NDArray[np.int8]) -> BoolArray:
 
 def _log_densities(counts: IndexArray) -> Array:
     """Return the logarithm of smoothed histograms (rows, cells) as densities per level³."""
-    smoothed = counts.astype(np.float64).reshape(-1, _LEVELS, _LEVELS, _LEVELS)
+    smoothed = counts.astype(np.float64).reshape(-1, LEVELS, LEVELS, LEVELS)
     for _ in range(3):  # each time along what is the last axis, and turns them
-        smoothed = np.moveaxis(smoothed @ _BLUR, -1, 1)
+        smoothed = np.moveaxis(smoothed @ BLUR, -1, 1)
     smoothed = smoothed.reshape(counts.shape)
     share = smoothed / np.maximum(smoothed.sum(axis=1, keepdims=True), 1.0)
-    density = np.log((1.0 - _UNSEEN) * share / _CELL_VOLUME + np.exp(_STRANGE))
+    density = np.log((1.0 - UNSEEN) * share / CELL_VOLUME + np.exp(STRANGE))
     return np.asarray(density.astype(np.float32))
 
 
@@ -156,7 +150,7 @@ def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[Array, Array]:
 def _median(stack: Image, free: BoolArray) -> Image:
     """Return the lower median over the free ones of the leading axis; the highest where nothing is free."""
     last = stack.copy()
-    last[~free] = _HIGHEST
+    last[~free] = HIGHEST
     ordered = list(last)
     # Whole pictures at a time, that is many times as fast as sorting every pixel.
     for i, j in _exchanges(len(ordered)):

@@ -5,12 +5,9 @@ then the cheapest one through them: it pays for jumps, for regions unlike the ma
 it is hidden. Costs are negative logarithms of likelihood ratios.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -19,54 +16,51 @@ from .region_tracks import ExpectedRegions
 from .segmentation.moments import MOMENT_POWERS
 from .segmentation.regions import Regions
 
-_HIDING_COST: Final = 4.0
+HIDING_COST = 4.0
 """Cost of hiding at all: a marker seen a moment ago is seen again in 98 of 100 frames."""
-_HIDDEN_COST: Final = 2.5
+HIDDEN_COST = 2.5
 """Cost of each hidden frame: once hidden, a marker stays so for a while."""
-_CERTAINTY_WEIGHT: Final = 3.0
+CERTAINTY_WEIGHT = 3.0
 """A region's pixels err together, but less than fully: its color counts as a few independent witnesses."""
-_RESTART_COST: Final = 10.0
-_LONGEST_GAP: Final = 12
+RESTART_COST = 10.0
+LONGEST_GAP = 12
 """Frames over which the speed still bounds where a marker comes back."""
-_AREA_DEVIATION: Final = 1.2
+AREA_DEVIATION = 1.2
 """Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
-_STEP_IN_SIZES: Final = 0.35
+STEP_IN_SIZES = 0.35
 """Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
-_STEP_TAIL: Final = 1.0
+STEP_TAIL = 1.0
 """Steps are spread like Student's t: a swung arm takes some of four deviations in a row."""
-_STILL_SHARE: Final = 0.5
-_STILL_STEP_PX: Final = 1.5
-_STILL_LOG_AREA: Final = 0.4
-_STILL_CELL: Final = 2.0 / 3.0
+STILL_SHARE = 0.5
+STILL_STEP_PX = 1.5
+STILL_LOG_AREA = 0.4
+STILL_CELL = 2.0 / 3.0
 """Width of a cell in steps, so that a cell and its neighbors reach one step on average."""
-_STILL_COST: Final = 20.0
-_TAKEN_COST: Final = 20.0
-_RIVAL_DEVIATION: Final = 0.2
+STILL_COST = 20.0
+TAKEN_COST = 20.0
+RIVAL_DEVIATION = 0.2
 """Of a marker from its expected place, in the radii that bound it generously."""
-_RIVAL_SHARE: Final = 0.25
-_RIVAL_AREA: Final = 0.1
+RIVAL_SHARE = 0.25
+RIVAL_AREA = 0.1
 """A moving region of a tenth of a still one's area is no speck of noise beside it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """The regions of one marker's color over a clip, N in all.
-
-    Attributes:
-        frame: (N,) frame index of each, ascending.
-        moments: (N, 6) raw moments.
-        box: (N, 4) left, top, right, bottom in px.
-        certainty: (N,) color certainty in 0..1.
-        clipped: (N,) whether it touches the image's border.
-        start: (F + 1,) where each frame's regions begin.
-    """
+    """The regions of one marker's color over a clip, N in all."""
 
     frame: IntArray
+    """(N,) frame index of each, ascending."""
     moments: Array
+    """(N, 6) raw moments."""
     box: Array
+    """(N, 4) left, top, right, bottom in px."""
     certainty: Array
+    """(N,) color certainty in 0..1."""
     clipped: BoolArray
+    """(N,) whether it touches the image's border."""
     start: IntArray
+    """(F + 1,) where each frame's regions begin."""
 
     @property
     def centroid(self) -> Array:
@@ -119,9 +113,9 @@ def still_clutter(found: Candidates) -> BoolArray:
     rest = float(np.median(found.area[still]))
     with_still = np.zeros(frames, dtype=np.bool_)
     with_still[found.frame[still]] = True
-    rival = ~still & with_still[found.frame] & (found.area >= _RIVAL_AREA * rest)
+    rival = ~still & with_still[found.frame] & (found.area >= RIVAL_AREA * rest)
     rivals = len(np.unique(found.frame[rival]))
-    return still if rivals >= _RIVAL_SHARE * frames else np.zeros_like(still)
+    return still if rivals >= RIVAL_SHARE * frames else np.zeros_like(still)
 
 
 def _still(found: Candidates, frames: int) -> BoolArray:
@@ -131,7 +125,7 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     """
     if not len(found.frame):
         return np.zeros(0, dtype=np.bool_)
-    steps = np.array([_STILL_STEP_PX, _STILL_STEP_PX, _STILL_LOG_AREA]) * _STILL_CELL
+    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, STILL_LOG_AREA]) * STILL_CELL
     place = np.column_stack([found.centroid, np.log(found.area)]) / steps
     place = np.floor(place - place.min(axis=0)).astype(np.int64) + 1
     sides = place.max(axis=0) + 2
@@ -145,7 +139,7 @@ def _still(found: Candidates, frames: int) -> BoolArray:
         )
         where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
         around += np.where(cell[where] == neighbor, count[where], 0)
-    return np.asarray(around[index] >= _STILL_SHARE * frames)
+    return np.asarray(around[index] >= STILL_SHARE * frames)
 
 
 def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
@@ -158,29 +152,29 @@ def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """
     # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
     frame, start = found.frame.tolist(), found.start.tolist()
-    place = (found.centroid / (_STEP_IN_SIZES * size_px)).tolist()
+    place = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
     own = unary.tolist()
     total: list[float] = []
     previous: list[int] = []
     best_before, best_index = 0.0, -1  # the cheapest path so far plus its hidden frames, and where it ended
     for now in range(len(start) - 1):
-        first = start[max(now - _LONGEST_GAP, 0)]
-        restart = best_before + (_RESTART_COST if best_index >= 0 else 0.0)
+        first = start[max(now - LONGEST_GAP, 0)]
+        restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
         for here in range(start[now], start[now + 1]):
             least, source = restart, best_index
             x, y = place[here]
             for before in range(start[now] - 1, first - 1, -1):
                 gap = now - frame[before]
-                through = total[before] + (_HIDING_COST + _HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
+                through = total[before] + (HIDING_COST + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
                 if through < least:
                     across, down = place[before]
                     squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
-                    through += _STEP_TAIL * math.log1p(0.5 * squared / _STEP_TAIL)
+                    through += STEP_TAIL * math.log1p(0.5 * squared / STEP_TAIL)
                     if through < least:
                         least, source = through, before
             total.append(least + own[here])
             previous.append(source)
-        best_before += _HIDDEN_COST
+        best_before += HIDDEN_COST
         for here in range(start[now], start[now + 1]):
             if total[here] < best_before:
                 best_before, best_index = total[here], here
@@ -205,11 +199,11 @@ def region_costs(
     """
     if not len(found.frame):
         return np.zeros(0)
-    cost = 0.5 * (np.log(found.area / usual_area) / _AREA_DEVIATION) ** 2
-    cost -= _CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
-    cost += np.where(clutter, _STILL_COST, 0.0)
+    cost = 0.5 * (np.log(found.area / usual_area) / AREA_DEVIATION) ** 2
+    cost -= CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
+    cost += np.where(clutter, STILL_COST, 0.0)
     far = 0.5 * (2.0 * _relative_offset(found, expected, marker)) ** 2
-    return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * _RESTART_COST)))
+    return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
 
 
 def rivals_costs(
@@ -228,11 +222,11 @@ def rivals_costs(
         marker: whose cost it is.
         rivals: the markers of its color.
     """
-    cost = np.where(taken, _TAKEN_COST, 0.0)
+    cost = np.where(taken, TAKEN_COST, 0.0)
     own = _relative_offset(found, expected, marker)
     for rival in rivals:
         nearer = own**2 - _relative_offset(found, expected, rival) ** 2
-        cost += np.clip(np.nan_to_num(0.5 * nearer / _RIVAL_DEVIATION**2), 0.0, _TAKEN_COST)
+        cost += np.clip(np.nan_to_num(0.5 * nearer / RIVAL_DEVIATION**2), 0.0, TAKEN_COST)
     return np.asarray(cost)
 
 

@@ -5,8 +5,6 @@ front. Pixels are x right, y down, with the origin at the outer corner of the to
 horizontal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -23,32 +21,29 @@ LENGTHS_MM = (0.1, 100_000.0)
 MOST_SHIFT = 100.0
 """No view is shifted further [image widths]."""
 
-_NEWTON_STEPS = 20
-_NEWTON_TOLERANCE = 1e-12
+NEWTON_STEPS = 20
+NEWTON_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A fixed or moving pinhole camera with polynomial radial distortion.
-
-    Attributes:
-        lens_mm: focal length in millimeters.
-        sensor_width_mm: width of the sensor in millimeters; it spans the image's width.
-        resolution: image width and height in pixels (square pixels).
-        matrix_world: camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters.
-        shift_x: shift of the view to the right, in image widths.
-        shift_y: shift of the view upwards, in image widths (as in Blender, not heights).
-        distortion: k1, k2, k3 of Blender's polynomial model, which takes undistorted normalized coordinates
-            to distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y².
-    """
+    """A fixed or moving pinhole camera with polynomial radial distortion."""
 
     lens_mm: float
+    """Focal length in millimeters."""
     sensor_width_mm: float
+    """Width of the sensor in millimeters; it spans the image's width."""
     resolution: tuple[int, int]
+    """Image width and height in pixels (square pixels)."""
     matrix_world: Array
+    """Camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters."""
     shift_x: float = 0.0
+    """Shift of the view to the right, in image widths."""
     shift_y: float = 0.0
+    """Shift of the view upwards, in image widths (as in Blender, not heights)."""
     distortion: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """K1, k2, k3 of Blender's polynomial model, which takes undistorted normalized coordinates to
+    distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y²."""
 
     def __post_init__(self) -> None:
         """Keep an own, read-only copy of the pose."""
@@ -59,7 +54,7 @@ class Camera:
         object.__setattr__(self, "matrix_world", matrix)
 
     @classmethod
-    def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> Camera:
+    def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> "Camera":
         """Read a camera from the fields of `take.json`.
 
         Args:
@@ -254,11 +249,11 @@ class Camera:
         target = np.linalg.norm(distorted, axis=-1)
         radius = target.copy()
         with np.errstate(all="ignore"):  # a diverging pixel ends as NaN, which is its answer
-            for _ in range(_NEWTON_STEPS):
+            for _ in range(NEWTON_STEPS):
                 factor, slope = self._radial_factor(radius**2)
                 radius = radius - (radius * factor - target) / (factor + 2.0 * radius**2 * slope)
             factor, slope = self._radial_factor(radius**2)
-            found = np.abs(radius * factor - target) <= _NEWTON_TOLERANCE * (1.0 + target)
+            found = np.abs(radius * factor - target) <= NEWTON_TOLERANCE * (1.0 + target)
             # Past the fold of the polynomial a root exists that no light takes.
             found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
             scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)

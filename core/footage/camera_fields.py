@@ -1,7 +1,5 @@
 """Reading the camera's fields from a take, each with one clear sentence when it is unusable."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -20,7 +18,7 @@ FARTHEST_M = 1e6
 """No camera stands further from the origin along an axis, or is scaled more."""
 SMALLEST_SCALE = 1e-4
 
-_ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision carry about 1e-6
+ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision carry about 1e-6
 
 
 def read_resolution(fields: Fields) -> tuple[int, int]:
@@ -95,14 +93,14 @@ def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:
 
 def _first_fault(matrices: Array) -> tuple[int, str] | None:
     """Return the index of the first of (F, 4, 4) that is no pose, and what is wrong with it."""
-    last = np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1) > _ROTATION_TOLERANCE
+    last = np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1) > ROTATION_TOLERANCE
     far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
     sound = np.where((last | far)[:, None, None], np.eye(4), matrices)
     determinants = np.linalg.det(sound[:, :3, :3])
     flat = determinants < SMALLEST_SCALE**3
     rotations = _scaled(np.where(flat[:, None, None], np.eye(4), sound))
     error = np.abs(np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3)).max(axis=(1, 2))
-    faults = last | far | flat | (error > _ROTATION_TOLERANCE)
+    faults = last | far | flat | (error > ROTATION_TOLERANCE)
     if not faults.any():
         return None
     index = int(faults.argmax())

@@ -5,8 +5,6 @@ learned from. Sightings remember what was learned from, so that they serve other
 the same would be learned with those: exactly the same regions would be found again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,31 +14,25 @@ from .segmentation.regions import Regions
 
 @dataclass(frozen=True)
 class Lesson:
-    """Once that the colors were learned.
-
-    Attributes:
-        frames: the frames learned from.
-        taught: digest of what they taught.
-    """
+    """Once that the colors were learned."""
 
     frames: tuple[int, ...]
+    """The frames learned from."""
     taught: str
+    """Digest of what they taught."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sightings:
-    """All regions of the markers' colors in a clip of F frames.
-
-    Attributes:
-        regions: of each frame, what was found in it, in pixels of the measuring grid.
-        time_s: (F,) time stamps of the frames in seconds.
-        size: width and height of the clip's images in px.
-        lessons: how the colors were learned, in order.
-        samples: the images that were learned from, (rows, columns, 3), by their frames.
-    """
+    """All regions of the markers' colors in a clip of F frames."""
 
     regions: tuple[Regions, ...]
+    """Of each frame, what was found in it, in pixels of the measuring grid."""
     time_s: Array
+    """(F,) time stamps of the frames in seconds."""
     size: tuple[int, int]
+    """Width and height of the clip's images in px."""
     lessons: tuple[Lesson, ...]
+    """How the colors were learned, in order."""
     samples: Mapping[int, Image]
+    """The images that were learned from, (rows, columns, 3), by their frames."""

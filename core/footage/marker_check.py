@@ -1,7 +1,5 @@
 """How well each marker can be found in a clip, from frames spread over it: numbers and warnings."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -23,44 +21,38 @@ from .segmentation.working_image import halvings
 
 @dataclass(frozen=True)
 class MarkerReadout:
-    """What a look at N frames says of one marker.
-
-    Attributes:
-        name: the marker's.
-        found: frames in which it is seen.
-        sampled: frames looked at, N.
-        area_px: median of its area where it is seen, in pixels of the clip; 0 where it never is.
-        area_share: the same as a share of the picture.
-        distinctness: probability in 0..1 that a pixel of it is told from all else and that what is told so is
-            the marker; 0 where it is never seen.
-        warnings: sentences that begin with its name.
-    """
+    """What a look at N frames says of one marker."""
 
     name: str
+    """The marker's."""
     found: int
+    """Frames in which it is seen."""
     sampled: int
+    """Frames looked at, N."""
     area_px: float
+    """Median of its area where it is seen, in pixels of the clip; 0 where it never is."""
     area_share: float
+    """The same as a share of the picture."""
     distinctness: float
+    """Probability in 0..1 that a pixel of it is told from all else and that what is told so is the marker;
+    0 where it is never seen."""
     warnings: tuple[str, ...]
+    """Sentences that begin with its name."""
 
 
 @dataclass(frozen=True, eq=False)
 class MarkerCheck:
-    """What a look at a clip's samples says of M markers in C colors.
-
-    Attributes:
-        readouts: one a marker.
-        model: the colors as they were learned, for previews.
-        groups: of each color, the markers that bear it.
-        missing: of each marker whose color is nowhere, by index, a sentence that begins with its name; the
-            extraction refuses such a clip.
-    """
+    """What a look at a clip's samples says of M markers in C colors."""
 
     readouts: tuple[MarkerReadout, ...]
+    """One a marker."""
     model: ColorModel
+    """The colors as they were learned, for previews."""
     groups: tuple[tuple[int, ...], ...]
+    """Of each color, the markers that bear it."""
     missing: Mapping[int, str]
+    """Of each marker whose color is nowhere, by index, a sentence that begins with its name; the
+    extraction refuses such a clip."""
 
 
 def check_markers(

@@ -1,32 +1,26 @@
 """What a marker is said to look like, and which markers look alike."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from .colors.color_learning import sample_distribution
 
-_ALIKE_DISTANCE: Final = 2.5
+ALIKE_DISTANCE = 2.5
 """Squared distance of two samples, in what one sample leaves open, below which light may make them equal."""
 
 
 @dataclass(frozen=True)
 class MarkerStyle:
-    """A colored surface marker as the performer wears it.
-
-    Attributes:
-        name: the marker's name.
-        segment: the body segment it is bound to.
-        color_srgb: one eyedropper sample of the footage, (red, green, blue) in 0..255.
-    """
+    """A colored surface marker as the performer wears it."""
 
     name: str
+    """The marker's name."""
     segment: str
+    """The body segment it is bound to."""
     color_srgb: tuple[int, int, int]
+    """One eyedropper sample of the footage, (red, green, blue) in 0..255."""
 
 
 def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
@@ -34,9 +28,7 @@ def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
     groups: list[list[int]] = []
     for index, style in enumerate(styles):
         for group in groups:
-            if any(
-                _distance(style.color_srgb, styles[other].color_srgb) < _ALIKE_DISTANCE for other in group
-            ):
+            if any(_distance(style.color_srgb, styles[other].color_srgb) < ALIKE_DISTANCE for other in group):
                 group.append(index)
                 break
         else:

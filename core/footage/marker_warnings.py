@@ -1,36 +1,31 @@
 """What may go wrong with a marker's color, in sentences for the person who can still change it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
-_FEW: Final = 0.6
+FEW = 0.6
 """Share of the frames looked at below which a marker is seldom found."""
-_ENOUGH: Final = 6
+ENOUGH = 6
 """Frames that must be looked at to tell a marker that is seldom found from one that was hidden just then."""
-_MUCH: Final = 0.2
+MUCH = 0.2
 """Share of its color that others may have before it is worth a word."""
-_SMALL_PX: Final = 40.0
+SMALL_PX = 40.0
 """Pixels of the measuring grid below which a region is hardly more than its border."""
 
 
 class Likeness(NamedTuple):
-    """What else looks like a marker.
-
-    Attributes:
-        alike: names of markers that no color tells from it.
-        claimed: names of the other colors' markers, each with the share of its pixels taken for them.
-        background: share of its pixels taken for the background.
-        clutter: share of what has its color that is no marker.
-        rivals: share of the markers of its color that is not it.
-    """
+    """What else looks like a marker."""
 
     alike: Sequence[str]
+    """Names of markers that no color tells from it."""
     claimed: Sequence[tuple[str, float]]
+    """Names of the other colors' markers, each with the share of its pixels taken for them."""
     background: float
+    """Share of its pixels taken for the background."""
     clutter: float
+    """Share of what has its color that is no marker."""
     rivals: float
+    """Share of the markers of its color that is not it."""
 
 
 def marker_warnings(
@@ -49,23 +44,23 @@ def marker_warnings(
     sentences += [
         f"{name} and {other} have colors too alike: {_percent(share)} of {name} would pass for {other}"
         for other, share in likeness.claimed
-        if share >= _MUCH
+        if share >= MUCH
     ]
-    if likeness.background >= _MUCH:
+    if likeness.background >= MUCH:
         sentences.append(
             f"the background wears the color of {name}: {_percent(likeness.background)} of the marker would "
             "pass for it"
         )
-    if likeness.clutter >= _MUCH:
+    if likeness.clutter >= MUCH:
         sentences.append(
             f"{_percent(likeness.clutter)} of what has the color of {name} is something else in the picture"
         )
-    if sampled >= _ENOUGH and found < _FEW * sampled:
+    if sampled >= ENOUGH and found < FEW * sampled:
         sentences.append(
             f"{name} is found in only {found} of {sampled} frames; where it is not hidden, pick its "
             "color in one that misses it"
         )
-    if grid_area < _SMALL_PX:
+    if grid_area < SMALL_PX:
         sentences.append(
             f"{name} is small in the picture, so its place and direction are uncertain; film from nearer"
         )

@@ -1,10 +1,7 @@
 """Finding the colored markers of a clip: from one color sample each to tracks of their image regions."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Sequence
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 
@@ -21,9 +18,9 @@ from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import NO_REGIONS, Regions, find_regions
 from .segmentation.working_image import halvings, measuring_image
 
-_STRETCH_BYTES: Final = 100_000_000
+STRETCH_BYTES = 100_000_000
 """Memory for the images that wait until the colors are learned: five seconds of video and more."""
-_TOGETHER: Final = 4
+TOGETHER = 4
 """Images that are looked at together: enough to make little of the cost of every step."""
 
 
@@ -85,7 +82,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
     are looked at as they come.
     """
     times = halvings(clip.size)
-    longest = _STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
+    longest = STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
     waiting: list[Image] = []
     regions: list[Regions] = []
     time_s: list[float] = []
@@ -98,7 +95,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
                 yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
             waiting.append(image)
             colors.watch(index, image)
-            if len(waiting) == _TOGETHER:
+            if len(waiting) == TOGETHER:
                 regions += find_regions(waiting, times, colors.model, regions[-1])
                 waiting.clear()
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
@@ -117,8 +114,8 @@ def _regions_of_stretch(
     stretch = len(waiting)
     while waiting:
         before = regions[-1] if regions else NO_REGIONS
-        regions += find_regions(waiting[:_TOGETHER], 0, colors.model, before)
-        del waiting[:_TOGETHER]
+        regions += find_regions(waiting[:TOGETHER], 0, colors.model, before)
+        del waiting[:TOGETHER]
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 

@@ -1,8 +1,6 @@
 """Putting a marker's pieces together, and saying how far the result can be trusted."""
 
-from __future__ import annotations
-
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import percentile_filter
@@ -10,25 +8,22 @@ from scipy.ndimage import percentile_filter
 from ..arrays import Array, BoolArray, IntArray
 from .association import Candidates
 
-_AREA_WINDOW: Final = 31
+AREA_WINDOW = 31
 """Frames about each in which the marker's full area is looked for: it turns and comes nearer more slowly."""
-_CLIPPED_QUALITY: Final = 0.4
+CLIPPED_QUALITY = 0.4
 
 
 class OwnRegion(NamedTuple):
-    """What of the regions of its color is a marker's, in each of F frames.
-
-    Attributes:
-        moments: (F, 6) raw moments, zero where hidden.
-        clipped: (F,) whether it touches the image's border.
-        certainty: (F,) of its color, in 0..1.
-        share: (F,) share of its largest piece in its area.
-    """
+    """What of the regions of its color is a marker's, in each of F frames."""
 
     moments: Array
+    """(F, 6) raw moments, zero where hidden."""
     clipped: BoolArray
+    """(F,) whether it touches the image's border."""
     certainty: Array
+    """(F,) of its color, in 0..1."""
     share: Array
+    """(F,) share of its largest piece in its area."""
 
 
 def join_pieces(
@@ -70,10 +65,10 @@ def region_quality(own: OwnRegion) -> Array:
         return np.zeros(len(area))
     seen = area > 0.0
     full = np.zeros(len(area))
-    full[seen] = percentile_filter(area[seen], 80, size=min(_AREA_WINDOW, int(seen.sum())), mode="nearest")
+    full[seen] = percentile_filter(area[seen], 80, size=min(AREA_WINDOW, int(seen.sum())), mode="nearest")
     ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
-    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, _CLIPPED_QUALITY, 1.0)
+    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, CLIPPED_QUALITY, 1.0)
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
 
 

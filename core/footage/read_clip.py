@@ -1,7 +1,5 @@
 """Reading a clip once for everything that follows, and not at all where what is kept of it still holds."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 

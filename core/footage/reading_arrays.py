@@ -1,10 +1,8 @@
 """A reading as arrays of numbers and text, and back: the form in which it is kept in a file."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +16,13 @@ from .segmentation.regions import Regions
 
 Arrays = dict[str, NDArray[Any]]
 
-_TRACKED: Final = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
+TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
 
 
 def reading_arrays(reading: Reading) -> Arrays:
     """Return everything a reading holds, by name."""
     tracks = reading.tracks
-    arrays: Arrays = {f"tracks.{name}": getattr(tracks, name) for name in _TRACKED}
+    arrays: Arrays = {f"tracks.{name}": getattr(tracks, name) for name in TRACKED}
     arrays |= {
         "key": np.array(reading.key),
         "notes": _text(reading.notes),
@@ -53,7 +51,7 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
         names=tuple(arrays["tracks.names"].tolist()),
         size=(width, height),
         notes=tuple(arrays["tracks.notes"].tolist()),
-        **{name: arrays[f"tracks.{name}"] for name in _TRACKED},
+        **{name: arrays[f"tracks.{name}"] for name in TRACKED},
     )
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
     seen = _sightings(_under("seen", arrays), tracks) if "seen.start" in arrays else None

@@ -1,10 +1,7 @@
 """By what a reading is known again: the clip, the markers looked for, and where they were expected."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 from ..errors import InputError
 from ..files.digest import digest, file_digest
@@ -12,11 +9,11 @@ from .clips.image_sequence import find_images
 from .marker_style import MarkerStyle
 from .region_tracks import ExpectedRegions
 
-_FORMAT: Final = 2
+FORMAT = 2
 """Raised whenever a clip is read in another way, or kept in another form."""
-_MOST_SAMPLED: Final = 24
+MOST_SAMPLED = 24
 """Of a folder of more images, this many, evenly spread, are looked into."""
-_PREFIX: Final = "reading"
+PREFIX = "reading"
 
 
 def reading_key(
@@ -42,7 +39,7 @@ def reading_key(
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
     places = None if expected is None else (expected.center, expected.radius)
-    return f"{_PREFIX}-{digest(_FORMAT, footage, wanted)}-{digest(places)}"
+    return f"{PREFIX}-{digest(FORMAT, footage, wanted)}-{digest(places)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:
@@ -71,5 +68,5 @@ def _footage(path: Path, fps: float) -> tuple[object, ...]:
         return (file_digest(path),)
     states = [file.stat() for file in images]
     names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
-    step = max(1, len(images) // _MOST_SAMPLED)
+    step = max(1, len(images) // MOST_SAMPLED)
     return fps, names, tuple(file_digest(file) for file in images[::step])

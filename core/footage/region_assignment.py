@@ -1,9 +1,6 @@
 """Which of the regions of its color are each marker's: what extraction and a look at samples share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from typing import Final
 
 import numpy as np
 
@@ -13,7 +10,7 @@ from .pieces import OwnRegion, join_pieces
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
 
-DEAREST_PIECE: Final = 10.0
+DEAREST_PIECE = 10.0
 """Highest cost of what is taken for a piece of a marker."""
 
 

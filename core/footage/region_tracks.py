@@ -1,7 +1,5 @@
 """What the extraction hands on: every marker's region in every frame, and where regions are expected."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -12,30 +10,27 @@ from .clips.clip_timing import is_variable_frame_rate
 
 @dataclass(frozen=True, eq=False)
 class RegionTracks:
-    """The markers' image regions over a clip of F frames and M markers; NaN where a marker is hidden.
-
-    Attributes:
-        names: the markers, in the order of the second axis.
-        centroid: (F, M, 2) px, origin at the outer corner of the top left pixel.
-        second_moment: (F, M, 2, 2) px², the second central moment matrix A of eq. 2.
-        area: (F, M) px.
-        quality: (F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0
-            where the marker is hidden.
-        clipped: (F, M), whether the region touches the image's border.
-        time_s: (F,) time stamps of the frames in seconds, from the first frame.
-        size: width and height of the image in px.
-        notes: sentences on what may be wrong with the tracks.
-    """
+    """The markers' image regions over a clip of F frames and M markers; NaN where a marker is hidden."""
 
     names: tuple[str, ...]
+    """The markers, in the order of the second axis."""
     centroid: Array
+    """(F, M, 2) px, origin at the outer corner of the top left pixel."""
     second_moment: Array
+    """(F, M, 2, 2) px², the second central moment matrix A of eq. 2."""
     area: Array
+    """(F, M) px."""
     quality: Array
+    """(F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0 where
+    the marker is hidden."""
     clipped: BoolArray
+    """(F, M), whether the region touches the image's border."""
     time_s: Array
+    """(F,) time stamps of the frames in seconds, from the first frame."""
     size: tuple[int, int]
+    """Width and height of the image in px."""
     notes: tuple[str, ...] = ()
+    """Sentences on what may be wrong with the tracks."""
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.
@@ -62,7 +57,7 @@ class RegionTracks:
             array.setflags(write=False)
             object.__setattr__(self, field.name, array)
 
-    def frame(self, index: int) -> RegionTracks:
+    def frame(self, index: int) -> "RegionTracks":
         """Return the tracks of one frame alone, its time included."""
         rows = {
             field.name: getattr(self, field.name)[index : index + 1]
@@ -89,15 +84,12 @@ class RegionTracks:
 
 @dataclass(frozen=True, eq=False)
 class ExpectedRegions:
-    """Where each marker is expected, to tell it from clutter of like hue.
-
-    Attributes:
-        center: (F, M, 2) px; NaN where nothing is known.
-        radius: (F, M) px, a generous bound of how far the region's centroid may lie from there.
-    """
+    """Where each marker is expected, to tell it from clutter of like hue."""
 
     center: Array
+    """(F, M, 2) px; NaN where nothing is known."""
     radius: Array
+    """(F, M) px, a generous bound of how far the region's centroid may lie from there."""
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.

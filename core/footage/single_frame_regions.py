@@ -1,7 +1,5 @@
 """The markers' regions in a single frame, where the clip as a whole has not been gone through."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,7 +15,7 @@ from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
 
-_SAMPLED_FRAMES = 12
+SAMPLED_FRAMES = 12
 
 
 def regions_of_frame(
@@ -42,7 +40,7 @@ def regions_of_frame(
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
     colors = ClipColors(clip.path, clip.size, styles)
-    colors.learn([measuring_image(sample, times) for _, sample in clip.sample(_SAMPLED_FRAMES)])
+    colors.learn([measuring_image(sample, times) for _, sample in clip.sample(SAMPLED_FRAMES)])
     colors.check_found()
     regions = find_regions([image], times, colors.model)
     return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

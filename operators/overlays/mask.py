@@ -5,7 +5,6 @@ name say the same to eyes that see the colors alike.
 """
 
 from collections.abc import Sequence
-from typing import Final
 
 import bpy
 import gpu
@@ -28,15 +27,15 @@ from ..shell.takes import find_take
 from . import drawing
 from .figures import segments
 
-DARKENING: Final = 0.5
-TINT: Final = 0.65
-WIDTH: Final = 1.5
-HALO: Final = 0.8
-NAME_GAP: Final = 4.0
+DARKENING = 0.5
+TINT = 0.65
+WIDTH = 1.5
+HALO = 0.8
+NAME_GAP = 4.0
 """Between an outline and the name above it [px of a plain screen]."""
-SHORTEST_NAMED: Final = 0.25
+SHORTEST_NAMED = 0.25
 """Outlines shorter than this share of the longest have no name."""
-MESH: Final = 24
+MESH = 24
 """Cells across the picture, to follow the lens."""
 
 _drawn: dict[int, tuple[tuple[ColorMask, ...], gpu.types.GPUTexture]] = {}

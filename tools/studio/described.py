@@ -30,41 +30,38 @@ def nothing(performance: Performance) -> tuple[Thing, ...]:
 
 @dataclass(frozen=True)
 class Described:
-    """One take.
-
-    Attributes:
-        name: The take's and its folder's.
-        perform: From the seed to the motion.
-        camera: The clip's.
-        look: The performer's.
-        room: What surrounds the performer.
-        props: Further things, whose places depend on the performance.
-        seed: Of the sway, the sensor noise, the hand that poses keyframes, and their frames.
-        keyframes: Indices of frames posed; chosen by the seed where empty.
-        postures: Whether keyframes.json says the whole posture too, or its thirteen points only.
-        moments: Renders while the shutter is open.
-        samples: Light paths a pixel of each.
-        noise: The sensor's, in eight-bit steps.
-        quality: Of the encoding, in Blender's words.
-        side: A second camera, for reference only.
-        shadow_per_height: How far a point's shadow falls beside it on the floor, for each meter of height.
-    """
+    """One take."""
 
     name: str
+    """The take's and its folder's."""
     perform: Callable[[int], Performance]
+    """From the seed to the motion."""
     camera: Camera
+    """The clip's."""
     look: Look = field(default_factory=Look)
+    """The performer's."""
     room: Room = field(default_factory=Room)
+    """What surrounds the performer."""
     props: Callable[[Performance], tuple[Thing, ...]] = nothing
+    """Further things, whose places depend on the performance."""
     seed: int = 34
+    """Of the sway, the sensor noise, the hand that poses keyframes, and their frames."""
     keyframes: tuple[int, ...] = ()
+    """Indices of frames posed; chosen by the seed where empty."""
     postures: bool = False
+    """Whether keyframes.json says the whole posture too, or its thirteen points only."""
     moments: int = 3
+    """Renders while the shutter is open."""
     samples: int = 2
+    """Light paths a pixel of each."""
     noise: float = 1.5
+    """The sensor's, in eight-bit steps."""
     quality: str = "HIGH"
+    """Of the encoding, in Blender's words."""
     side: Camera | None = None
+    """A second camera, for reference only."""
     shadow_per_height: tuple[float, float, float] = SHADOW_CLOSE_BY
+    """How far a point's shadow falls beside it on the floor, for each meter of height."""
 
     def surroundings(self, performance: Performance) -> Room:
         """The room with everything in it."""

@@ -20,23 +20,20 @@ SOLE = np.array([[0.0, 0.065, -0.082], [0.0, -0.145, -0.082], [0.0, -0.19, -0.07
 
 @dataclass(frozen=True, eq=False)
 class FreeLeg:
-    """A leg that swings by angles instead of reaching for a place; all (T,), degrees but for `share`.
-
-    Attributes:
-        flexion: Of the hip, forward.
-        outward: Angle of the plane of flexion beside straight ahead; at 90 flexion lifts the leg sideways.
-        twist: Of the thigh, toes outward.
-        knee: Flexion.
-        ankle: Toes downward.
-        share: How much of the leg is free, from 0 to 1.
-    """
+    """A leg that swings by angles instead of reaching for a place; all (T,), degrees but for `share`."""
 
     flexion: Array
+    """Of the hip, forward."""
     outward: Array
+    """Angle of the plane of flexion beside straight ahead; at 90 flexion lifts the leg sideways."""
     twist: Array
+    """Of the thigh, toes outward."""
     knee: Array
+    """Flexion."""
     ankle: Array
+    """Toes downward."""
     share: Array
+    """How much of the leg is free, from 0 to 1."""
 
 
 def turned(yaw: Array, pitch: Array, roll: Array) -> Array:

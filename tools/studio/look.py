@@ -24,19 +24,16 @@ CLOTH_M = {"trunk": 0.005, "forearm": 0.003, "shin": 0.006}
 
 @dataclass(frozen=True)
 class Look:
-    """A performer's appearance.
-
-    Attributes:
-        colors: Those that differ from `CLOTHES`, by name.
-        girths: Factors of the limbs' and the trunk's thickness, by kind of segment, where they are not 1.
-        cloth_m: How far each garment stands off, by kind of segment.
-        folds: Share by which a garment's distance from the body varies: its wrinkles.
-    """
+    """A performer's appearance."""
 
     colors: Mapping[str, Color] = field(default_factory=dict)
+    """Those that differ from `CLOTHES`, by name."""
     girths: Mapping[str, float] = field(default_factory=dict)
+    """Factors of the limbs' and the trunk's thickness, by kind of segment, where they are not 1."""
     cloth_m: Mapping[str, float] = field(default_factory=lambda: CLOTH_M)
+    """How far each garment stands off, by kind of segment."""
     folds: float = 0.0
+    """Share by which a garment's distance from the body varies: its wrinkles."""
 
     @property
     def painted(self) -> dict[str, Color]:

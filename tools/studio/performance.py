@@ -34,27 +34,24 @@ SOFT_LANDING_FRAMES = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Choreography:
-    """Everything that moves, over T times.
-
-    Attributes:
-        pelvis: Hips' midpoint x, y, z [m]; yaw turns left, pitch bows, roll raises the right side.
-        trunk: Pitch, roll and yaw of the waist, and the same of the neck (`neck_pitch` and so on).
-        arms: By side: elevation, forward, twist, flexion, pronation, girdle.
-        feet: By side: the ankle's place (T, 3) [m] and the foot's world rotation (T, 3, 3), for which the leg
-            reaches.
-        free: By side: legs that for a share of the time swing by their own angles instead.
-        grounded: (T,) height [m] of the lowest sole over the floor; the hips then follow the feet. None where
-            the hips' height is as given.
-        exact_reach: Whether a foot beyond the leg's reach is an error; else its heel lifts.
-    """
+    """Everything that moves, over T times."""
 
     pelvis: Channels
+    """Hips' midpoint x, y, z [m]; yaw turns left, pitch bows, roll raises the right side."""
     trunk: Channels
+    """Pitch, roll and yaw of the waist, and the same of the neck (`neck_pitch` and so on)."""
     arms: dict[str, Channels]
+    """By side: elevation, forward, twist, flexion, pronation, girdle."""
     feet: dict[str, tuple[Array, Array]]
+    """By side: the ankle's place (T, 3) [m] and the foot's world rotation (T, 3, 3), for which the leg
+    reaches."""
     free: dict[str, FreeLeg] = field(default_factory=dict)
+    """By side: legs that for a share of the time swing by their own angles instead."""
     grounded: Array | None = None
+    """(T,) height [m] of the lowest sole over the floor; the hips then follow the feet. None where the
+    hips' height is as given."""
     exact_reach: bool = False
+    """Whether a foot beyond the leg's reach is an error; else its heel lifts."""
 
     def turned(self, heading_deg: float) -> "Choreography":
         """The same, turned left about the world's origin."""
@@ -67,22 +64,19 @@ class Choreography:
 
 @dataclass(frozen=True, eq=False)
 class Performance:
-    """The motion at any time.
-
-    Attributes:
-        body: The performer.
-        frame_count: Frames of the take.
-        times: (T,) frames, from 0, an even fraction of a frame apart.
-        postures: A batch of T postures.
-        feet: The world rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with
-            the shins, a person's are not.
-    """
+    """The motion at any time."""
 
     body: Body
+    """The performer."""
     frame_count: int
+    """Frames of the take."""
     times: Array
+    """(T,) frames, from 0, an even fraction of a frame apart."""
     postures: Posture
+    """A batch of T postures."""
     feet: dict[str, Array]
+    """The world rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with the
+    shins, a person's are not."""
 
     def at(self, times: Array) -> IndexArray:
         """Indices of the stored times nearest to `times` [frames]."""

@@ -30,21 +30,18 @@ ARMS_OUT_DEG, LEGS_APART_DEG = 52.0, 14.0
 
 @dataclass(frozen=True, eq=False)
 class Performer:
-    """The mesh and what moves it.
-
-    Attributes:
-        thing: The Blender object, placed at the world's origin.
-        places: (V, 3) vertices at the posture it was modelled in.
-        weights: (V, N) share of each mover in every vertex.
-        names: The N movers.
-        modelled: Rotations (N, 3, 3) and origins (N, 3) of the movers when modelled.
-    """
+    """The mesh and what moves it."""
 
     thing: bpy.types.Object
+    """The Blender object, placed at the world's origin."""
     places: Array
+    """(V, 3) vertices at the posture it was modelled in."""
     weights: Array
+    """(V, N) share of each mover in every vertex."""
     names: tuple[str, ...]
+    """The N movers."""
     modelled: tuple[Array, Array]
+    """Rotations (N, 3, 3) and origins (N, 3) of the movers when modelled."""
 
     def bend(self, performance: Performance, index: int) -> None:
         """Move the mesh to a stored time of the performance."""

@@ -99,17 +99,14 @@ SHOE: list[Ring] = [
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A closed stack of rings.
-
-    Attributes:
-        name: What it is.
-        mover: Name of the joint, or of the shoe, that it moves with.
-        rings: (R, S, 3) places in the mover's frame [m].
-    """
+    """A closed stack of rings."""
 
     name: str
+    """What it is."""
     mover: str
+    """Name of the joint, or of the shoe, that it moves with."""
     rings: Array
+    """(R, S, 3) places in the mover's frame [m]."""
 
 
 def body_parts(body: Body, girths: Mapping[str, float]) -> list[Part]:

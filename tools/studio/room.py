@@ -19,15 +19,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BuiltRoom:
-    """A room in Blender's scene.
-
-    Attributes:
-        things: Blender's objects for the room's things.
-        room: What they were made from.
-    """
+    """A room in Blender's scene."""
 
     things: tuple[bpy.types.Object, ...]
+    """Blender's objects for the room's things."""
     room: Room
+    """What they were made from."""
 
     @property
     def moving(self) -> list[bpy.types.Object]:

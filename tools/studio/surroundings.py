@@ -12,36 +12,30 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Lamp:
-    """A square window of light that shines on the performer's chest.
-
-    Attributes:
-        place: Its middle [m].
-        size: Of an edge [m]; small ones throw hard shadows.
-        power: Watts.
-        color: Red, green and blue, linear.
-    """
+    """A square window of light that shines on the performer's chest."""
 
     place: Triple
+    """Its middle [m]."""
     size: float
+    """Of an edge [m]; small ones throw hard shadows."""
     power: float
+    """Watts."""
     color: Triple
+    """Red, green and blue, linear."""
 
 
 @dataclass(frozen=True)
 class Thing:
-    """A box or a ball that is no part of the room.
-
-    Attributes:
-        size: Edges [m]; a ball has three equal ones and is `round`.
-        color: Red, green and blue, linear.
-        path: Its place [m] by frame, through which it moves evenly; a single one stands still.
-        round: Whether it is a ball.
-    """
+    """A box or a ball that is no part of the room."""
 
     size: Triple
+    """Edges [m]; a ball has three equal ones and is `round`."""
     color: Triple
+    """Red, green and blue, linear."""
     path: Mapping[float, Triple]
+    """Its place [m] by frame, through which it moves evenly; a single one stands still."""
     round: bool = False
+    """Whether it is a ball."""
 
     @property
     def moves(self) -> bool:
@@ -56,23 +50,20 @@ class Thing:
 
 @dataclass(frozen=True)
 class Room:
-    """What surrounds a performer.
-
-    Attributes:
-        lamps: The lamps, the brightest first.
-        sky: Red, green, blue and strength of the light from everywhere.
-        wall: Color of the walls, linear.
-        planks: Colors of the floor's planks and of the gaps between them, linear.
-        furnished: Whether wall bars, pictures, a bench and a ball are there.
-        things: What else is there and may move or hide the performer.
-    """
+    """What surrounds a performer."""
 
     lamps: tuple[Lamp, ...] = (
         Lamp((-0.6, -4.0, 3.3), 2.4, 215.0, (1.0, 0.96, 0.90)),
         Lamp((3.4, -2.2, 2.6), 1.8, 80.0, (0.92, 0.96, 1.0)),
     )
+    """The lamps, the brightest first."""
     sky: tuple[float, float, float, float] = (0.95, 0.97, 1.0, 0.42)
+    """Red, green, blue and strength of the light from everywhere."""
     wall: Triple = (0.72, 0.69, 0.63)
+    """Color of the walls, linear."""
     planks: tuple[Triple, Triple, Triple] = ((0.36, 0.27, 0.19), (0.31, 0.23, 0.16), (0.2, 0.15, 0.1))
+    """Colors of the floor's planks and of the gaps between them, linear."""
     furnished: bool = True
+    """Whether wall bars, pictures, a bench and a ball are there."""
     things: tuple[Thing, ...] = ()
+    """What else is there and may move or hide the performer."""

@@ -4,11 +4,9 @@ What the estimate wants to see again, it wants only once it knows roughly where 
 a coarse grid. Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any
 
 import cv2
 import numpy as np
@@ -17,29 +15,26 @@ from numpy.typing import NDArray
 from ...arrays import BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
 
-_QUALITY: Final = 90
+QUALITY = 90
 """Of the compression; its error stays below that of the video."""
 
 
 @dataclass(eq=False)
 class Album:
-    """Small pictures of the frames read so far, on the grid that colors are learned on.
-
-    Attributes:
-        factor: pixels of the clip to a pixel of the pictures, along either axis.
-    """
+    """Small pictures of the frames read so far, on the grid that colors are learned on."""
 
     factor: int = 1
+    """Pixels of the clip to a pixel of the pictures, along either axis."""
     _pictures: dict[int, Image] = field(default_factory=dict)
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
-        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
         self._pictures[index] = packed
 
-    def every(self, step: int) -> Album:
+    def every(self, step: int) -> "Album":
         """Return the album of a clip that holds only every so many-th frame, counted anew."""
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
         return Album(self.factor, kept)
@@ -56,7 +51,7 @@ class Album:
         }
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Album:
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
         """Return the album that `to_arrays` gave."""
         pictures = np.split(arrays["picture"], arrays["end"])
         kept = dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing

@@ -1,7 +1,5 @@
 """A clip on disk, video or numbered images: its size and rate, and its frames in order, one at a time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,20 +43,17 @@ class FrameSource(Protocol):
 
 @dataclass(frozen=True)
 class Clip:
-    """A readable clip; opening it has decoded its first frame.
-
-    Attributes:
-        path: the file, the folder or the pattern it was opened from.
-        source: decoder of the frames.
-        notes: sentences on what a person should know of the file itself.
-    """
+    """A readable clip; opening it has decoded its first frame."""
 
     path: Path
+    """The file, the folder or the pattern it was opened from."""
     source: FrameSource
+    """Decoder of the frames."""
     notes: tuple[str, ...] = ()
+    """Sentences on what a person should know of the file itself."""
 
     @classmethod
-    def open(cls, path: str | Path, fps: float | None = None) -> Clip:
+    def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
         """Open a video, a folder of images, or a numbered sequence by one of its files or a pattern.
 
         Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10).

@@ -1,36 +1,30 @@
 """Frames spread over a clip, kept as small pictures, so that colors can be tried on them at once."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 from ...arrays import Image
 from ...errors import InputError
 from ..segmentation.working_image import halvings, measuring_image
 from .clip import Clip
 
-SAMPLED_FRAMES: Final = 24
+SAMPLED_FRAMES = 24
 """Twice as many as colors are learned from, so that most are judged by colors learned elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
 class ClipSamples:
-    """N frames of a clip.
-
-    Attributes:
-        path: the clip, for messages.
-        size: width and height of its frames in px.
-        indices: (N,) which frames they are.
-        images: their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid.
-    """
+    """N frames of a clip."""
 
     path: Path
+    """The clip, for messages."""
     size: tuple[int, int]
+    """Width and height of its frames in px."""
     indices: tuple[int, ...]
+    """(N,) which frames they are."""
     images: tuple[Image, ...]
+    """Their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid."""
 
 
 def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:

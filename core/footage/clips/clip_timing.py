@@ -1,12 +1,10 @@
 """When the frames of a clip were taken: even and uneven time stamps."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-_RELATIVE_TOLERANCE = 0.1
-_STAMP_RESOLUTION_S = 1.1e-3
+RELATIVE_TOLERANCE = 0.1
+STAMP_RESOLUTION_S = 1.1e-3
 """Containers that store whole milliseconds make even intervals jump by one."""
 
 
@@ -25,5 +23,5 @@ def is_variable_frame_rate(time_s: ArrayLike) -> bool:
     if intervals.size < 2:
         return False
     median = float(np.median(intervals))
-    tolerance = max(_RELATIVE_TOLERANCE * median, _STAMP_RESOLUTION_S)
+    tolerance = max(RELATIVE_TOLERANCE * median, STAMP_RESOLUTION_S)
     return bool(np.abs(intervals - median).max() > tolerance)

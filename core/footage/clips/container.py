@@ -5,24 +5,21 @@ joined, a session description), which leads them on to other files or to the net
 begins as the containers and streams here do.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Final
 
 from ... import MOST_PIXELS
 from ...errors import InputError
 from ...files.regular_file import ordinary_size
 
-_LOOKED_AT: Final = 4096
-_VALID: Final = "a video that OpenCV can read"
+LOOKED_AT = 4096
+VALID = "a video that OpenCV can read"
 
-_BOXES: Final = (
+BOXES = (
     *(b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot"),
     *(b"styp", b"uuid", b"moof", b"udta", b"prfl", b"PICT", b"junk"),
 )
 """MP4 and QuickTime: the name of the first box follows its size."""
-_BEGINNINGS: Final = (
+BEGINNINGS = (
     b"\x1a\x45\xdf\xa3",  # Matroska, WebM
     b"\x30\x26\xb2\x75\x8e\x66\xcf\x11",  # ASF, WMV
     b"\x00\x00\x01",  # MPEG program streams, and raw MPEG-1, -2, -4, H.264, H.265
@@ -41,8 +38,8 @@ _BEGINNINGS: Final = (
     b"BBCD",  # Dirac
     b"\x06\x0e\x2b\x34\x02\x05\x01\x01\x0d\x01\x02",  # MXF
 )
-_RIFF: Final = (b"AVI ", b"AVIX")
-_TRANSPORT: Final = ((188, 0), (192, 4), (204, 0))
+_RIFF = (b"AVI ", b"AVIX")
+TRANSPORT = ((188, 0), (192, 4), (204, 0))
 """Packet lengths of MPEG transport streams, and where in each its synchronising byte stands."""
 
 
@@ -55,17 +52,17 @@ def check_container(path: Path) -> None:
     Raises:
         InputError: It is missing, no ordinary file, empty, or does not begin as a video does.
     """
-    if ordinary_size(path, _VALID) == 0:
+    if ordinary_size(path, VALID) == 0:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
         with path.open("rb") as file:
-            beginning = file.read(_LOOKED_AT)
+            beginning = file.read(LOOKED_AT)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {_VALID}") from error
+        raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {VALID}") from error
     if not _begins_as_video(beginning):
         what = "text" if _is_text(beginning[:512]) else "data of another kind"
         raise InputError(
-            f"{path}: cannot be decoded; it holds {what} and must be {_VALID}, no playlist or other file"
+            f"{path}: cannot be decoded; it holds {what} and must be {VALID}, no playlist or other file"
         )
 
 
@@ -84,10 +81,10 @@ def check_pixels(path: Path, width: float, height: float) -> None:
 
 def _begins_as_video(data: bytes) -> bool:
     return (
-        data[4:8] in _BOXES
-        or data.startswith(_BEGINNINGS)
+        data[4:8] in BOXES
+        or data.startswith(BEGINNINGS)
         or (data[:4] in (b"RIFF", b"RIFX") and data[8:12] in _RIFF)
-        or any(_is_transport(data[start::length]) for length, start in _TRANSPORT)
+        or any(_is_transport(data[start::length]) for length, start in TRANSPORT)
     )
 
 

@@ -1,10 +1,7 @@
 """What is noticed of a clip's frames while they pass, and a person should know before trusting the result."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import cv2
 import numpy as np
@@ -13,39 +10,36 @@ from ...arrays import Image
 from .blank_frames import is_blank
 from .interlacing import combing
 
-_SIDE: Final = 64
+SIDE = 64
 """Rows and columns of the pictures that are compared, about."""
-_COMBED_EVERY: Final = 15
+COMBED_EVERY = 15
 """Frames between two that are looked at for combing."""
-_COMBED, _COMBED_MORE = 5e-4, 10.0
+COMBED, _COMBED_MORE = 5e-4, 10.0
 """Share of an interlaced picture that is combed, and how much more than by columns. Sixteen clips
 that are not interlaced stay below 1.2e-4 and three times as much; three made so have 1e-2 and more."""
-_COLORLESS: Final = 10
+COLORLESS = 10
 """Levels between the channels of gray, but for what compression adds."""
-_CUT: Final = 10.0
+CUT = 10.0
 """Levels by which half of the picture changes at once where the scene does."""
-_CUT_MORE: Final = 5.0
+CUT_MORE = 5.0
 """How many times what it usually changes."""
-_FEW_PIXELS: Final = 4
+FEW_PIXELS = 4
 """So many of a small picture may have colors by accident."""
-_NAMED: Final = 3
+NAMED = 3
 
 
 @dataclass(frozen=True)
 class Noticed:
-    """What was noticed of a clip.
-
-    Attributes:
-        frames: how many were looked at.
-        blank: those in which nothing is to be seen, in order, counted from 0.
-        cuts: those that show quite another picture than the one before.
-        interlaced: whether pictures show two moments each.
-    """
+    """What was noticed of a clip."""
 
     frames: int = 0
+    """How many were looked at."""
     blank: tuple[int, ...] = ()
+    """Those in which nothing is to be seen, in order, counted from 0."""
     cuts: tuple[int, ...] = ()
+    """Those that show quite another picture than the one before."""
     interlaced: bool = False
+    """Whether pictures show two moments each."""
 
     def notes(self, first: int) -> tuple[str, ...]:
         """Sentences on what a person should know; the clip's first frame is called `first`."""
@@ -68,7 +62,7 @@ class Noticed:
         return tuple(notes)
 
 
-NOTHING_NOTICED: Final = Noticed()
+NOTHING_NOTICED = Noticed()
 
 
 class FrameWatch:
@@ -89,10 +83,10 @@ class FrameWatch:
         if is_blank(image):
             self._blank.append(index)
             return False
-        step = max(min(image.shape[:2]) // _SIDE, 1)
+        step = max(min(image.shape[:2]) // SIDE, 1)
         small = image[step // 2 :: step, step // 2 :: step].copy()
         self._color = max(self._color, _colorfulness(small))
-        if index % _COMBED_EVERY == 0:
+        if index % COMBED_EVERY == 0:
             self._combed.append(combing(image))
         if self._last is not None:
             self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
@@ -107,7 +101,7 @@ class FrameWatch:
         """Say why no marker can be found in the clip; None where that is not known."""
         if len(self._blank) == self._frames:
             return "nothing is to be seen in any frame: all are black, or of one color"
-        if self._color < _COLORLESS:
+        if self._color < COLORLESS:
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
 
@@ -115,11 +109,11 @@ class FrameWatch:
         if not self._combed:
             return False
         rows, columns = np.mean(self._combed, axis=0)
-        return bool(rows > _COMBED and rows > _COMBED_MORE * columns)
+        return bool(rows > COMBED and rows > _COMBED_MORE * columns)
 
     def _cuts(self) -> tuple[int, ...]:
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
-        return tuple(index for index, one in self._changes.items() if one > max(_CUT, _CUT_MORE * usual))
+        return tuple(index for index, one in self._changes.items() if one > max(CUT, CUT_MORE * usual))
 
 
 def _colorfulness(image: Image) -> int:
@@ -127,7 +121,7 @@ def _colorfulness(image: Image) -> int:
     blue, green, red = cv2.split(image)
     brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)
     spread = (brightest - darkest).ravel()
-    last = spread.size - min(_FEW_PIXELS, spread.size)
+    last = spread.size - min(FEW_PIXELS, spread.size)
     return int(np.partition(spread, last)[last])
 
 
@@ -139,5 +133,5 @@ def _ranges(frames: Sequence[int], first: int) -> str:
             runs[-1][1] = frame
         else:
             runs.append([frame, frame])
-    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:_NAMED]]
-    return ", ".join(named) + (f" and {len(runs) - _NAMED} more times" if len(runs) > _NAMED else "")
+    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:NAMED]]
+    return ", ".join(named) + (f" and {len(runs) - NAMED} more times" if len(runs) > NAMED else "")

@@ -1,20 +1,17 @@
 """One frame of a clip after another as a person looks at them: a step forward decodes one frame."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import Final
 
 from ...arrays import Image
 from .clip import Clip
 
 Stamped = tuple[float, Image]
 
-_EARLY: Final = 0.1
+EARLY = 0.1
 """Share of a frame's interval by which its time stamp may be rounded up."""
-_LONGEST_STEP: Final = 12.0
+LONGEST_STEP = 12.0
 """Intervals that are rather decoded on the way than searched for."""
-_BEFORE: Final = 2
+BEFORE = 2
 """Frames before the one that is sought, with which a search begins."""
 
 
@@ -44,17 +41,17 @@ class FrameReader:
             InputError: the clip is gone, or an image of a sequence cannot be read.
         """
         interval = 1.0 / self._clip.fps
-        limit = time_s + _EARLY * interval
+        limit = time_s + EARLY * interval
         if limit < 0.0:
             return None
-        if self._shown is None or not 0.0 <= limit - self._shown[0] < _LONGEST_STEP * interval:
-            self._begin(max(int(limit / interval) - _BEFORE, 0))
+        if self._shown is None or not 0.0 <= limit - self._shown[0] < LONGEST_STEP * interval:
+            self._begin(max(int(limit / interval) - BEFORE, 0))
             if self._shown is None or self._shown[0] > limit:
                 self._begin(0)
         while self._coming is not None and self._coming[0] <= limit:
             self._shown, self._coming = self._coming, next(self._onward, None)
         if self._shown is None or (
-            self._coming is None and limit >= self._shown[0] + (1.0 + _EARLY) * interval
+            self._coming is None and limit >= self._shown[0] + (1.0 + EARLY) * interval
         ):
             return None
         return self._shown[1]

@@ -1,13 +1,10 @@
 """Frames of a numbered image sequence."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 
@@ -16,11 +13,11 @@ from ...errors import InputError
 from ...files.fields import listed
 from .one_image import read_image
 
-MOST_IMAGES: Final = 10**6
+MOST_IMAGES = 10**6
 """Of one folder; eleven hours of film."""
-_EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
-_PATTERN = re.compile(r"(#+|%0?\d*d)")
-_LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
+EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
+PATTERN = re.compile(r"(#+|%0?\d*d)")
+LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 
 
 class ImageSequence:
@@ -85,7 +82,7 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
     around = {stem_of_number(path) for path in paths}
     if len(paths) < 2 or len(around) > 1 or None in around:
         return tuple(paths), ()
-    numbers = [int(number[0]) for number in map(_LAST_NUMBER.search, (path.stem for path in paths)) if number]
+    numbers = [int(number[0]) for number in map(LAST_NUMBER.search, (path.stem for path in paths)) if number]
     if len(set(numbers)) < len(paths):
         return tuple(paths), ()
     step = math.gcd(*(number - numbers[0] for number in numbers))
@@ -121,13 +118,13 @@ def find_images(path: Path) -> list[Path] | None:
         if not found:
             raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
         return _only_sequence(path, found)
-    if path.suffix.lower() not in _EXTENSIONS:
+    if path.suffix.lower() not in EXTENSIONS:
         return None
     if path.is_file():
         return _siblings(path)
-    if not _PATTERN.search(path.name):
+    if not PATTERN.search(path.name):
         return None
-    head, _, tail = _PATTERN.split(path.name, maxsplit=1)
+    head, _, tail = PATTERN.split(path.name, maxsplit=1)
     found = _numbered(path.parent, head, tail)
     if not found:
         raise InputError(f"{path}: no file fits the pattern; name one as in img_####.png or img_%04d.png")
@@ -164,12 +161,12 @@ def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
 def is_image(path: Path) -> bool:
     """Tell whether a path is a file that is named like an image."""
     hidden = path.name.startswith(".")  # beside every file that macOS copies to other discs lies one
-    return path.suffix.lower() in _EXTENSIONS and not hidden and path.is_file()
+    return path.suffix.lower() in EXTENSIONS and not hidden and path.is_file()
 
 
 def stem_of_number(path: Path) -> tuple[str, str] | None:
     """What a numbered image's name has before and behind its number; None for a name without one."""
-    number = _LAST_NUMBER.search(path.stem)
+    number = LAST_NUMBER.search(path.stem)
     return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
 
 
@@ -200,4 +197,4 @@ def _natural_key(path: Path) -> list[tuple[int, int, str]]:
 
 
 def _names() -> str:
-    return ", ".join(sorted(extension[1:] for extension in _EXTENSIONS))
+    return ", ".join(sorted(extension[1:] for extension in EXTENSIONS))

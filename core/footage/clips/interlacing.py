@@ -1,19 +1,15 @@
 """Interlaced video: two moments in one picture, one in the even rows and one in the odd ones."""
 
-from __future__ import annotations
-
-from typing import Final
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Image
 
-_STEP: Final = 8
+STEP = 8
 """Levels by which neighboring rows differ where a moving edge is combed."""
-_TEETH: Final = 5
+TEETH = 5
 """Steps up and down in turn that neither noise nor a texture makes so often."""
-_COLUMNS: Final = 320
+COLUMNS = 320
 """Fewest that are looked at."""
 
 
@@ -27,18 +23,18 @@ def combing(image: Image) -> tuple[float, float]:
         Two shares of the picture's places.
     """
     green = image[..., 1].astype(np.int16)
-    across = max(image.shape[1] // _COLUMNS, 1)
-    down = max(image.shape[0] // _COLUMNS, 1)
+    across = max(image.shape[1] // COLUMNS, 1)
+    down = max(image.shape[0] // COLUMNS, 1)
     return _teeth(green[:, ::across]), _teeth(green[::down].T)
 
 
 def _teeth(levels: NDArray[np.int16]) -> float:
     step = np.diff(levels, axis=0)
-    if len(step) < _TEETH:
+    if len(step) < TEETH:
         return 0.0
     step[1::2] *= -1
-    places = len(step) - _TEETH + 1
-    up, down = step > _STEP, step < -_STEP
-    rising = np.logical_and.reduce([up[tooth : tooth + places] for tooth in range(_TEETH)])
-    falling = np.logical_and.reduce([down[tooth : tooth + places] for tooth in range(_TEETH)])
+    places = len(step) - TEETH + 1
+    up, down = step > STEP, step < -STEP
+    rising = np.logical_and.reduce([up[tooth : tooth + places] for tooth in range(TEETH)])
+    falling = np.logical_and.reduce([down[tooth : tooth + places] for tooth in range(TEETH)])
     return float(np.mean(rising | falling))

@@ -1,10 +1,8 @@
 """Reading one image file."""
 
-from __future__ import annotations
-
 import zlib
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import cv2
 import numpy as np
@@ -16,9 +14,9 @@ from ...errors import InputError
 from ...files.regular_file import ordinary_size
 from .opencv_silence import opencv_silence
 
-LARGEST_BYTES: Final = 2**31
+LARGEST_BYTES = 2**31
 """Of one image: four times the pixels that are read, at sixteen bits."""
-_PNG: Final = b"\x89PNG\r\n\x1a\n"
+PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def read_image(path: Path) -> Image:
@@ -65,9 +63,9 @@ def _decoded(data: Image) -> NDArray[Any] | None:
 
 def _is_whole(data: bytes) -> bool:
     """Tell a damaged PNG, of which its decoder would complain on standard error."""
-    if not data.startswith(_PNG):
+    if not data.startswith(PNG):
         return True
-    at = len(_PNG)
+    at = len(PNG)
     while at + 12 <= len(data):
         length = int.from_bytes(data[at : at + 4], "big")
         end = at + 8 + length

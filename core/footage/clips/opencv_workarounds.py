@@ -1,20 +1,16 @@
 """Rows that OpenCV leaves as they were in memory, and what is put there."""
 
-from __future__ import annotations
-
-from typing import Final
-
 import cv2
 import numpy as np
 
 from ...arrays import Image
 
-_DEEP_YUV420: Final = b"Y3\x0b"
+DEEP_YUV420 = b"Y3\x0b"
 """How FFmpeg names planar YCbCr with colors at half the resolution in more than eight bits; the depth
 follows."""
-_BLOCK: Final = 16
+BLOCK = 16
 """Coded pictures have so many rows or a multiple."""
-_ROWS: Final = 3
+ROWS = 3
 
 
 def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
@@ -29,9 +25,9 @@ def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
     """
     code = int(capture.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little")
-    if name[:3] != _DEEP_YUV420 or name[3] <= 8:
+    if name[:3] != DEEP_YUV420 or name[3] <= 8:
         return
     turned = int(capture.get(cv2.CAP_PROP_ORIENTATION_META)) // 90
     coded = np.rot90(image, turned)
-    if coded.shape[0] % _BLOCK and coded.shape[0] > _ROWS:
-        coded[-_ROWS:] = coded[-_ROWS - 1]
+    if coded.shape[0] % BLOCK and coded.shape[0] > ROWS:
+        coded[-ROWS:] = coded[-ROWS - 1]

@@ -4,14 +4,11 @@ The file's packets are read as they are, one a picture. That takes a thousandth 
 Only what `VideoFile` could open is looked at.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 import cv2
 import numpy as np
@@ -19,25 +16,22 @@ import numpy as np
 from ...arrays import Array
 from .opencv_silence import opencv_silence
 
-MOST_PACKETS: Final = 20_000
+MOST_PACKETS = 20_000
 """Of a longer file no more are read: ten minutes of it tell whether the rate varies."""
-_SEARCH_BEGINS: Final = 16
+SEARCH_BEGINS = 16
 """Frames before a wanted one from which OpenCV seeks backwards for a picture that stands by itself."""
-_MORE: Final = 2
+MORE = 2
 """Packets that must follow a wanted frame, so that the search for it never meets the end."""
 
 
 @dataclass(frozen=True, eq=False)
 class Packets:
-    """The beginning of a video file.
-
-    Attributes:
-        time_s: (N,) when each picture is shown, ascending.
-        complete: whether that is all the file holds.
-    """
+    """The beginning of a video file."""
 
     time_s: Array
+    """(N,) when each picture is shown, ascending."""
     complete: bool
+    """Whether that is all the file holds."""
 
 
 def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:
@@ -62,8 +56,8 @@ def quickly_found(path: Path, wanted: Sequence[int]) -> list[int]:
             if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
                 continue
             begins = int(capture.get(cv2.CAP_PROP_POS_FRAMES))
-            if 0 <= begins <= index and all(capture.grab() for _ in range(_SEARCH_BEGINS + _MORE)):
-                found.add(begins + _SEARCH_BEGINS)
+            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + MORE)):
+                found.add(begins + SEARCH_BEGINS)
     return sorted(found)
 
 

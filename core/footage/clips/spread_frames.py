@@ -1,9 +1,6 @@
 """A few frames from all over a clip, for little: the longer and larger it is, the fewer are decoded."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Iterator
-from typing import Final
 
 import numpy as np
 
@@ -15,14 +12,14 @@ from .clip_samples import SAMPLED_FRAMES, ClipSamples, sample_clip
 from .packets import quickly_found
 from .video_file import VideoFile
 
-MOST_DECODED_PX: Final = 90_000_000
+MOST_DECODED_PX = 90_000_000
 """Pixels that may be decoded for a glance: about half a second of a processor, at any size."""
-_FRAMES_PER_SEARCH: Final = 18
+FRAMES_PER_SEARCH = 18
 """What is decoded for a frame that is quickly found."""
-_MOST_SEARCHES: Final = 12
-_IMAGE_COST: Final = 4
+MOST_SEARCHES = 12
+IMAGE_COST = 4
 """Opening an image takes as long as decoding so many frames of a video."""
-_FEWEST: Final = 3
+FEWEST = 3
 
 
 def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
@@ -40,17 +37,17 @@ def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, Cl
     """
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
-        affordable = max(MOST_DECODED_PX // (_IMAGE_COST * pixels), _FEWEST)
+        affordable = max(MOST_DECODED_PX // (IMAGE_COST * pixels), FEWEST)
         return (yield from sample_clip(clip, min(count, affordable)))
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
-    most = min(count, _MOST_SEARCHES, max(MOST_DECODED_PX // (_FRAMES_PER_SEARCH * pixels), _FEWEST))
+    most = min(count, MOST_SEARCHES, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
     middles = (np.arange(most) + 0.5) * clip.frame_count / most
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:
         return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
     # Some files cannot be searched; what is left of them is their beginning.
-    first = range(0, min(clip.frame_count, MOST_DECODED_PX // pixels + 1), _FRAMES_PER_SEARCH)
+    first = range(0, min(clip.frame_count, MOST_DECODED_PX // pixels + 1), FRAMES_PER_SEARCH)
     return (yield from _kept(clip, clip.source.at(first), len(first)))
 
 

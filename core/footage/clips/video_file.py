@@ -1,7 +1,5 @@
 """Frames of a video file, decoded by OpenCV."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -17,18 +15,18 @@ from .opencv_silence import opencv_silence
 from .opencv_workarounds import fill_last_rows
 from .video_notes import video_notes
 
-_FALLBACK_FPS = 24.0
-_HIGHEST_PLAUSIBLE_FPS = 2000.0
-_FRAMES_PER_SEEK = 125
+FALLBACK_FPS = 24.0
+HIGHEST_PLAUSIBLE_FPS = 2000.0
+FRAMES_PER_SEEK = 125
 """Seeking decodes from the last key picture on: half of an encoder's usual 250 frames between them."""
-_PATIENCE = 500
+PATIENCE = 500
 """Failures in a row after which nothing more is expected of a file: two key pictures' distance."""
-_LONGEST_PAUSE_S = 3600.0
+LONGEST_PAUSE_S = 3600.0
 """A time stamp farther ahead of the last is none."""
-_SMALLEST_FRAME_BYTES = 8
+SMALLEST_FRAME_BYTES = 8
 """Of the smallest frames, what a container writes of each: a claim of more is not believed."""
 
-_CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
+CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
 
 # The decoder reads its verbosity once a process, when it is first used.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -60,14 +58,14 @@ class VideoFile:
             if not decoded or image is None:
                 raise InputError(
                     f"{path}: not one frame of this {_codec(capture)} video can be decoded; it is damaged, "
-                    f"cut off or coded in a way that OpenCV cannot read here; {_CONVERT}"
+                    f"cut off or coded in a way that OpenCV cannot read here; {CONVERT}"
                 )
             self.size: tuple[int, int] = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
-            self.fps: float = fps if 0.0 < fps < _HIGHEST_PLAUSIBLE_FPS else _FALLBACK_FPS
+            self.fps: float = fps if 0.0 < fps < HIGHEST_PLAUSIBLE_FPS else FALLBACK_FPS
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
             self.notes = video_notes(path, capture)
-        most = path.stat().st_size // _SMALLEST_FRAME_BYTES
+        most = path.stat().st_size // SMALLEST_FRAME_BYTES
         self.frame_count: int = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
             self.frame_count = sum(1 for _ in self.time_stamps())
@@ -94,7 +92,7 @@ class VideoFile:
         with self._capture() as capture:
             position = 0
             for done, index in enumerate(indices):
-                if index - position > _FRAMES_PER_SEEK:
+                if index - position > FRAMES_PER_SEEK:
                     found = capture.set(cv2.CAP_PROP_POS_FRAMES, index) and capture.grab()
                 else:
                     found = all(capture.grab() for _ in range(index + 1 - position))
@@ -120,7 +118,7 @@ class VideoFile:
         """
         with self._capture() as capture:
             index = 0
-            if first > _FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
+            if first > FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
                 index = first
             for place, (stamp, found) in enumerate(self._stamped(capture, index), index):
                 if place >= first:
@@ -163,8 +161,8 @@ class VideoFile:
         """Return the time of the frame just read; None where that cannot be."""
         stamp = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0
         if np.isinf(previous):
-            return stamp if 0.0 <= stamp < max(_LONGEST_PAUSE_S, 2.0 * index / self.fps) else index / self.fps
-        return stamp if previous < stamp < previous + _LONGEST_PAUSE_S else None
+            return stamp if 0.0 <= stamp < max(LONGEST_PAUSE_S, 2.0 * index / self.fps) else index / self.fps
+        return stamp if previous < stamp < previous + LONGEST_PAUSE_S else None
 
     def _picture(self, capture: cv2.VideoCapture, index: int) -> Image:
         """Return the frame just read; black where its picture turns out not to be there."""
@@ -175,7 +173,7 @@ class VideoFile:
         if size != self.size:
             raise InputError(
                 f"{self.path}: the picture changes its size from {self.size[0]} x {self.size[1]} to "
-                f"{size[0]} x {size[1]} pixels after {index} frames; it must stay the same; {_CONVERT}"
+                f"{size[0]} x {size[1]} pixels after {index} frames; it must stay the same; {CONVERT}"
             )
         picture = np.ascontiguousarray(image, dtype=np.uint8)
         fill_last_rows(capture, picture)
@@ -210,7 +208,7 @@ def _open_quietly(path: Path) -> cv2.VideoCapture:
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
     """Go from frame to frame; yield how often the decoder has failed on the way to each."""
     failures = 0
-    while failures <= _PATIENCE:
+    while failures <= PATIENCE:
         if capture.grab():
             yield failures
             failures = 0

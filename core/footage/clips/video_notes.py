@@ -1,15 +1,12 @@
 """What a video file says of itself that a person should know."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Final
 
 import cv2
 
 from .video_color import dynamic_range
 
-_NOTICEABLE_SHAPE: Final = 0.01
+NOTICEABLE_SHAPE = 0.01
 
 
 def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
@@ -19,7 +16,7 @@ def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
 
 def _shape_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
     across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < _NOTICEABLE_SHAPE:
+    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < NOTICEABLE_SHAPE:
         return ()
     return (
         f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and Blender "

@@ -1,7 +1,5 @@
 """A clip that is looked at while its frames are read, so that nothing has to be decoded twice."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

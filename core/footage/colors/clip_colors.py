@@ -1,10 +1,7 @@
 """The markers' colors, learned from a clip while it is being read."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 import cv2
 import numpy as np
@@ -20,16 +17,16 @@ from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel
 from .color_names import nearest_colors, share_of_color
 
-_SAMPLES: Final = 12
+SAMPLES = 12
 """Frames that are learned from first; up to three times as many are kept."""
-_MOST_SAMPLES: Final = 48
+MOST_SAMPLES = 48
 """Frames that are looked at where a marker is in none of the first."""
-_WIDEST_SPACING: Final = 96
+WIDEST_SPACING = 96
 """Frames between samples at most: light changes in seconds."""
-_FEWEST_LEARNED: Final = 12
-_FAR: Final = 10000
+FEWEST_LEARNED = 12
+FAR = 10000
 """Pixels beyond which no circle that is drawn begins or ends."""
-_COMMON_COLOR: Final = 0.02
+COMMON_COLOR = 0.02
 """Share of the picture with which a color is a wall's or a floor's."""
 
 
@@ -76,7 +73,7 @@ class ClipColors:
 
     def learn(self, images: Sequence[Image]) -> None:
         """Learn from the clip's first images, (rows, columns, 3) on the measuring grid."""
-        for count in (_SAMPLES, _MOST_SAMPLES):
+        for count in (SAMPLES, MOST_SAMPLES):
             # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
             middles = (np.arange(count) + 0.5) * len(images) / count
             indices = sorted({int(middle) for middle in middles})
@@ -84,7 +81,7 @@ class ClipColors:
             self._learn()
             if not self._missing.size:
                 break
-        self._spacing = min(max(len(images) // len(self._samples), 1), _WIDEST_SPACING)
+        self._spacing = min(max(len(images) // len(self._samples), 1), WIDEST_SPACING)
 
     def watch(self, index: int, image: Image) -> None:
         """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
@@ -94,9 +91,9 @@ class ClipColors:
         if index - self._samples[-1][0] < self._spacing:
             return
         self._samples.append((index, learning_image(measuring_image(image, self._times))))
-        if len(self._samples) >= 3 * _SAMPLES:
+        if len(self._samples) >= 3 * SAMPLES:
             self._samples = self._samples[2::3]
-            self._spacing = min(3 * self._spacing, _WIDEST_SPACING)
+            self._spacing = min(3 * self._spacing, WIDEST_SPACING)
             self._learn()
 
     def learn_again(self, earlier: Sightings) -> bool:
@@ -131,7 +128,7 @@ class ClipColors:
 
     @property
     def _missing(self) -> IndexArray:
-        return np.flatnonzero(self._most_found < _FEWEST_LEARNED)
+        return np.flatnonzero(self._most_found < FEWEST_LEARNED)
 
     def _learn(self) -> None:
         """Learn from the samples at hand."""
@@ -161,7 +158,7 @@ class ClipColors:
                 if not np.isfinite(circle).all():
                     place[:] = 1
                     continue
-                x, y, radius = np.clip(circle, -_FAR, _FAR).round().astype(int).tolist()
+                x, y, radius = np.clip(circle, -FAR, FAR).round().astype(int).tolist()
                 cv2.circle(place, (x, y), radius, (1.0,), -1)
         return places
 
@@ -175,7 +172,7 @@ def _complaint(style: MarkerStyle, counts: Array) -> str:
     """Say why a color cannot be found among the background's, (CELL_COUNT,) pixels of each color cell."""
     color = list(style.color_srgb)
     share = share_of_color(counts, style.color_srgb)
-    if share > _COMMON_COLOR:
+    if share > COMMON_COLOR:
         return (
             f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
             "markers have too, so nothing tells it from them; wear a color that the surroundings do not have"

@@ -1,10 +1,7 @@
 """Learning the markers' colors over a clip, from one sample each and a few of the clip's own frames."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
@@ -14,37 +11,34 @@ from .color_space import chromaticity
 from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
 
 # What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
-_SATURATION_DEVIATION: Final = 0.15
-_HUE_DEVIATION: Final = 0.10
-_LOG_LUMA_DEVIATION: Final = 0.45
-_LEAST_SATURATION: Final = 0.04
+SATURATION_DEVIATION = 0.15
+HUE_DEVIATION = 0.10
+LOG_LUMA_DEVIATION = 0.45
+LEAST_SATURATION = 0.04
 """A gray has no hue to be off by: below this the deviations shrink no further."""
 
-_FARTHEST: Final = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
-_NEAR: Final = 2.4  # half of it
-_LEARNED_SHARE: Final = 0.7
+FARTHEST = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
+NEAR = 2.4  # half of it
+LEARNED_SHARE = 0.7
 """Share of a marker's pixels, those nearest its sample, that its distribution is fitted to."""
-_ROUNDS: Final = 3
-_FEWEST_PIXELS: Final = 40
-_SMALLEST_LOG_LUMA_DEVIATION: Final = 0.3
-_UNSEEN_SHARE: Final = 0.2
+ROUNDS = 3
+FEWEST_PIXELS = 40
+SMALLEST_LOG_LUMA_DEVIATION = 0.3
+UNSEEN_SHARE = 0.2
 """Share of the sample's own uncertainty that remains after learning."""
-_STEEPEST_SLOPE: Final = 0.25
+STEEPEST_SLOPE = 0.25
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedColors:
-    """What the sampled frames teach.
-
-    Attributes:
-        model: the color cells' labels, with the background weighed in.
-        found: (M,) pixels found of each marker over the sampled frames; 0 where its color matches nothing.
-        background_counts: (CELL_COUNT,) background pixels per color cell.
-    """
+    """What the sampled frames teach."""
 
     model: ColorModel
+    """The color cells' labels, with the background weighed in."""
     found: IntArray
+    """(M,) pixels found of each marker over the sampled frames; 0 where its color matches nothing."""
     background_counts: Array
+    """(CELL_COUNT,) background pixels per color cell."""
 
 
 def learn_colors(
@@ -68,7 +62,7 @@ def learn_colors(
     distributions = list(initial)
     core = labels = sampled.near(initial)
     found, background = np.zeros(len(initial), dtype=np.int64), np.zeros(0)
-    for turn in range(_ROUNDS):
+    for turn in range(ROUNDS):
         if turn:
             labels = sampled.weighed(distributions, np.maximum(found, 1), background)
         masks = sampled.regions(labels, core, len(initial))
@@ -80,7 +74,7 @@ def learn_colors(
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colors([own[marker] for own in masks])
             own = _near_sample(chroma, luma, start)
-            if np.count_nonzero(own) >= _FEWEST_PIXELS:
+            if np.count_nonzero(own) >= FEWEST_PIXELS:
                 distributions[marker] = fit_distribution(chroma[own], luma[own], start)
     return LearnedColors(color_model(distributions, np.maximum(found, 1), background), found, background)
 
@@ -91,10 +85,10 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
     saturation = float(np.linalg.norm(chroma))
     radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
     tangential = np.array([-radial[1], radial[0]])
-    extent = max(saturation, _LEAST_SATURATION)
-    covariance = (_SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
-    covariance += (_HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
-    return ColorDistribution(float(np.log(luma)), _LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
+    extent = max(saturation, LEAST_SATURATION)
+    covariance = (SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
+    covariance += (HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
+    return ColorDistribution(float(np.log(luma)), LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
 
 
 def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> ColorDistribution:
@@ -107,19 +101,19 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
     """
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
-    deviation = max(float(high - low) / 2.563, _SMALLEST_LOG_LUMA_DEVIATION)
+    deviation = max(float(high - low) / 2.563, SMALLEST_LOG_LUMA_DEVIATION)
     light = log_luma - middle
     center = np.median(chroma, axis=0)
     keep = np.sum((chroma - center) ** 2, axis=1) <= np.quantile(np.sum((chroma - center) ** 2, axis=1), 0.9)
     spread = float(light[keep] @ light[keep]) + len(luma) * 0.01  # ridge: even light has no slope to tell
-    slope = np.clip(light[keep] @ (chroma[keep] - center) / spread, -_STEEPEST_SLOPE, _STEEPEST_SLOPE)
+    slope = np.clip(light[keep] @ (chroma[keep] - center) / spread, -STEEPEST_SLOPE, STEEPEST_SLOPE)
     residual = (chroma - center - np.outer(light, slope))[keep]
     # Of a normal distribution's variance in the plane the trimmed tenth takes a third.
     # Pixel noise is not added here but where distances are taken.
     covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
     # The frames between the sampled ones show other light, folds and blur; the background limits what this
     # admits.
-    covariance += _UNSEEN_SHARE * start.covariance
+    covariance += UNSEEN_SHARE * start.covariance
     fitted = replace(
         start,
         log_luma=float(middle),
@@ -133,7 +127,7 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
 
 def _within_reach(fitted: ColorDistribution, start: ColorDistribution) -> bool:
     offset = fitted.mean - start.mean
-    return float(offset @ np.linalg.solve(start.covariance, offset)) <= _FARTHEST
+    return float(offset @ np.linalg.solve(start.covariance, offset)) <= FARTHEST
 
 
 def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolArray:
@@ -145,7 +139,7 @@ def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolAr
     distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
     if not len(distance):
         return np.zeros(0, dtype=np.bool_)
-    return distance <= np.clip(np.quantile(distance, _LEARNED_SHARE), _NEAR, _FARTHEST)
+    return distance <= np.clip(np.quantile(distance, LEARNED_SHARE), NEAR, FARTHEST)
 
 
 def _allowed(masks: Sequence[PlacedMask], places: Image | None) -> list[PlacedMask]:

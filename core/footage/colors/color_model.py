@@ -1,10 +1,7 @@
 """How a marker's color is distributed over a clip, and which color belongs to which marker or to none."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,13 +19,13 @@ from .color_space import (
 
 ColorArray = Array | SingleArray
 
-NOISE_LEVELS: Final = 5.0
+NOISE_LEVELS = 5.0
 """Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
-OUTLIER_DISTANCE: Final = 16.0
+OUTLIER_DISTANCE = 16.0
 """Squared distance past which no color is a marker's, even one the background never shows: 99.9 % of χ²."""
-_GROUP_MARGIN: Final = 2.0
+GROUP_MARGIN = 2.0
 """How much farther than a group's middle one of its cells may seem."""
-BACKGROUND: Final = 255
+BACKGROUND = 255
 """Label of pixels that are no marker's."""
 
 
@@ -38,20 +35,18 @@ class ColorDistribution:
 
     Chromaticity may drift with luma (tone mapping takes color from bright pixels), so its mean is a line in
     it.
-
-    Attributes:
-        log_luma: mean logarithm of offset luma.
-        log_luma_deviation: its standard deviation.
-        mean: (2,) chromaticity at the mean luma.
-        slope: (2,) change of chromaticity per unit of log luma.
-        covariance: (2, 2) of the chromaticity, without the pixel noise of dark colors.
     """
 
     log_luma: float
+    """Mean logarithm of offset luma."""
     log_luma_deviation: float
+    """Its standard deviation."""
     mean: Array
+    """(2,) chromaticity at the mean luma."""
     slope: Array
+    """(2,) change of chromaticity per unit of log luma."""
     covariance: Array
+    """(2, 2) of the chromaticity, without the pixel noise of dark colors."""
 
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
@@ -93,18 +88,15 @@ class ColorDistribution:
 
 @dataclass(frozen=True, eq=False)
 class ColorModel:
-    """Which colors belong to which marker, learned for one clip.
-
-    Attributes:
-        distributions: one a marker.
-        label: (CELL_COUNT,) uint8, index of the likeliest marker of each color cell, BACKGROUND where it is
-            none's.
-        probability: (CELL_COUNT,) uint8, how surely in 1/255.
-    """
+    """Which colors belong to which marker, learned for one clip."""
 
     distributions: tuple[ColorDistribution, ...]
+    """One a marker."""
     label: Image
+    """(CELL_COUNT,) uint8, index of the likeliest marker of each color cell, BACKGROUND where it is
+    none's."""
     probability: Image
+    """(CELL_COUNT,) uint8, how surely in 1/255."""
 
     def classify(self, image: Image) -> tuple[Image, Image]:
         """Return label and probability in 1/255, (rows, columns), of every pixel of an image."""
@@ -149,9 +141,7 @@ def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]
     chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
     near = np.zeros((side, side, side), dtype=np.bool_)
     for distribution in distributions:
-        near |= (distribution.distance(chroma, luma)[0] < _GROUP_MARGIN * OUTLIER_DISTANCE).reshape(
-            near.shape
-        )
+        near |= (distribution.distance(chroma, luma)[0] < GROUP_MARGIN * OUTLIER_DISTANCE).reshape(near.shape)
     cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
     return np.flatnonzero(cells).astype(np.int32)
 

@@ -1,18 +1,16 @@
 """Colors of a clip that lie near a given one, to help a person whose sample fits nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .color_space import cell_colors, chromaticity
 
-_HOW_MANY = 3
-_APART = 0.08
+HOW_MANY = 3
+APART = 0.08
 """Chromaticity that two colors must differ by to be named both."""
-_LIKE_LOG_LUMA = 0.25
+LIKE_LOG_LUMA = 0.25
 """Difference in the logarithm of luma up to which two grays look alike."""
-_SHARE = 2e-5
+SHARE = 2e-5
 """Share of the clip's pixels that a color must have, to be more than noise."""
 
 
@@ -24,16 +22,16 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
         sample_srgb: the sought color in 0..255.
     """
     count = np.asarray(counts, dtype=np.float64)
-    common = np.flatnonzero(count > max(_SHARE * count.sum(), 0.5))
+    common = np.flatnonzero(count > max(SHARE * count.sum(), 0.5))
     colors = cell_colors()[common]
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(colors)
     distance = np.linalg.norm(chroma - wanted, axis=1) + 0.1 * np.abs(np.log(luma / wanted_luma))
     chosen: list[int] = []
     for index in np.argsort(distance):
-        if all(np.linalg.norm(chroma[index] - chroma[other]) >= _APART for other in chosen):
+        if all(np.linalg.norm(chroma[index] - chroma[other]) >= APART for other in chosen):
             chosen.append(int(index))
-        if len(chosen) == _HOW_MANY:
+        if len(chosen) == HOW_MANY:
             break
     return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colors[chosen])]
 
@@ -49,7 +47,7 @@ def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> floa
     present = np.flatnonzero(count)
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
-    like = (np.linalg.norm(chroma - wanted, axis=1) < _APART / 2.0) & (
-        np.abs(np.log(luma / wanted_luma)) < _LIKE_LOG_LUMA
+    like = (np.linalg.norm(chroma - wanted, axis=1) < APART / 2.0) & (
+        np.abs(np.log(luma / wanted_luma)) < LIKE_LOG_LUMA
     )
     return float(count[present[like]].sum() / max(count.sum(), 1.0))

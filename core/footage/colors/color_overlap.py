@@ -1,16 +1,12 @@
 """How well the learned colors tell the markers from one another and from the background."""
 
-from __future__ import annotations
-
-from typing import Final
-
 import numpy as np
 
 from ...arrays import Array
 from .color_model import ColorModel
 from .color_space import cell_chromaticity, cell_volume
 
-_LEAST: Final = 1e-300
+LEAST = 1e-300
 """A density that vanishes everywhere stays zero."""
 
 
@@ -31,7 +27,7 @@ def color_claims(model: ColorModel) -> Array:
         near = distribution.within_reach(chroma, luma)
         _, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
         share = np.exp(log_density) * cell_volume(luma.take(near))
-        share = share / max(float(share.sum()), _LEAST)
+        share = share / max(float(share.sum()), LEAST)
         sureness = model.probability.take(near) / 255.0
         label = np.minimum(model.label.take(near), count)
         claims[color] = np.bincount(label, share * sureness, minlength=count + 1)

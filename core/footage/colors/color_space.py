@@ -5,29 +5,25 @@ light to a good approximation; chroma over luma therefore names the surface and 
 falls on it. A small offset keeps dark pixels, whose ratios are noise, near gray.
 """
 
-from __future__ import annotations
-
-from typing import Final
-
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...arrays import Array, Image, IndexArray, Int32Array, SingleArray
 
-CELL_BITS: Final = 6
+CELL_BITS = 6
 """Bits kept of each channel: 64³ cells hold a color to within two levels, less than compression noise."""
-CELLS_PER_CHANNEL: Final = 1 << CELL_BITS
-CELL_COUNT: Final = CELLS_PER_CHANNEL**3
-CELL_WIDTH: Final = 256 // CELLS_PER_CHANNEL
+CELLS_PER_CHANNEL = 1 << CELL_BITS
+CELL_COUNT = CELLS_PER_CHANNEL**3
+CELL_WIDTH = 256 // CELLS_PER_CHANNEL
 
-LUMA_OFFSET: Final = 16.0
+LUMA_OFFSET = 16.0
 """Levels added to luma before dividing by it: about five times the noise of a compressed dark pixel."""
 
 # Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
-_LUMA_BGR: Final = np.array([0.114, 0.587, 0.299])
-_BLUE_SCALE: Final = 0.564
-_RED_SCALE: Final = 0.713
+LUMA_BGR = np.array([0.114, 0.587, 0.299])
+BLUE_SCALE = 0.564
+RED_SCALE = 0.713
 
 
 def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
@@ -42,11 +38,9 @@ def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
     """
     color = np.asarray(bgr, dtype=np.float64)
     # Written out: for so short a product, libraries of linear algebra wake up threads that then wait.
-    luma = color[..., 0] * _LUMA_BGR[0] + color[..., 1] * _LUMA_BGR[1] + color[..., 2] * _LUMA_BGR[2]
+    luma = color[..., 0] * LUMA_BGR[0] + color[..., 1] * LUMA_BGR[1] + color[..., 2] * LUMA_BGR[2]
     offset_luma = luma + LUMA_OFFSET
-    differences = np.stack(
-        [(color[..., 0] - luma) * _BLUE_SCALE, (color[..., 2] - luma) * _RED_SCALE], axis=-1
-    )
+    differences = np.stack([(color[..., 0] - luma) * BLUE_SCALE, (color[..., 2] - luma) * RED_SCALE], axis=-1)
     return differences / offset_luma[..., None], offset_luma
 
 
@@ -55,7 +49,7 @@ def cell_volume(offset_luma: ArrayLike) -> Array:
     luma = np.asarray(offset_luma)
     # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
     # scales it.
-    return np.asarray(CELL_WIDTH**3 * _BLUE_SCALE * _RED_SCALE * _LUMA_BGR[1] / luma**3)
+    return np.asarray(CELL_WIDTH**3 * BLUE_SCALE * RED_SCALE * LUMA_BGR[1] / luma**3)
 
 
 def cell_index(image: Image) -> IndexArray:
@@ -84,10 +78,10 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
     levels = np.arange(CELLS_PER_CHANNEL, dtype=np.float32) * CELL_WIDTH + (CELL_WIDTH - 1) / 2
     last = CELLS_PER_CHANNEL - 1
     blue, red = levels.take(cells & last), levels.take(cells >> 2 * CELL_BITS)
-    luma = levels.take(cells >> CELL_BITS & last) * np.float32(_LUMA_BGR[1])
-    luma += blue * np.float32(_LUMA_BGR[0]) + red * np.float32(_LUMA_BGR[2])
+    luma = levels.take(cells >> CELL_BITS & last) * np.float32(LUMA_BGR[1])
+    luma += blue * np.float32(LUMA_BGR[0]) + red * np.float32(LUMA_BGR[2])
     offset_luma = luma + np.float32(LUMA_OFFSET)
     chroma = np.empty((len(cells), 2), dtype=np.float32)
-    chroma[:, 0] = (blue - luma) * np.float32(_BLUE_SCALE) / offset_luma
-    chroma[:, 1] = (red - luma) * np.float32(_RED_SCALE) / offset_luma
+    chroma[:, 0] = (blue - luma) * np.float32(BLUE_SCALE) / offset_luma
+    chroma[:, 1] = (red - luma) * np.float32(RED_SCALE) / offset_luma
     return chroma, offset_luma

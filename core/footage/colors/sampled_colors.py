@@ -1,9 +1,7 @@
 """The sampled frames of a clip that colors are learned from: what lies where, and how often it occurs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import Final, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import cv2
 import numpy as np
@@ -16,41 +14,38 @@ from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_
 
 _Number = TypeVar("_Number", bound=np.generic)
 
-_CORE_DISTANCE: Final = 7.8
+CORE_DISTANCE = 7.8
 """Squared distance of a sample's near colors: 95 % of a chi-squared with 3 degrees of freedom."""
-LEARNING_NOISE_LEVELS: Final = 2.5
+LEARNING_NOISE_LEVELS = 2.5
 """Noise of what is learned from: pixels that only noise could have made so teach nothing."""
-_NO_MARKER: Final = 255
-_LARGEST_SHARE: Final = 0.25
+NO_MARKER = 255
+LARGEST_SHARE = 0.25
 """A region over a quarter of the image is a wall or a floor."""
-_BACKGROUND_MARGIN: Final = 3
-_KERNEL: Final = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+BACKGROUND_MARGIN = 3
+KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 # A normal distribution of one cell's deviation, cut off after two.
-_SPREAD: Final = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
+SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
 
 
 class PlacedMask(NamedTuple):
-    """Some pixels of an image, as a mask of the part of it that holds them.
-
-    Attributes:
-        left: first column of the part.
-        top: its first row.
-        mask: (rows, columns) uint8, 0 or 1.
-        area: pixels that are 1.
-    """
+    """Some pixels of an image, as a mask of the part of it that holds them."""
 
     left: int
+    """First column of the part."""
     top: int
+    """Its first row."""
     mask: Image
+    """(rows, columns) uint8, 0 or 1."""
     area: int
+    """Pixels that are 1."""
 
-    def within(self, place: Image) -> PlacedMask:
+    def within(self, place: Image) -> "PlacedMask":
         """Return what of it lies in a mask of the whole image."""
         return _placed(self.left, self.top, self.mask & self.cut(place))
 
     def interior(self) -> Image:
         """Return the mask without its mixed border where that leaves enough of it."""
-        inner = cv2.erode(self.mask, _KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
+        inner = cv2.erode(self.mask, KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
         return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
 
     def cut(self, image: NDArray[_Number]) -> NDArray[_Number]:
@@ -82,14 +77,14 @@ class SampledColors:
         ]
         nearest = np.argmax([density for _, density in pairs], axis=0)
         distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
-        return np.where(distance < _CORE_DISTANCE, nearest, _NO_MARKER).astype(np.uint8)
+        return np.where(distance < CORE_DISTANCE, nearest, NO_MARKER).astype(np.uint8)
 
     def weighed(
         self, distributions: Sequence[ColorDistribution], pixels: IntArray, background: Array
     ) -> Image:
         """Label each color of the table by its likeliest marker; 255 where the background is likelier."""
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
-        return np.where(probability >= 0.5, label, _NO_MARKER).astype(np.uint8)
+        return np.where(probability >= 0.5, label, NO_MARKER).astype(np.uint8)
 
     def regions(self, labels: Image, core: Image, markers: int) -> list[list[PlacedMask]]:
         """Return for each frame and marker its connected regions with enough of its core color."""
@@ -116,7 +111,7 @@ class SampledColors:
             covered = np.zeros(image.shape, dtype=np.uint8)
             for mask in placed:
                 mask.cut(covered)[:] |= mask.mask
-            near = cv2.dilate(covered, _KERNEL, iterations=_BACKGROUND_MARGIN)
+            near = cv2.dilate(covered, KERNEL, iterations=BACKGROUND_MARGIN)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts = np.zeros(CELL_COUNT)
         counts[self._table] = total
@@ -128,10 +123,10 @@ def _spread(counts: Array) -> Array:
     side = CELLS_PER_CHANNEL
     # Two channels are rows and columns of an image with as many channels as cells in the third.
     cube = cv2.sepFilter2D(
-        counts.reshape(side, side, side), -1, _SPREAD, _SPREAD, borderType=cv2.BORDER_REPLICATE
+        counts.reshape(side, side, side), -1, SPREAD, SPREAD, borderType=cv2.BORDER_REPLICATE
     )
     one = np.ones(1)
-    lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, _SPREAD, one, borderType=cv2.BORDER_REPLICATE)
+    lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, SPREAD, one, borderType=cv2.BORDER_REPLICATE)
     return np.asarray(lines.ravel(), dtype=np.float64)
 
 
@@ -147,7 +142,7 @@ def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> Pla
     color = image[top : top + rows, left : left + columns].take(pixel)
     strong = np.bincount(np.asarray(number).take(pixel[core.take(color) == marker]), minlength=count)
     area = stats[:, cv2.CC_STAT_AREA]
-    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= _LARGEST_SHARE * label.size)
+    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= LARGEST_SHARE * label.size)
     good[0] = False
     return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
 

@@ -1,11 +1,8 @@
 """The strong colors that clips show, for a person who looks for those of the markers among them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from colorsys import rgb_to_hsv
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -13,18 +10,18 @@ from ...arrays import Array, Image
 from ..segmentation.working_image import learning_image, smooth
 from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
 
-MOST: Final = 12
+MOST = 12
 """So many colors are named: five markers, skin, and what else is about."""
-_LEAST_STRENGTH: Final = 0.2
+LEAST_STRENGTH = 0.2
 """Chromaticity below which a color is a dull one: wood and pale skin."""
-_DARKEST: Final = 25.0
+DARKEST = 25.0
 """Luma in levels below which a color is too uncertain to name."""
-_APART: Final = 0.10
+APART = 0.10
 """Chromaticity within which colors are those of one surface."""
-_STEP: Final = 0.04
-_LEAST_SHARE: Final = 2e-4
+STEP = 0.04
+LEAST_SHARE = 2e-4
 """Share of the picture below which nothing is worth naming."""
-_HUES: Final = (
+HUES = (
     (15, "red"),
     (42, "orange"),
     (70, "yellow"),
@@ -40,22 +37,19 @@ _HUES: Final = (
 
 @dataclass(frozen=True)
 class StrongColor:
-    """A color that stands out.
-
-    Attributes:
-        color_srgb: (red, green, blue) in 0..255, the median of its pixels.
-        share: of the pixels looked at, how many have it.
-    """
+    """A color that stands out."""
 
     color_srgb: tuple[int, int, int]
+    """(red, green, blue) in 0..255, the median of its pixels."""
     share: float
+    """Of the pixels looked at, how many have it."""
 
     @property
     def hue(self) -> str:
         """What people call its hue."""
         red, green, blue = self.color_srgb
         degrees = 360.0 * rgb_to_hsv(red / 255.0, green / 255.0, blue / 255.0)[0]
-        return next(name for end, name in _HUES if degrees <= end)
+        return next(name for end, name in HUES if degrees <= end)
 
 
 def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
@@ -67,15 +61,15 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     present = np.flatnonzero(counts).astype(np.int32)
     colors = cell_colors(present)
     chroma, luma = chromaticity(colors)
-    strong = (np.linalg.norm(chroma, axis=1) > _LEAST_STRENGTH) & (luma > _DARKEST + LUMA_OFFSET)
+    strong = (np.linalg.norm(chroma, axis=1) > LEAST_STRENGTH) & (luma > DARKEST + LUMA_OFFSET)
     colors, chroma = colors[strong], chroma[strong]
-    left, least = counts[present][strong], _LEAST_SHARE * counts.sum()
+    left, least = counts[present][strong], LEAST_SHARE * counts.sum()
     found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
         center = _densest(chroma, left)
-        near = np.linalg.norm(chroma - center, axis=1) < _APART
+        near = np.linalg.norm(chroma - center, axis=1) < APART
         share = float(left[near].sum() / counts.sum())
-        if share > _LEAST_SHARE:
+        if share > LEAST_SHARE:
             blue, green, red = _median(colors[near], left[near])
             # Blends at borders are many and dull; a marker is small and strong.
             standing_out = float(np.linalg.norm(center)) * share**0.25
@@ -87,7 +81,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
 
 def _densest(chroma: Array, weight: Array) -> Array:
     """Return the chromaticity (2,) that most pixels have."""
-    square = np.round(chroma / _STEP).astype(np.int64)
+    square = np.round(chroma / STEP).astype(np.int64)
     _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
     inside = index == int(np.bincount(index, weight).argmax())
     return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))

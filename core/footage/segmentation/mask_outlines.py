@@ -1,15 +1,11 @@
 """Outlines of a mask, for drawing it over the footage."""
 
-from __future__ import annotations
-
-from typing import Final
-
 import cv2
 import numpy as np
 
 from ...arrays import Array, SingleArray
 
-_FINENESS: Final = 2
+FINENESS = 2
 """Points of a pixel and axis that the edge of half coverage is found on."""
 
 
@@ -23,9 +19,9 @@ def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
     Returns:
         Closed outlines (N, 2) in pixels of the image.
     """
-    fine = cv2.resize(mask, None, fx=_FINENESS, fy=_FINENESS, interpolation=cv2.INTER_LINEAR)
+    fine = cv2.resize(mask, None, fx=FINENESS, fy=FINENESS, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)
     found, _ = cv2.findContours(inside, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
     # OpenCV follows the centers of the outermost points that are inside.
-    outlines = [(contour[:, 0] + 0.5) * (scale / _FINENESS) for contour in found if len(contour) > 2]
+    outlines = [(contour[:, 0] + 0.5) * (scale / FINENESS) for contour in found if len(contour) > 2]
     return sorted(outlines, key=len, reverse=True)

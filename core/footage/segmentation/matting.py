@@ -5,33 +5,28 @@ approximation. The share follows from the colors just inside and just outside, w
 where a threshold would grow a region over dark neighbors and shrink it before bright ones.
 """
 
-from __future__ import annotations
-
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import cv2
 import numpy as np
 
 from ...arrays import BoolArray, Image, IndexArray, SingleArray
 
-_WEIGHT: Final = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
+WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
-_SUM: Final = np.ones((1, 3), dtype=np.float32)
-_CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-_REACH: Final = (5, 5)
+SUM = np.ones((1, 3), dtype=np.float32)
+CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+REACH = (5, 5)
 """Sides, in halved pixels, of the squares that local colors are averaged over."""
 
 
 class Coverage(NamedTuple):
-    """What regions cover.
-
-    Attributes:
-        pixel: (N,) flat indices of all pixels that may be covered at all.
-        share: (N,) float32 share of each that is covered, in 0..1.
-    """
+    """What regions cover."""
 
     pixel: IndexArray
+    """(N,) flat indices of all pixels that may be covered at all."""
     share: SingleArray
+    """(N,) float32 share of each that is covered, in 0..1."""
 
 
 def coverage(image: Image, mask: Image) -> Coverage:
@@ -44,19 +39,19 @@ def coverage(image: Image, mask: Image) -> Coverage:
         image: (rows, columns, 3) uint8 blue, green, red; both numbers even.
         mask: (rows, columns) uint8, 1 in the regions as classified.
     """
-    first = cv2.erode(mask, _CROSS)
-    second = cv2.erode(first, _CROSS)
-    grown = cv2.dilate(mask, _CROSS, iterations=2)
+    first = cv2.erode(mask, CROSS)
+    second = cv2.erode(first, CROSS)
+    grown = cv2.dilate(mask, CROSS, iterations=2)
     # The deeper inside, the purer the color: squared depth, as the sum of the first odd numbers.
     depth = np.asarray(cv2.add(cv2.addWeighted(first, 3.0, second, 5.0, 0.0), mask), dtype=np.uint8)
     color = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
     inner, has_inner = _local_mean(color, depth)
     outer, has_outer = _local_mean(color, np.bitwise_xor(grown, 1).astype(np.uint8))
     axis = cv2.subtract(inner, outer)
-    gain = cv2.transform(axis, _WEIGHT)
-    length = cv2.transform(cv2.multiply(axis, gain), _SUM) + 1.0  # one squared level: less is the same color
+    gain = cv2.transform(axis, WEIGHT)
+    length = cv2.transform(cv2.multiply(axis, gain), SUM) + 1.0  # one squared level: less is the same color
     gain = cv2.divide(gain, cv2.merge([length] * 3))
-    start = cv2.transform(cv2.multiply(outer, gain), _SUM)
+    start = cv2.transform(cv2.multiply(outer, gain), SUM)
     start[~(has_inner & has_outer)] = np.nan
 
     pixel = np.flatnonzero(grown.view(np.bool_))
@@ -74,6 +69,6 @@ def _local_mean(color: SingleArray, weight: Image) -> tuple[SingleArray, BoolArr
     factor = weight.astype(np.float32)
     half = (weight.shape[1] // 2, weight.shape[0] // 2)
     weighted = cv2.resize(cv2.multiply(color, cv2.merge([factor] * 3)), half)
-    weighted, total = cv2.blur(weighted, _REACH), cv2.blur(cv2.resize(factor, half), _REACH)
+    weighted, total = cv2.blur(weighted, REACH), cv2.blur(cv2.resize(factor, half), REACH)
     divisor = np.maximum(total, 1e-6)
     return np.asarray(cv2.divide(weighted, cv2.merge([divisor] * 3)), dtype=np.float32), total > 1e-6

@@ -6,8 +6,6 @@ to 6). Pixels are unit squares in the image convention of the project: the first
 and its center is (0.5, 0.5).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import cv2
@@ -24,20 +22,16 @@ MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
 
 
 class Characteristics(NamedTuple):
-    """The characteristics of one or more regions; fields (...).
-
-    Attributes:
-        x: S_x, the centroid's column in pixels.
-        y: S_y, the centroid's row in pixels, downwards.
-        angle_rad: S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful
-            modulo π.
-        ratio: S_λ = λ1/λ2 >= 1, of the squared axes.
-    """
+    """The characteristics of one or more regions; fields (...)."""
 
     x: Array
+    """S_x, the centroid's column in pixels."""
     y: Array
+    """S_y, the centroid's row in pixels, downwards."""
     angle_rad: Array
+    """S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π."""
     ratio: Array
+    """S_λ = λ1/λ2 >= 1, of the squared axes."""
 
 
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:

@@ -1,10 +1,8 @@
 """All regions of one image that have a marker's color, measured to a fraction of a pixel."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -18,33 +16,30 @@ from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
 from .window_sheet import Sheet, Window, lay_out
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
-MOST_REGIONS: Final = 8
+MOST_REGIONS = 8
 """Regions kept of each color in a frame, the largest; a clip's memory is bounded by it."""
-_SURE: Final = 230
+SURE = 230
 """A region must hold pixels this sure (in 1/255) to be more than a blend of other colors."""
-_FEWEST_PIXELS: Final = 6
-_CROSS: Final = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-_SQUARE: Final = np.ones((3, 3), dtype=np.uint8)
+FEWEST_PIXELS = 6
+CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+SQUARE = np.ones((3, 3), dtype=np.uint8)
 
 
 class Regions(NamedTuple):
-    """R connected regions of markers' colors in one image, by color and from large to small.
-
-    Attributes:
-        color: (R,) which color each has.
-        moments: (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid.
-        box: (R, 4) left, top, right, bottom in its pixels.
-        certainty: (R,) mean probability of the pixels' color in 0..1.
-        clipped: (R,) whether it touches the image's border.
-    """
+    """R connected regions of markers' colors in one image, by color and from large to small."""
 
     color: IntArray
+    """(R,) which color each has."""
     moments: Array
+    """(R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid."""
     box: IntArray
+    """(R, 4) left, top, right, bottom in its pixels."""
     certainty: Array
+    """(R,) mean probability of the pixels' color in 0..1."""
     clipped: BoolArray
+    """(R,) whether it touches the image's border."""
 
-    def part(self, first: int, end: int) -> Regions:
+    def part(self, first: int, end: int) -> "Regions":
         """Return the regions from `first` to before `end`."""
         some = slice(first, end)
         return Regions(
@@ -52,7 +47,7 @@ class Regions(NamedTuple):
         )
 
 
-NO_REGIONS: Final = Regions(
+NO_REGIONS = Regions(
     np.zeros(0, dtype=np.int64),
     np.zeros((0, 6)),
     np.zeros((0, 4), dtype=np.int64),
@@ -120,17 +115,14 @@ def color_masks(image: Image, model: ColorModel) -> SingleArray:
 
 
 class _Components(NamedTuple):
-    """K connected regions of a sheet that are worth measuring.
-
-    Attributes:
-        number: (rows, columns) uint16, which region each pixel is in, from 1; 0 for none.
-        box: (K, 4) left, top, right, bottom on the sheet.
-        certainty: (K,) mean probability of the pixels' color in 0..1.
-    """
+    """K connected regions of a sheet that are worth measuring."""
 
     number: NDArray[np.uint16]
+    """(rows, columns) uint16, which region each pixel is in, from 1; 0 for none."""
     box: IntArray
+    """(K, 4) left, top, right, bottom on the sheet."""
     certainty: Array
+    """(K,) mean probability of the pixels' color in 0..1."""
 
 
 def _components(sheet: Sheet, model: ColorModel) -> _Components:
@@ -141,12 +133,12 @@ def _components(sheet: Sheet, model: ColorModel) -> _Components:
     label, probability = model.classify(smooth(sheet.picture))
     used = np.arange(len(label))[:, None] < sheet.height
     mask = ((label == sheet.color) & used).view(np.uint8)
-    closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, _CROSS)
+    closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, CROSS)
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
     region, sureness = number.take(pixel), probability.take(pixel)
-    sure = np.bincount(region[sureness >= _SURE], minlength=count)
-    good = (stats[:, cv2.CC_STAT_AREA] >= _FEWEST_PIXELS) & (sure >= 2)
+    sure = np.bincount(region[sureness >= SURE], minlength=count)
+    good = (stats[:, cv2.CC_STAT_AREA] >= FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
     kept = np.flatnonzero(good)
     certainty = np.bincount(region, weights=sureness, minlength=count)[kept] / 255.0
@@ -164,7 +156,7 @@ def _measure(
     found = _components(sheet, model)
     covered = coverage(sheet.picture, np.minimum(found.number, 1).astype(np.uint8))
     # What lies in the band beyond the edges belongs to the region beside it.
-    owner = np.asarray(cv2.dilate(found.number, _CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
+    owner = np.asarray(cv2.dilate(found.number, CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
     row = covered.pixel // len(sheet.color)
     column = covered.pixel - row * len(sheet.color)
     x, y = column + sheet.shift[0].take(column), row + sheet.shift[1].take(column)
@@ -180,7 +172,7 @@ def _measure(
     clipped = (box[:, :2] <= 0).any(axis=1) | (box[:, 2:] > limits[2:] - scale[:, None]).any(axis=1)
     image, color = sheet.image[first], sheet.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
-    order = order[moments[order, 0] >= _FEWEST_PIXELS]
+    order = order[moments[order, 0] >= FEWEST_PIXELS]
     order = order[_rank(256 * image[order] + color[order]) < MOST_REGIONS]
     every = Regions(color[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()

@@ -1,9 +1,6 @@
 """Where in a picture the markers may be: windows about whatever has their colors on a coarse grid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import Final
 
 import cv2
 import numpy as np
@@ -12,9 +9,9 @@ from ...arrays import Image
 
 Box = tuple[int, int, int, int]
 
-_MOST_BOXES: Final = 12
+MOST_BOXES = 12
 """Boxes kept of each color in a frame, those with most of it."""
-MARGIN: Final = 6
+MARGIN = 6
 """Pixels about a box when it is measured: border band, and background enough to know its color."""
 
 
@@ -33,8 +30,8 @@ def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
     part = np.ascontiguousarray(mask[y : y + rows, x : x + columns])
     _, _, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     stats = stats[1:]
-    if len(stats) > _MOST_BOXES:
-        stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")[:_MOST_BOXES]]
+    if len(stats) > MOST_BOXES:
+        stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")[:MOST_BOXES]]
     return [
         ((x + a) * factor, (y + b) * factor, (x + a + c) * factor, (y + b + d) * factor)
         for a, b, c, d, _ in stats.tolist()

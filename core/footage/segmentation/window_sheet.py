@@ -4,8 +4,6 @@ Each panel of the sheet serves one marker. Where a window reaches beyond the pic
 repeated, so that it is no edge of a region that it cuts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -32,23 +30,20 @@ class Window(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """Windows side by side, their tops at the sheet's first row, with a column between them.
-
-    Attributes:
-        picture: (rows, columns, 3) uint8, both numbers even.
-        image: (columns,) int64, the image that each column is of.
-        color: (columns,) uint8, the color that it serves; NO_COLOR where panels meet.
-        height: (columns,) rows in use.
-        shift: (2, columns) what takes a column, and the rows in it, to the halved image.
-        scale: (columns,) pixels of the image that one of the sheet spans.
-    """
+    """Windows side by side, their tops at the sheet's first row, with a column between them."""
 
     picture: Image
+    """(rows, columns, 3) uint8, both numbers even."""
     image: IntArray
+    """(columns,) int64, the image that each column is of."""
     color: Image
+    """(columns,) uint8, the color that it serves; NO_COLOR where panels meet."""
     height: IntArray
+    """(columns,) rows in use."""
     shift: IntArray
+    """(2, columns) what takes a column, and the rows in it, to the halved image."""
     scale: IntArray
+    """(columns,) pixels of the image that one of the sheet spans."""
 
 
 def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:

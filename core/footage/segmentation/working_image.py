@@ -4,26 +4,22 @@ A camera's picture is halved until it is fine enough to measure on and no finer:
 average fastest. Markers are searched on a coarse grid of a part of its pixels.
 """
 
-from __future__ import annotations
-
-from typing import Final
-
 import cv2
 import numpy as np
 
 from ...arrays import Image
 
-_MEASURING_COLUMNS: Final = 320
+MEASURING_COLUMNS = 320
 """Fewest on which borders are measured finer than any body model predicts them."""
-_LEARNING_COLUMNS: Final = 240
+LEARNING_COLUMNS = 240
 """Fewest on which the inside of a forearm is clear of its blurred border."""
-_SEARCHING_COLUMNS: Final = 160
+SEARCHING_COLUMNS = 160
 """Fewest that a marker worth measuring does not slip through."""
 
 
 def halvings(size: tuple[int, int]) -> int:
     """Return how often an image of (width, height) is halved for measuring."""
-    return _halvings(max(size), _MEASURING_COLUMNS)
+    return _halvings(max(size), MEASURING_COLUMNS)
 
 
 def measuring_image(image: Image, times: int) -> Image:
@@ -37,12 +33,12 @@ def measuring_image(image: Image, times: int) -> Image:
 
 def learning_image(measuring: Image) -> Image:
     """Return a measuring image as colors are learned from it."""
-    return measuring_image(measuring, _halvings(max(measuring.shape[:2]), _LEARNING_COLUMNS))
+    return measuring_image(measuring, _halvings(max(measuring.shape[:2]), LEARNING_COLUMNS))
 
 
 def searching_factor(grid: tuple[int, int]) -> int:
     """Return by how much the grid of the search is coarser than the measuring one of (rows, columns)."""
-    return 1 << _halvings(max(grid), _SEARCHING_COLUMNS)
+    return 1 << _halvings(max(grid), SEARCHING_COLUMNS)
 
 
 def searching_image(image: Image, factor: int) -> Image:

@@ -21,7 +21,7 @@ STRETCH = 9
 @pytest.fixture
 def short_stretch(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the colors be learned from the first nine frames of a drawn clip."""
-    monkeypatch.setattr(markers, "_STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
+    monkeypatch.setattr(markers, "STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
 
 
 def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
@@ -31,7 +31,7 @@ def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
     rng = np.random.default_rng(1)
     images = [draw(moving(index), rng) for index in range(42)]
     whole = finish(track_markers(clip_of(images), STYLES))
-    monkeypatch.setattr(markers, "_STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
+    monkeypatch.setattr(markers, "STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
     drawn = Drawn(images)
     followed = finish(track_markers(Clip(clip_of(images).path, drawn), STYLES))
     assert drawn.passes == 1
