@@ -2,10 +2,12 @@
 
 import bpy
 
+from ...core.body.actor import Actor
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, bones_editable, idle
 from ..shell.takes import active_take
+from .properties import length_names, length_property
 
 
 class KEYMARK_OT_apply_lengths(bpy.types.Operator):
@@ -23,10 +25,8 @@ class KEYMARK_OT_apply_lengths(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the bones."""
         with reported(self):
-            from ...core.body.actor import Actor
             from ...core.body.kinematics import Body
             from ..bridge.resize import set_lengths
-            from .properties import length_names, length_property
 
             take = active_take(context.scene)
             lengths = {name: getattr(take.lengths, length_property(name)) for name in length_names()}

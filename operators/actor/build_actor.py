@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.body.actor import Actor
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, bones_editable, idle
@@ -46,7 +47,6 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Build or change it, stand it in the footage, and say what was done."""
         with reported(self):
-            from ...core.body.actor import Actor
             from ...core.body.kinematics import Body
             from ..bridge.pose import write_posture
             from .place_actor import is_posed, performers_place, size_actor

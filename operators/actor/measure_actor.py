@@ -3,11 +3,14 @@
 import bpy
 
 from ..markers.marker_styles import marker_styles
+from ..overlays.measuring import Clicks, show
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import pixel_under
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import all_met, bones_editable, camera, footage, idle
+from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
 NOT_STANDING = (
@@ -61,8 +64,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         self.stature = take.stature
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
-        from ..overlays.measuring import Clicks, show
-
         self._clicks = Clicks()
         show(self._clicks)
         context.window.cursor_modal_set("CROSSHAIR")
@@ -80,8 +81,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
             redraw_footage(context)
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-        from ..shell.footage_view import pixel_under
-
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
             say(self, "WARNING", "That is not on the footage; click in the picture")
@@ -104,8 +103,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the cursor back; Blender calls this as well."""
-        from ..overlays.measuring import show
-
         show(None)
         if context.window is not None:  # else Blender is closing it, or opens another file
             redraw_footage(context)
@@ -117,7 +114,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         with reported(self):
             from ..bridge.pose import write_posture
             from ..bridge.posing import frame_in_footage, measured_in_frame
-            from ..shell.results import reading_of
             from .place_actor import is_posed, size_actor
 
             take = active_take(context.scene)

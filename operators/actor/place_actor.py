@@ -4,7 +4,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
+from ...core.footage.region_tracks import RegionTracks
 from ..markers.marker_styles import marker_styles
+from ..shell.results import reading_of
 from ..shell.takes import footage_of
 from .new_actor import add_actor, show_lengths
 
@@ -43,10 +46,7 @@ def performers_place(
 
     None without footage and camera, or where the current frame is none of the footage's.
     """
-    from ...core.errors import InputError
-    from ...core.footage.region_tracks import RegionTracks
     from ..bridge.posing import frame_in_footage, posed_standing
-    from ..shell.results import reading_of
 
     if take.clip is None or take.camera is None:
         return None

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
+from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle, motion
@@ -54,8 +56,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Write the final Action and let it animate the actor."""
-        from ...core.errors import InputError
-        from ..bridge.actions import assign_action
         from ..bridge.final_motion import write_final
 
         take, finished = take_called(scene, result.take), result.finished

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import bpy
 
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
 from ..bridge.export_formats import FORMATS
 from ..shell.error_reports import reported
 from ..shell.messages import say, warn_if_outdated
@@ -54,8 +56,6 @@ class KEYMARK_OT_export_motion(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write it."""
         with reported(self):
-            from ...core.body.human import HUMAN
-            from ...core.errors import InputError
             from ..bridge.actor_lengths import read_body
             from ..bridge.exports import export_motion
             from ..bridge.final_motion import motion_frames

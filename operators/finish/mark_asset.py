@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..bridge.assets.catalogs import catalog_file, ensure_catalog
 from ..shell.error_reports import reported
 from ..shell.messages import say, warn_if_outdated
 from ..shell.redraw import refresh_asset_browsers
@@ -24,7 +25,6 @@ class KEYMARK_OT_mark_asset(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the catalog to its file, then mark the Action."""
         with reported(self):
-            from ..bridge.assets.catalogs import catalog_file, ensure_catalog
             from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
 
             take = active_take(context.scene)

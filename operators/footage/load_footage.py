@@ -8,6 +8,8 @@ from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle
 from ..shell.takes import add_take, find_take
+from .occluding_objects import names_in_the_way
+from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for, show_range
 
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -56,8 +58,6 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         """Load it."""
         with reported(self):
             from ..bridge.footage_to_scene import load_footage
-            from .occluding_objects import names_in_the_way
-            from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for, show_range
 
             scene = context.scene
             path = Path(bpy.path.abspath(self.filepath))

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, footage, idle
 from ..shell.takes import active_take
 from .load_footage import PATTERNS
+from .take_footage import note_clip
 
 
 class KEYMARK_OT_relocate_clip(bpy.types.Operator):
@@ -41,10 +43,8 @@ class KEYMARK_OT_relocate_clip(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Check the file, and only then point the clip there."""
         with reported(self):
-            from ...core.errors import InputError
             from ...core.footage.clips.clip import Clip
             from ..bridge.footage_to_scene import clip_file, stored_path
-            from .take_footage import note_clip
 
             take = active_take(context.scene)
             clip, path = take.clip, Path(bpy.path.abspath(self.filepath))

@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError
+from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from ..bridge.attach_footage import attach_footage, is_guess
 from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
@@ -148,8 +149,6 @@ def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) ->
 
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:
     try:
-        from ...core.footage.clips.clip_timing import is_variable_frame_rate
-
         stamps = footage_of(take.id_data, take).open().source.time_stamps()
         return is_variable_frame_rate(list(islice(stamps, LOOKED_AT)))
     except (InputError, ModuleNotFoundError):  # what reads the clip will say so

@@ -7,6 +7,7 @@ import bpy
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle
 from ..shell.takes import add_take, find_take
+from .take_footage import give_footage, look_through_camera, name_for, show_range
 
 
 class KEYMARK_OT_use_clip(bpy.types.Operator):
@@ -38,8 +39,6 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it behind the take's camera."""
-        from .take_footage import give_footage, look_through_camera, name_for, show_range
-
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:

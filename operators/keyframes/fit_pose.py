@@ -6,8 +6,10 @@ import numpy as np
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
 from ..shell.error_reports import reported
+from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, camera, footage, idle, markers
+from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
 
@@ -53,8 +55,6 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
         with reported(self):
             from ..bridge.pose import write_posture
             from ..bridge.posing import fit_to_frame, frame_in_footage
-            from ..shell.keyframe_action import show_keyframes
-            from ..shell.results import reading_of
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))

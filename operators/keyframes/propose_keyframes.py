@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.progress import within
+from ..bridge.frame_times import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
@@ -45,8 +47,6 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         from ...core.footage.read_clip import read_clip
         from ...core.footage.reading_key import of_same_footage, reading_key
         from ...core.prior.marker_speed import marker_speed, propose_keyframes
-        from ...core.progress import within
-        from ..bridge.frame_times import scene_frames
 
         take = active_take(scene)
         identifier, count = take.identifier, take.keyframe_count or None

@@ -2,9 +2,12 @@
 
 import bpy
 
+from ...core.body.human import HUMAN
+from ..bridge.actions import assign_action
 from ..matching.matches import known_matches
 from ..shell.error_reports import reported
 from ..shell.keyed_frames import forget
+from ..shell.keyframe_action import new_keyframe_action, shows_keyframes
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take
@@ -25,12 +28,9 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Key it; where the pose goes beyond the skeleton, say by how much."""
         with reported(self):
-            from ...core.body.human import HUMAN
-            from ..bridge.actions import assign_action
             from ..bridge.actor_lengths import read_body
             from ..bridge.keyframes import NOTICEABLE_M, store_pose
             from ..bridge.pose import read_posture
-            from ..shell.keyframe_action import new_keyframe_action, shows_keyframes
 
             scene = context.scene
             take = active_take(scene)

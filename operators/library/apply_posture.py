@@ -4,11 +4,15 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
 from ..shell.error_reports import reported
+from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take
-from .editing.scene_libraries import active_posture
+from .editing.scene_libraries import active_posture, library_here
+from .library_choice import chosen_library
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
@@ -51,11 +55,9 @@ class KEYMARK_OT_apply_posture(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Fit the posture to the actor and show it, over the keyframes."""
         with reported(self):
-            from ...core.body.human import HUMAN
             from ..bridge.actor_lengths import read_body
             from ..bridge.library.poses import named_posture, on_actor, standing_as
             from ..bridge.pose import read_posture, write_posture
-            from ..shell.keyframe_action import show_keyframes
 
             take = active_take(context.scene)
             body = read_body(take.armature, HUMAN)
@@ -77,10 +79,6 @@ class KEYMARK_OT_apply_posture(bpy.types.Operator):
 
     def _chosen(self, context: bpy.types.Context) -> "tuple[Library, str]":
         """The library and the name of its posture."""
-        from ...core.errors import InputError
-        from .editing.scene_libraries import library_here
-        from .library_choice import chosen_library
-
         if self.library:
             if not self.posture:
                 raise InputError("no posture is chosen; choose one of the library's, or give posture")

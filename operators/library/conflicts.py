@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ...core.library.texts import identifier_from, told_apart
+from .registry import fill, folders, own_folder
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
@@ -71,7 +73,6 @@ def settled(
         InputError: Another one is there, and nobody has chosen what to do.
     """
     from ...core.library.merging import Choice, merged
-    from ...core.library.texts import identifier_from, told_apart
 
     taken = {conflict.new.identifier: conflict for conflict in conflicts(new, there)}
     if taken and choice == "ASK":
@@ -99,7 +100,6 @@ def settled(
 def on_shelf(identifier: str) -> "Library | None":
     """The library on the shelf, if there is one."""
     from ...core.library.registry import shelved
-    from .registry import folders
 
     found = (entry.library for entry in shelved(folders()) if entry.identifier == identifier)
     return next((library for library in found if library is not None), None)
@@ -113,7 +113,6 @@ def keep_on_shelf(libraries: "Iterable[Library]") -> None:
         ConversionError: A file cannot be written.
     """
     from ...core.library.library_file import write_library
-    from .registry import fill, own_folder
 
     identifier = ""
     files = [(_own_file(own_folder(), library.identifier), library) for library in libraries]

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import ConversionError, InputError
 from ..shell.error_reports import reported
 from ..shell.messages import label, say
 from ..shell.requirements import a_shelved_library, all_met, idle
@@ -33,8 +34,6 @@ class KEYMARK_OT_discard_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete it."""
         with reported(self):
-            from ...core.errors import ConversionError, InputError
-
             item = chosen(context)
             if item is None:
                 raise InputError("no library is chosen; choose the one to delete")

@@ -4,9 +4,12 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle
+from .conflicts import only_postures
+from .editing.scene_libraries import library_here
 from .library_choice import chosen_library
 
 FORMATS = [
@@ -75,10 +78,7 @@ class KEYMARK_OT_export_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write it."""
         with reported(self):
-            from ...core.errors import InputError
             from ..bridge.library.library_file import write_to
-            from .conflicts import only_postures
-            from .editing.scene_libraries import library_here
 
             if not self.filepath:
                 raise InputError("no file is named to export to; give filepath")

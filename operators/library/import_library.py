@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle
@@ -82,7 +83,6 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
         return {"CANCELLED"}
 
     def _read(self) -> "tuple[Library, ...]":
-        from ...core.errors import InputError
         from ..bridge.library.library_file import read_libraries
 
         if not self.filepath:

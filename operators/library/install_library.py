@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.arrays import Image
+from ...core.errors import InputError
+from ...core.library.texts import checked_identifier
+from ...core.progress import Progress
 from ..shell.error_reports import reported
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
@@ -86,7 +89,6 @@ class InstallOperator(JobOperator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[tuple[Library, list[Image]]]]":
         """Read what is there, and draw the pictures of what is to be installed."""
-        from ...core.progress import Progress
         from ..bridge.library.pose_assets import draw_pictures
 
         there = _Installed(self._root(bpy.context))
@@ -127,8 +129,6 @@ class InstallOperator(JobOperator):
         )
 
     def _root(self, context: bpy.types.Context) -> Path:
-        from ...core.errors import InputError
-
         found = asset_libraries(context)
         if self.asset_library not in found:
             raise InputError(
@@ -211,8 +211,6 @@ def _an_asset_library(context: bpy.types.Context) -> str | None:
 
 
 def _file(root: Path, identifier: str) -> Path:
-    from ...core.library.texts import checked_identifier
-
     return root / FOLDER / f"{checked_identifier(identifier, 'the identifier')}.blend"
 
 

@@ -2,11 +2,14 @@
 
 import bpy
 
+from ...core.library.texts import identifier_from
 from ..shell.error_reports import reported
 from ..shell.messages import say, warn_if_outdated
 from ..shell.requirements import actor, all_met, idle, motion
 from ..shell.takes import active_take
+from .editing.scene_libraries import add_library
 from .licenses import suggest
+from .registry import fill, folders, own_folder
 
 DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
@@ -78,10 +81,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
             from ...core.library.learning import About
             from ...core.library.library_file import library_from_json, library_to_json, write_library
             from ...core.library.registry import library_path, shelved
-            from ...core.library.texts import identifier_from
             from ..bridge.library.learning import library_from_action
-            from .editing.scene_libraries import add_library
-            from .registry import fill, folders, own_folder
 
             take, render = active_take(context.scene), context.scene.render
             title = self.title.strip() or take.name

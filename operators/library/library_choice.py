@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .editing.scene_libraries import library_here, library_of
+from .registry import library_called
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
@@ -16,6 +17,4 @@ def chosen_library(context: bpy.types.Context, identifier: str) -> "Library":
     Raises:
         InputError: There is none, or it is not complete.
     """
-    from .registry import library_called
-
     return library_called(identifier) if identifier else library_of(library_here(context.scene))

@@ -5,6 +5,7 @@ import bpy
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle
+from .registry import fill
 
 
 class KEYMARK_OT_refresh_shelf(bpy.types.Operator):
@@ -22,8 +23,6 @@ class KEYMARK_OT_refresh_shelf(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the folder."""
         with reported(self):
-            from .registry import fill
-
             fill()
             count = len(context.window_manager.keymark_shelf.libraries)
             say(self, "INFO", "{count} keyframe libraries are at hand", count=count)

@@ -11,6 +11,7 @@ from ..shell.requirements import a_color, all_met, footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_called
 from .marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .marker_styles import picked_styles
+from .mask_previews import look_at_frame
 
 if TYPE_CHECKING:
     from ...core.footage.marker_check import MarkerCheck
@@ -60,8 +61,6 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
 
 def show_frame(scene: bpy.types.Scene) -> None:
     """Make the masks of the current frame where they are shown."""
-    from .mask_previews import look_at_frame
-
     if bpy.context.window_manager.keymark_show_masks:
         look_at_frame(scene)
 

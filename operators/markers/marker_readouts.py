@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ...core.progress import within
 from ..bridge.footage import Footage
 from ..footage.take_footage import note_contents
 from .mask_previews import keep_preview
@@ -35,7 +36,6 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
     from ...core.footage.clips.clip_samples import sample_clip
     from ...core.footage.marker_check import check_markers
     from ...core.footage.reading_key import footage_digest
-    from ...core.progress import within
 
     key = footage_digest(footage.path)
     samples = _samples.pop(key, None)

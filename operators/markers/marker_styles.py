@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
+
 if TYPE_CHECKING:
     from ...core.footage.marker_style import MarkerStyle
 
@@ -16,7 +18,6 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     Raises:
         InputError: Two markers have one name or one segment.
     """
-    from ...core.errors import InputError
     from ...core.footage.marker_style import MarkerStyle
 
     styles = tuple(

@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
@@ -110,8 +112,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        from ..shell.footage_view import pixel_under
-
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
             sentence = label("That is not on the footage; click on a marker in it   |   Esc: Cancel")
@@ -199,7 +199,6 @@ def _styles(
     Raises:
         InputError: Two markers have one name or one segment, or every body part has one.
     """
-    from ...core.errors import InputError
     from ...core.footage.marker_style import MarkerStyle
 
     styles = [

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import a_color, all_met, footage, idle, markers
@@ -41,8 +42,6 @@ def _look_for_markers() -> None:
     Raises:
         InputError: They cannot be.
     """
-    from ...core.errors import InputError
-
     try:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
     except RuntimeError as error:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.body.human import HUMAN
 from ..shell.error_reports import reported
 from ..shell.keyed_frames import forget
 from ..shell.messages import say
@@ -25,7 +26,6 @@ class KEYMARK_OT_accept_match(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Give its keys to the animator."""
         with reported(self):
-            from ...core.body.human import HUMAN
             from ..bridge.matched_keyframes import take_over
 
             take = active_take(context.scene)

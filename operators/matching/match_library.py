@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ...core.errors import InputError
 from ...core.library.texts import EVERY_LIBRARY
+from ...core.progress import stretch
+from ..bridge.frame_times import scene_frames
+from ..library.registry import folders
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
@@ -80,9 +84,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and match it; what earlier matching gave is left out of account."""
         from ...core.matching.match_take import match_take, with_matches
-        from ...core.progress import stretch
         from ...core.take.read_footage import read_footage
-        from ..bridge.frame_times import scene_frames
         from ..bridge.take_from_scene import read_scene_take
 
         settings = active_take(scene)
@@ -134,9 +136,7 @@ def _libraries(name: str) -> "Sequence[Library]":
     Raises:
         InputError: There is none.
     """
-    from ...core.errors import InputError
     from ...core.library.registry import find_library, shelved
-    from ..library.registry import folders
 
     if name != EVERY_LIBRARY:
         return [find_library(name, folders())]

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.arrays import Array
+from ...core.body.human import HUMAN
 from ...core.errors import InputError
+from ..bridge.actions import assign_action
 from ..shell.keyed_frames import forget, has_frame, matched_frames, posed_frames
+from ..shell.keyframe_action import new_keyframe_action
 from ..shell.takes import actor_of
 
 if TYPE_CHECKING:
@@ -100,7 +103,6 @@ def keep_choice(
     Raises:
         InputError: The take has no actor, or it lacks bones.
     """
-    from ...core.body.human import HUMAN
     from ..bridge.matched_keyframes import remove_keyframes, take_over
 
     forget()
@@ -145,9 +147,7 @@ def _keep_matches(
 
 def key_matches(take: bpy.types.PropertyGroup, frames: "Array", postures: "Sequence[Posture]") -> None:
     """Key postures at scene frames (K,) as matched ones, and let the keyframes animate the actor."""
-    from ..bridge.actions import assign_action
     from ..bridge.matched_keyframes import write_matched
-    from ..shell.keyframe_action import new_keyframe_action
 
     actor = actor_of(take)
     take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)

@@ -6,6 +6,7 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ...core.library.texts import EVERY_LIBRARY
+from ..library.registry import library_items
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
@@ -29,8 +30,6 @@ _entries: list[Entry] = []
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
     """The choice by itself, all libraries on the shelf, and the chosen one though it be gone from there."""
-    from ..library.registry import library_items
-
     rows = [item[:4] for item in library_items(matching, context)]
     name = matching.library_name
     if all(name != row[0] for row in rows):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.body.human import HUMAN
 from ..shell.error_reports import reported
 from ..shell.keyed_frames import forget
 from ..shell.messages import say
@@ -25,7 +26,6 @@ class KEYMARK_OT_remove_match(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it; the next in the list is chosen."""
         with reported(self):
-            from ...core.body.human import HUMAN
             from ..bridge.matched_keyframes import remove_keyframes
 
             scene = context.scene

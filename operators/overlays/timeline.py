@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array, BoolArray
+from ..bridge.frame_times import scene_frames
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
 from ..shell.messages import label
 from ..shell.results import Remembered, reading_of, review_of
@@ -255,7 +256,6 @@ def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | Non
     """The markers' speed as last read; where that was lost, as the motion's review holds it."""
     # Not before there is something to draw: Keymark registers without the libraries these need.
     from ...core.prior.marker_speed import marker_speed
-    from ..bridge.frame_times import scene_frames
 
     reading, review = reading_of(take), review_of(take)
     if reading is not None and take.clip is not None:

@@ -8,6 +8,7 @@ import bpy
 from bpy.app import handlers
 
 from ...core.errors import InputError
+from ..bridge.scene_frames import at_scene_frame, showing_action
 
 if TYPE_CHECKING:
     from ...core.progress import Preview
@@ -68,8 +69,6 @@ class LivePreview:
                 changes.close()
 
     def _begin(self) -> None:
-        from ..bridge.scene_frames import at_scene_frame, showing_action
-
         # Undo may have put others in their place.
         self._scene, self._armature = (
             _of_uid(items, uid)

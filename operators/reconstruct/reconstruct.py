@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ...core.errors import InputError
+from ...core.progress import stretch
+from ..bridge.frame_times import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
 from ..review.review_results import show_review
@@ -53,10 +56,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
         from ...core.estimate.reconstruct import check_reconstructible, reconstruct
-        from ...core.progress import stretch
         from ...core.review.review import review
         from ...core.take.read_footage import read_footage
-        from ..bridge.frame_times import scene_frames
         from ..bridge.take_from_scene import read_scene_take
 
         settings = active_take(scene)
@@ -125,8 +126,6 @@ def _check_enough(count: int, notes: tuple[str, ...]) -> None:
     Raises:
         InputError: There are fewer than two in the footage.
     """
-    from ...core.errors import InputError
-
     if count < 2:
         posed = "one keyframe lies" if count else "no keyframe lies"
         asked = f"{posed} in the footage; at least 2 are needed, so match a library or pose the actor"

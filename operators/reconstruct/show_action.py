@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..bridge.actions import assign_action
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle
@@ -48,8 +49,6 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
             say(self, "ERROR", NOT_THERE[self.which])
             return {"CANCELLED"}
         with reported(self):
-            from ..bridge.actions import assign_action
-
             assign_action(settings.armature, action)
             return {"FINISHED"}
         return {"CANCELLED"}

@@ -2,8 +2,12 @@
 
 import bpy
 
+from ...core.body.human import HUMAN
+from ..bridge.actions import assign_action
+from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..shell.error_reports import reported
 from ..shell.keyed_frames import forget
+from ..shell.keyframe_action import new_keyframe_action
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle, motion
 from ..shell.takes import active_take
@@ -33,11 +37,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
         with reported(self):
-            from ...core.body.human import HUMAN
-            from ..bridge.actions import assign_action
             from ..bridge.keyframes import store_pose
-            from ..bridge.scene_frames import at_scene_frame, showing_action
-            from ..shell.keyframe_action import new_keyframe_action
 
             scene = context.scene
             take = active_take(scene)

@@ -3,6 +3,7 @@
 import bpy
 
 from .error_reports import reported
+from .footage_view import shows_footage
 from .messages import say
 
 NAVIGATION = {
@@ -24,8 +25,6 @@ def footage_is_shown(
     operator: bpy.types.Operator, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> bool:
     """Whether an editor of the window shows the take's footage; where none does, the operator says so."""
-    from .footage_view import shows_footage
-
     with reported(operator):
         if shows_footage(context, take):
             return True

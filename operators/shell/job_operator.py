@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...core.errors import InputError
+from ...core.progress import run
 from .error_reports import reported
 from .messages import label, say
 from .redraw import redraw_sidebars, redraw_sidebars_soon
@@ -54,8 +55,6 @@ class JobOperator:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""
         with reported(self):
-            from ...core.progress import run
-
             self.finish(context.scene, run(self.start(context.scene)))
             return {"FINISHED"}
         return {"CANCELLED"}

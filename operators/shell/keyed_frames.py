@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import bpy
 from bpy.app.handlers import persistent
 
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
+
 SAME_FRAME = 0.5
 """A key nearer than this [frames] is the frame's own."""
 
@@ -46,8 +49,6 @@ def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
         return KeyedFrames()
     both = take.armature.session_uid, take.keyframe_action.session_uid
     if both not in _keyed:
-        from ...core.body.human import HUMAN
-        from ...core.errors import InputError
         from ..bridge.keyframes import keyed_frames
         from ..bridge.matched_keyframes import untouched_frames
 

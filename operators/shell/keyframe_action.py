@@ -2,6 +2,9 @@
 
 import bpy
 
+from ..bridge.actions import assign_action
+from ..bridge.object_space import evaluated
+
 
 def shows_keyframes(take: bpy.types.PropertyGroup) -> bool:
     """Whether nothing but the keyframes animates the actor."""
@@ -14,9 +17,6 @@ def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
 
     A new Action is evaluated once, at once, so that what is posed afterwards stays.
     """
-    from ..bridge.actions import assign_action
-    from ..bridge.object_space import evaluated
-
     data = take.armature.animation_data
     if data is None or data.action == take.keyframe_action:
         return False

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import bpy
 
 from ...core.errors import ConversionError
+from ...core.files.digest import digest
+from ...core.files.store import Store
 
 if TYPE_CHECKING:
     from ...core.estimate.reconstruct import Reconstruction
@@ -95,8 +97,6 @@ def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
 
 def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
     """Keep what is known of a take's motion."""
-    from ...core.files.digest import digest
-
     arrays = review.to_arrays()
     key = f"review-{digest(*(part for name in sorted(arrays) for part in (name, arrays[name])))}"
     _reviews.put(key, review)
@@ -149,8 +149,6 @@ def _save(key: str, arrays: "Arrays") -> None:
 
 
 def _store() -> "Store":
-    from ...core.files.store import Store
-
     try:
         folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
     except ValueError:  # not installed as an extension

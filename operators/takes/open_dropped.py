@@ -4,6 +4,8 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import InputError
+from ...core.files.json_file import read_json
 from ..shell.error_reports import reported
 from ..shell.requirements import all_met, idle
 
@@ -35,8 +37,6 @@ class KEYMARK_OT_open_dropped(bpy.types.Operator):
 
     def _hand_on(self, how: str) -> set[str]:
         with reported(self):
-            from ...core.errors import InputError
-            from ...core.files.json_file import read_json
             from ...core.library.library_file import LARGEST_BYTES
 
             path = Path(bpy.path.abspath(self.filepath))

@@ -5,9 +5,11 @@ from pathlib import Path
 import bpy
 
 from ..footage.load_footage import VIDEOS
+from ..footage.take_footage import look_through_camera, show_range
 from ..shell.error_reports import reported
 from ..shell.messages import say
 from ..shell.requirements import all_met, idle, object_mode_possible
+from ..shell.takes import active_take
 
 
 class KEYMARK_OT_open_take(bpy.types.Operator):
@@ -49,8 +51,6 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
         """Read the take, and only then change the scene."""
         with reported(self):
             from ...core.shoot.finding.take_location import take_place
-            from ..footage.take_footage import look_through_camera, show_range
-            from ..shell.takes import active_take
             from .take_to_scene import read_for_scene, show_take
 
             opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)

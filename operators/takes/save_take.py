@@ -4,6 +4,8 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import InputError
+from ...core.progress import run
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
 from ..shell.error_reports import reported
@@ -39,8 +41,6 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and write the folder."""
         with reported(self):
-            from ...core.errors import InputError
-            from ...core.progress import run
             from ...core.shoot.finding.take_location import check_free
             from ...core.take.take import write_take
             from ..bridge.take_from_scene import read_scene_take

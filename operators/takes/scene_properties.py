@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..footage.take_footage import is_missing
 from ..library.editing.properties import KEYMARK_PG_library
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..overlays.timeline_properties import KEYMARK_PG_timeline
@@ -10,8 +11,6 @@ from .take_properties import KEYMARK_PG_take
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ..footage.take_footage import is_missing
-
     bring_forward(settings.id_data)
     take = find_take(settings.id_data)
     if take is not None:

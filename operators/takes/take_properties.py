@@ -4,9 +4,12 @@ from contextlib import suppress
 
 import bpy
 
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths
 from ..finish.properties import KEYMARK_PG_finish
 from ..footage.properties import KEYMARK_PG_clip_state
+from ..footage.take_footage import camera_chosen, clip_chosen
 from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
@@ -26,10 +29,7 @@ def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) ->
 
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """The panel shows the lengths of the armature that is chosen, not of the one before."""
-    from ...core.errors import InputError
-
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or Keymark without its libraries
-        from ...core.body.human import HUMAN
         from ..actor.new_actor import show_lengths
         from ..bridge.actor_lengths import read_body
 
@@ -48,14 +48,10 @@ def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
 
 
 def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ..footage.take_footage import clip_chosen
-
     clip_chosen(take)
 
 
 def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ..footage.take_footage import camera_chosen
-
     camera_chosen(take)
 
 

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..footage.camera_view import look_through, viewports
 from ..shell.error_reports import reported
 from ..shell.requirements import all_met, idle, turntable
 from ..shell.takes import active_take
@@ -23,7 +24,6 @@ class KEYMARK_OT_remove_turntable(bpy.types.Operator):
         """Remove them; viewports that looked through one show the footage again."""
         with reported(self):
             from ..bridge.turntable import remove_turntable
-            from ..footage.camera_view import look_through, viewports
 
             scene, take = context.scene, active_take(context.scene)
             views = take.turntable

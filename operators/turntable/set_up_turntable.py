@@ -5,6 +5,7 @@ import bpy
 from ..shell.error_reports import reported
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take
+from .properties import show_chosen_reference
 
 
 class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
@@ -47,7 +48,6 @@ class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
         """Look where the actor moves, and only then change the scene."""
         with reported(self):
             from ..bridge.turntable import add_turntable, remove_turntable, survey
-            from .properties import show_chosen_reference
 
             scene, take = context.scene, active_take(context.scene)
             stage = survey(scene, take.armature, take.camera, self.follow)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ..footage.camera_view import look_through, viewports
 from ..shell.error_reports import reported
 from ..shell.requirements import all_met, footage
@@ -39,8 +40,6 @@ class KEYMARK_OT_show_view(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Turn the viewport that asks, or from elsewhere all of them."""
         with reported(self):
-            from ...core.errors import InputError
-
             take = active_take(context.scene)
             camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
             if camera is None or camera.name not in context.view_layer.objects:

@@ -5,11 +5,14 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ....core.arrays import Array
+from ....core.body.human import HUMAN
+from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_library_here, all_met, idle
 from ...shell.takes import find_take
+from .scene_libraries import library_here
 
 if TYPE_CHECKING:
     pass
@@ -68,8 +71,6 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add it."""
         with reported(self):
-            from ....core.errors import InputError
-            from .scene_libraries import library_here
             from .scene_postures import keep_motion
 
             group = library_here(context.scene)
@@ -102,9 +103,7 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
         """Postures made of the take's keyframes, and their times [s]."""
         import numpy as np
 
-        from ....core.body.human import HUMAN
         from ....core.body.posture import Posture
-        from ....core.errors import InputError
         from ...bridge.actor_lengths import read_body
         from ...bridge.keyframes import keyed_frames, read_keyframes
         from .scene_postures import keep_postures

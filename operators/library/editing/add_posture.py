@@ -2,11 +2,13 @@
 
 import bpy
 
+from ....core.body.human import HUMAN
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_library_here, actor, all_met, idle
 from ...shell.takes import active_take
+from .scene_libraries import library_here
 
 
 class KEYMARK_OT_add_posture(bpy.types.Operator):
@@ -47,12 +49,10 @@ class KEYMARK_OT_add_posture(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the pose, level it, and make it a pose asset."""
         with reported(self):
-            from ....core.body.human import HUMAN
             from ....core.body.posture import Posture
             from ...bridge.actor_lengths import read_body
             from ...bridge.keyframes import NOTICEABLE_M
             from ...bridge.pose import read_posture
-            from .scene_libraries import library_here
             from .scene_postures import keep_postures, replace_posture
 
             take, group = active_take(context.scene), library_here(context.scene)

@@ -2,11 +2,13 @@
 
 import bpy
 
+from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_shelved_library, all_met, idle
-from ..registry import chosen
+from ..registry import chosen, library_called
+from .scene_libraries import add_library
 
 
 class KEYMARK_OT_edit_library(bpy.types.Operator):
@@ -30,10 +32,6 @@ class KEYMARK_OT_edit_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make its postures pose assets of this file."""
         with reported(self):
-            from ....core.errors import InputError
-            from ..registry import library_called
-            from .scene_libraries import add_library
-
             item = chosen(context)
             library = library_called(self.library or (item.name if item is not None else ""))
             if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):

@@ -2,9 +2,11 @@
 
 import bpy
 
+from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.requirements import all_met, idle
+from .scene_libraries import add_library
 
 
 class KEYMARK_OT_gather_library(bpy.types.Operator):
@@ -22,9 +24,7 @@ class KEYMARK_OT_gather_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put together what belongs together, but for what is listed already."""
         with reported(self):
-            from ....core.errors import InputError
             from ...bridge.library.pose_assets import assets_by_library, library_from_assets
-            from .scene_libraries import add_library
 
             listed = context.scene.keymark.libraries
             known = {entry.action for group in listed for entry in group.postures}

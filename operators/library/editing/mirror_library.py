@@ -2,11 +2,12 @@
 
 import bpy
 
+from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_library_here, all_met, idle
-from .scene_libraries import library_here
+from .scene_libraries import add_library, library_here, library_of
 
 
 class KEYMARK_OT_mirror_library(bpy.types.Operator):
@@ -34,9 +35,7 @@ class KEYMARK_OT_mirror_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add them at the end of the list."""
         with reported(self):
-            from ....core.errors import InputError
             from ....core.library.mirroring import mirrored_library
-            from .scene_libraries import add_library, library_of
             from .scene_postures import add_mirrored
 
             group = library_here(context.scene)

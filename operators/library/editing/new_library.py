@@ -2,6 +2,8 @@
 
 import bpy
 
+from ....core.errors import InputError
+from ....core.library.texts import LONGEST_NAME, identifier_from, text_fault
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.requirements import all_met, idle
@@ -40,9 +42,7 @@ class KEYMARK_OT_new_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add it, without postures yet."""
         with reported(self):
-            from ....core.errors import InputError
             from ....core.library.library_fields import LONGEST_LINE
-            from ....core.library.texts import LONGEST_NAME, identifier_from, text_fault
 
             settings = context.scene.keymark
             fault = text_fault(self.title.strip(), LONGEST_NAME)

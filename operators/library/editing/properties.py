@@ -9,7 +9,9 @@ from contextlib import suppress
 
 import bpy
 
+from ....core.errors import InputError
 from ..licenses import suggest
+from .scene_libraries import details_changed, posture_changed
 
 KEPT_DIGITS = 6
 """Of a number that was typed in: single precision has no more."""
@@ -36,17 +38,11 @@ def _exact() -> "bpy.types.AnyType":
 
 def _details_changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Let the pose assets say what the library says now."""
-    from ....core.errors import InputError
-    from .scene_libraries import details_changed
-
     with suppress(InputError, ModuleNotFoundError):  # half typed; whatever writes a library checks it
         details_changed(group)
 
 
 def _posture_changed(posture: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from ....core.errors import InputError
-    from .scene_libraries import posture_changed
-
     with suppress(InputError, ModuleNotFoundError):
         posture_changed(posture)
 

@@ -5,7 +5,7 @@ import bpy
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.requirements import a_library_here, all_met, idle
-from .scene_libraries import active_motion, active_posture, library_here
+from .scene_libraries import active_motion, active_posture, library_here, show_again
 
 STEP_S = 0.1
 """After the last step, where nothing tells when the next one comes."""
@@ -31,8 +31,6 @@ class KEYMARK_OT_remove_motion(MotionOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
         with reported(self):
-            from .scene_libraries import show_again
-
             group = library_here(context.scene)
             if active_motion(group) is None:
                 say(self, "ERROR", "No motion is chosen; choose the one to remove")
@@ -79,8 +77,6 @@ class KEYMARK_OT_remove_step(MotionOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
         with reported(self):
-            from .scene_libraries import show_again
-
             group = library_here(context.scene)
             motion = active_motion(group)
             if motion is None or motion.active_step >= len(motion.steps):
@@ -118,8 +114,6 @@ class KEYMARK_OT_remove_source(MotionOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
         with reported(self):
-            from .scene_libraries import show_again
-
             group = library_here(context.scene)
             if self.line >= len(group.sources):
                 say(self, "ERROR", "There is no such line")

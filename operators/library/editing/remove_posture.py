@@ -6,7 +6,7 @@ from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_library_here, all_met, idle
-from .scene_libraries import active_posture, library_here
+from .scene_libraries import active_posture, library_here, show_again
 
 
 class KEYMARK_OT_remove_posture(bpy.types.Operator):
@@ -24,8 +24,6 @@ class KEYMARK_OT_remove_posture(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove entry, Action and steps."""
         with reported(self):
-            from .scene_libraries import show_again
-
             group = library_here(context.scene)
             entry = active_posture(group)
             if entry is None:
@@ -68,8 +66,6 @@ class KEYMARK_OT_move_posture(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Exchange two entries."""
         with reported(self):
-            from .scene_libraries import show_again
-
             group = library_here(context.scene)
             before = group.active_posture
             after = before + (-1 if self.direction == "UP" else 1)

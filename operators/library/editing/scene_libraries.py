@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ....core.body.actor import Actor
 from ....core.errors import InputError
+from ....core.files.json_file import parse_json
+from ....core.library.texts import told_apart
 
 if TYPE_CHECKING:
     from ....core.body.actor import Actor
@@ -139,7 +142,6 @@ def postures_of(group: bpy.types.PropertyGroup) -> "dict[str, LibraryPosture]":
     Raises:
         InputError: An asset is not what Keymark has written.
     """
-    from ....core.library.texts import told_apart
     from ...bridge.library.pose_assets import read_asset
 
     found: dict[str, LibraryPosture] = {}
@@ -162,9 +164,6 @@ def draft(group: bpy.types.PropertyGroup) -> "Library":
 
 def actor_of_library(group: bpy.types.PropertyGroup) -> "Actor":
     """Whom a library's postures were posed on."""
-    from ....core.body.actor import Actor
-    from ....core.files.json_file import parse_json
-
     return Actor(parse_json(group.actor or "{}", f"library '{group.name}': actor"))
 
 
@@ -220,8 +219,6 @@ def posture_changed(entry: bpy.types.PropertyGroup) -> None:
     Raises:
         InputError: The asset is not what Keymark has written.
     """
-    from ....core.library.texts import told_apart
-
     group = None if _silent else _library_with(entry)
     if group is None or entry.action is None:
         return

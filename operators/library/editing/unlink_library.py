@@ -6,6 +6,7 @@ from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
 from ...shell.requirements import a_library_here, all_met, idle
+from .scene_libraries import library_here
 
 
 class KEYMARK_OT_remove_library(bpy.types.Operator):
@@ -23,8 +24,6 @@ class KEYMARK_OT_remove_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it and its Actions."""
         with reported(self):
-            from .scene_libraries import library_here
-
             settings = context.scene.keymark
             group = library_here(context.scene)
             title = group.name
