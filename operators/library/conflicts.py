@@ -9,7 +9,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.library.texts import identifier_from, told_apart
-from .registry import fill, folders, own_folder
+from . import registry
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
@@ -101,7 +101,7 @@ def on_shelf(identifier: str) -> "Library | None":
     """The library on the shelf, if there is one."""
     from ...core.library.registry import shelved
 
-    found = (entry.library for entry in shelved(folders()) if entry.identifier == identifier)
+    found = (entry.library for entry in shelved(registry.folders()) if entry.identifier == identifier)
     return next((library for library in found if library is not None), None)
 
 
@@ -115,11 +115,11 @@ def keep_on_shelf(libraries: "Iterable[Library]") -> None:
     from ...core.library.library_file import write_library
 
     identifier = ""
-    files = [(_own_file(own_folder(), library.identifier), library) for library in libraries]
+    files = [(_own_file(registry.own_folder(), library.identifier), library) for library in libraries]
     for file, library in files:
         write_library(file, library)
         identifier = library.identifier
-    fill(identifier)
+    registry.fill(identifier)
 
 
 def _own_file(folder: Path, identifier: str) -> Path:

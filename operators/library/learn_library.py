@@ -7,9 +7,9 @@ from ..shell.error_reports import reported
 from ..shell.messages import say, warn_if_outdated
 from ..shell.requirements import actor, all_met, idle, motion
 from ..shell.takes import active_take
+from . import registry
 from .editing.scene_libraries import add_library
 from .licenses import suggest
-from .registry import fill, folders, own_folder
 
 DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
@@ -85,7 +85,7 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
 
             take, render = active_take(context.scene), context.scene.render
             title = self.title.strip() or take.name
-            taken = {found.identifier for found in shelved(folders())}
+            taken = {found.identifier for found in shelved(registry.folders())}
             taken |= {library.identifier for library in context.scene.keymark.libraries}
             library = library_from_action(
                 take.armature,
@@ -102,8 +102,8 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
             library_from_json(library_to_json(library), f"library '{title}'")  # checks what was typed
             self.learned_as = library.identifier
             if self.for_matching:
-                write_library(library_path(own_folder(), library.identifier), library)
-                fill(library.identifier)
+                write_library(library_path(registry.own_folder(), library.identifier), library)
+                registry.fill(library.identifier)
             add_library(context.scene, library)
             warn_if_outdated(self, take)
             (learned,) = library.motions

@@ -10,7 +10,7 @@ from ...core.errors import InputError
 from ...core.library.texts import EVERY_LIBRARY
 from ...core.progress import stretch
 from ..bridge.frame_times import scene_frames
-from ..library.registry import folders
+from ..library import registry
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
@@ -139,8 +139,8 @@ def _libraries(name: str) -> "Sequence[Library]":
     from ...core.library.registry import find_library, shelved
 
     if name != EVERY_LIBRARY:
-        return [find_library(name, folders())]
-    usable = [each.library for each in shelved(folders()) if each.library is not None]
+        return [find_library(name, registry.folders())]
+    usable = [each.library for each in shelved(registry.folders()) if each.library is not None]
     if not usable:
         raise InputError("there is no library to match with; import one, or install Keymark as a whole")
     return usable

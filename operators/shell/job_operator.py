@@ -1,14 +1,15 @@
 """Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ...core.errors import InputError
-from ...core.progress import run
+from ...core.progress import run as run_job
+from .base_operator import BaseOperator
 from .error_reports import reported
 from .messages import label, say
 from .redraw import redraw_sidebars, redraw_sidebars_soon
@@ -21,17 +22,15 @@ SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 TIMER_S = 0.01
 EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
 """Before so much is done nobody can tell how long the rest takes."""
-PREFIX = "KEYMARK_OT_"
 
 
-class JobOperator:
+class JobOperator(BaseOperator):
     """Mixin of an operator whose work is a job that yields its progress.
 
     A subclass gives `start`, which changes nothing, and `finish`, which writes the result into the scene:
     so a job that is cancelled or fails leaves everything as it was.
     """
 
-    report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     _job: Generator[Any, None, Any] | None = None
     _timer: bpy.types.Timer | None = None
     _scene_uid: int = 0
@@ -52,12 +51,9 @@ class JobOperator:
     def unwatch(self) -> None:
         """Leave everything as it was before `watch`."""
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Do the whole job at once."""
-        with reported(self):
-            self.finish(context.scene, run(self.start(context.scene)))
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        self.finish(context.scene, run_job(self.start(context.scene)))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Do the job in slices, so that the user interface stays alive."""
@@ -153,13 +149,3 @@ def time_left(elapsed_s: float, fraction: float) -> str:
     # To what a person can tell apart, so that the words do not flicker.
     step = 10.0 if seconds > 30.0 else 5.0 if seconds > 10.0 else 1.0
     return label("about {seconds:.0f} s left", seconds=max(step * round(seconds / step), 1.0))
-
-
-def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
-    """Whether one of Keymark's jobs runs in any window, or that of one operator: `keymark.reconstruct`."""
-    wanted = job.replace("keymark.", PREFIX) or PREFIX
-    return any(
-        operator.bl_idname.startswith(wanted)
-        for window in context.window_manager.windows
-        for operator in window.modal_operators
-    )

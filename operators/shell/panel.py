@@ -4,7 +4,7 @@ from textwrap import wrap
 
 import bpy
 
-from .job_operator import job_is_running
+from .running_jobs import job_is_running
 from .takes import find_take
 
 ESCAPE_UNITS = 2.9

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import bpy
 
-from .job_operator import job_is_running
 from .keyed_frames import forget, keyframes_of
+from .running_jobs import job_is_running
 from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context], str | None]
