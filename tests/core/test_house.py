@@ -1,12 +1,12 @@
 """The rules of the house that no tool checks by itself: who may import whom, file sizes, one version."""
 
-import ast
 import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from _house import imports, modules
 
 BLENDER_MODULES = {"bpy", "bpy_extras", "bl_math", "blf", "bmesh", "gpu", "gpu_extras", "mathutils"}
 LINES_AT_MOST = 400
@@ -38,39 +38,6 @@ ROOMS = (
     ("operators.takes", "operators.cli"),
 )
 HEIGHTS = {room: height for height, rooms in enumerate(ROOMS) for room in rooms}
-
-
-def modules(root: Path, *folders: str) -> dict[str, Path]:
-    """Every module below `folders`: its dotted name from the root, and its file."""
-    files = [file for folder in folders for file in sorted((root / folder).rglob("*.py"))]
-    return {name_of(file.relative_to(root)): file for file in files}
-
-
-def name_of(path: Path) -> str:
-    """`core/body/__init__.py` is `core.body`."""
-    parts = path.with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
-def imports(name: str, is_package: bool, source: str, known: set[str]) -> Iterator[tuple[int, str]]:
-    """Yield (line, dotted name) for each import in `source`, the relative ones resolved from the root.
-
-    `from ..body import rotations` yields `core.body.rotations` where that is a module, else `core.body`.
-    """
-    package = name.split(".") if is_package else name.split(".")[:-1]
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield node.lineno, alias.name
-        elif isinstance(node, ast.ImportFrom):
-            above = package[: len(package) - node.level + 1] if node.level else []
-            if node.level > len(package) + 1:
-                yield node.lineno, f"(beyond the root){node.module or ''}"
-                continue
-            base = ".".join(above + ([node.module] if node.module else []))
-            for alias in node.names:
-                deeper = f"{base}.{alias.name}" if base else alias.name
-                yield node.lineno, deeper if deeper in known else base
 
 
 def room_of(name: str) -> str | None:

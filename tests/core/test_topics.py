@@ -1,0 +1,106 @@
+"""Topics of operators: each lists the modules it registers, and keeps its operators and panels to itself."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from _house import imports, modules
+
+BASES = {"Operator", "Panel", "UIList", "Menu", "FileHandler"}
+SHARED = ("operators.bridge", "operators.shell")
+"""Rooms without operators of their own, for all topics."""
+
+
+def assigned(source: str) -> dict[str, ast.expr]:
+    """The values a module assigns at its top, by name; each name of a tuple has the whole value."""
+    found = {}
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign):
+            names = [
+                each.id for target in node.targets for each in ast.walk(target) if isinstance(each, ast.Name)
+            ]
+            found.update(dict.fromkeys(names, node.value))
+        elif isinstance(node, ast.FunctionDef):
+            found[node.name] = ast.Constant(None)
+    return found
+
+
+def listed(source: str) -> list[str]:
+    """What a topic's own file lists as PROPERTIES and MODULES."""
+    values = assigned(source)
+    return [
+        name for key in ("PROPERTIES", "MODULES") if key in values for name in ast.literal_eval(values[key])
+    ]
+
+
+def topic_of(name: str) -> str:
+    """`operators.library.editing.add_motion` belongs to `operators.library`."""
+    return ".".join(name.split(".")[:2])
+
+
+def test_every_module_that_registers_is_listed_by_its_topic_once(repository: Path) -> None:
+    """A new operator or panel that nobody lists would be missing in Blender without a word."""
+    known = modules(repository, "operators")
+    sources = {name: file.read_text(encoding="utf-8") for name, file in known.items()}
+    topics = sorted({topic_of(name) for name in known} - {"operators"})
+    in_lists = [f"{topic}.{name}" for topic in topics for name in listed(sources[topic])]
+    registering = [name for name in known if name != "operators" and "register" in assigned(sources[name])]
+    assert sorted(in_lists) == sorted(registering)
+    assert len(registering) > 80
+
+
+def is_private(source: str) -> bool:
+    """Whether a module defines what Blender registers as an operator or a part of the interface."""
+    classes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ClassDef)]
+    return any(
+        isinstance(base, ast.Attribute) and base.attr in BASES for node in classes for base in node.bases
+    )
+
+
+def trespasses(name: str, is_package: bool, source: str, known: set[str], private: set[str]) -> Iterator[str]:
+    """What one module imports that is another's own, as sentences."""
+    for line, target in imports(name, is_package, source, known):
+        if target in private and topic_of(target) != topic_of(name) and topic_of(target) not in SHARED:
+            yield f"{name}:{line} imports {target}, which is an operator or a panel of another topic"
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and (node.level or node.module == "keymark"):
+            for alias in node.names:
+                if alias.name.startswith("_"):
+                    yield f"{name}:{node.lineno} imports {alias.name}, which is private"
+
+
+def test_no_topic_imports_the_private_parts_of_another(repository: Path) -> None:
+    """Operators and panels are a topic's own; what others need of them lies in a module beside them."""
+    known = modules(repository, "core", "operators")
+    sources = {name: file.read_text(encoding="utf-8") for name, file in known.items()}
+    private = {name for name, source in sources.items() if is_private(source)}
+    assert "operators.markers.pick_marker_color" in private and "operators.markers.panel" in private
+    wrong: list[str] = []
+    for name, file in known.items():
+        wrong += trespasses(name, file.name == "__init__.py", sources[name], set(known), private)
+    assert wrong == []
+
+
+@pytest.mark.parametrize(
+    ("name", "source"),
+    [
+        ("operators.review.panel", "from ..markers import panel"),
+        ("operators.takes.open_take", "def late():\n    from ..markers.panel import KEYMARK_PT_markers"),
+        ("core.take.take", "from .clip_check import _turned"),
+    ],
+)
+def test_a_trespass_is_found(name: str, source: str) -> None:
+    """The check above can fail: each of these imports what is another's own."""
+    known = {"operators.markers", "operators.markers.panel", "core.take.clip_check"}
+    assert len(list(trespasses(name, False, source, known, {"operators.markers.panel"}))) == 1
+
+
+def test_an_import_within_a_topic_is_none() -> None:
+    """An operator may use another of its own topic, and anybody the shell."""
+    known = {"operators.markers.panel", "operators.shell.messages"}
+    source = "from . import panel\nfrom ..shell.messages import say"
+    assert (
+        list(trespasses("operators.markers.add_marker", False, source, known, {"operators.markers.panel"}))
+        == []
+    )
