@@ -49,7 +49,7 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         with reported(self):
             from ...core.body.kinematics import Body
             from ..bridge.pose import write_posture
-            from .place_actor import is_posed, performers_place, size_actor
+            from .take_actor import is_posed, performers_place, size_actor
 
             body = Body(Actor.from_stature(self.stature))
             take = ensure_take(context.scene)

@@ -114,7 +114,7 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         with reported(self):
             from ..bridge.pose import write_posture
             from ..bridge.posing import frame_in_footage, measured_in_frame
-            from .place_actor import is_posed, size_actor
+            from .take_actor import is_posed, size_actor
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))

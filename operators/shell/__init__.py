@@ -1,4 +1,4 @@
 """How operators run: jobs, requirements, messages, the base of panels, and the take they are about."""
 
-PROPERTIES = ("progress_properties",)
+PROPERTIES = ("job_progress",)
 MODULES = ("results", "keyed_frames")

@@ -7,7 +7,7 @@ MODULES = (
     "add_performer",
     "remove_take",
     "open_dropped",
-    "drop_files",
+    "file_handlers",
     "panel",
     "upgrade",
 )
