@@ -12,7 +12,7 @@ from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import all_colors, all_met, footage, idle, markers
 from ..shell.results import keep_reading, reading_of
-from ..shell.takes import active_take, footage_of, take_called
+from ..shell.takes import active_take, footage_of, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
@@ -62,7 +62,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Keep them with the take, and what was read of the clip for the reconstruction."""
-        take = take_called(scene, result.take)
+        take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
         take.proposals.clear()
         for frame in result.frames:

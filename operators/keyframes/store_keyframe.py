@@ -6,7 +6,7 @@ from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..matching.matches import known_matches
 from ..shell.error_reports import reported
-from ..shell.keyed_frames import forget
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle
@@ -43,7 +43,7 @@ class KEYMARK_OT_store_keyframe(bpy.types.Operator):
             was_matched = frame in known_matches(take)
             store_pose(armature_object, take.keyframe_action, HUMAN, frame)
             assign_action(armature_object, take.keyframe_action)
-            forget()
+            invalidate_keyed_frames()
             if reading.furthest_m > NOTICEABLE_M:
                 say(
                     self,

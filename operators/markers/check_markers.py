@@ -7,8 +7,8 @@ import bpy
 
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import a_color, all_met, footage, idle, markers
-from ..shell.takes import active_take, footage_of, take_called
+from ..shell.requirements import all_met, footage, idle, markers, picked_color
+from ..shell.takes import active_take, footage_of, take_by_identifier
 from .marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .marker_styles import picked_styles
 from .mask_previews import look_at_frame
@@ -39,7 +39,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be footage, and a color to look for."""
-        return all_met(cls, context, footage, markers, a_color, idle)
+        return all_met(cls, context, footage, markers, picked_color, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Checked]":
         """Look at the frames."""
@@ -49,7 +49,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Checked) -> None:
         """Store the readouts."""
-        take = take_called(scene, result.take)
+        take = take_by_identifier(scene, result.take)
         check_unchanged(picked_styles(take), result.styles)
         warnings = write_readouts(take, result.styles, result.check)
         show_frame(scene)

@@ -13,7 +13,7 @@ from ..shell.job_operator import JobOperator
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import all_met, footage, idle
-from ..shell.takes import active_take, footage_of, take_called
+from ..shell.takes import active_take, footage_of, take_by_identifier
 from .add_marker import append_marker, free_name, next_segment
 from .check_markers import show_frame
 from .marker_readouts import check_unchanged, look_at_markers, write_readouts
@@ -146,7 +146,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
         """Give the color to the marker, and store what was found of all of them."""
-        take = take_called(scene, result.take)
+        take = take_by_identifier(scene, result.take)
         check_unchanged(_styles(take, result.index, result.color), result.styles)
         if result.index is None:
             marker = append_marker(take, result.styles[-1].segment)

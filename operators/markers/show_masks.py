@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import a_color, all_met, footage, idle, markers
+from ..shell.requirements import all_met, footage, idle, markers, picked_color
 from ..shell.takes import active_take
 from .mask_previews import look_at_frame, preview_of
 
@@ -20,7 +20,7 @@ class KEYMARK_OT_show_masks(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be footage, and a color to look for."""
-        return all_met(cls, context, footage, markers, a_color, idle)
+        return all_met(cls, context, footage, markers, picked_color, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Switch over; colors that were not looked for in this session are looked for now."""

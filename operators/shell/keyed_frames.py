@@ -84,7 +84,7 @@ def unposed(take: bpy.types.PropertyGroup | None) -> list[int]:
     return [frame for frame in proposed_frames(take) if frame not in keyed]
 
 
-def forget() -> None:
+def invalidate_keyed_frames() -> None:
     """Look at the keys again next time."""
     _keyed.clear()
 
@@ -92,12 +92,12 @@ def forget() -> None:
 @persistent
 def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     if depsgraph is None or depsgraph.id_type_updated("ACTION"):
-        forget()
+        invalidate_keyed_frames()
 
 
 @persistent
 def _loaded(*_arguments: object) -> None:
-    forget()
+    invalidate_keyed_frames()
 
 
 _ON_CHANGE = ("depsgraph_update_post",)
@@ -118,4 +118,4 @@ def unregister() -> None:
         getattr(bpy.app.handlers, name).remove(_changed)
     for name in _ON_LOAD:
         getattr(bpy.app.handlers, name).remove(_loaded)
-    forget()
+    invalidate_keyed_frames()

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
-from .keyed_frames import forget, keyframes_of
+from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .running_jobs import job_is_running
 from .takes import find_take
 
@@ -40,7 +40,7 @@ def markers(context: bpy.types.Context) -> str | None:
     return None if take and len(take.markers) else "Add the markers that the performer wears first"
 
 
-def a_color(context: bpy.types.Context) -> str | None:
+def picked_color(context: bpy.types.Context) -> str | None:
     """A marker was given a color."""
     take = find_take(context.scene)
     picked = take is not None and any(marker.is_picked for marker in take.markers)
@@ -66,7 +66,7 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
     if take is None or take.keyframe_action is None:
         return keyframes(context)
     if len(keyframes_of(take)) == 1:
-        forget()  # a script may have set a key that Blender has not told of yet
+        invalidate_keyed_frames()  # a script may have set a key that Blender has not told of yet
     if len(keyframes_of(take)) == 1:
         return "Store a keyframe at another frame first; there is only one"
     return None
@@ -98,12 +98,12 @@ def weak_frames(context: bpy.types.Context) -> str | None:
     return None if len(take.review.weak_frames) else "No frame needs another keyframe"
 
 
-def a_library_here(context: bpy.types.Context) -> str | None:
+def scene_library(context: bpy.types.Context) -> str | None:
     """A keyframe library is made in this file."""
     return None if len(context.scene.keymark.libraries) else "Begin a keyframe library first"
 
 
-def a_shelved_library(context: bpy.types.Context) -> str | None:
+def registered_library(context: bpy.types.Context) -> str | None:
     """There is a keyframe library at hand."""
     return None if len(context.window_manager.keymark_shelf.libraries) else "Import a keyframe library first"
 

@@ -48,7 +48,7 @@ class Remembered(Generic[Result]):
         return self._results[key]
 
     def put(self, key: str, result: Result | None) -> None:
-        """Remember a result, and forget the one that was not used for longest."""
+        """Remember a result, and clear_cache the one that was not used for longest."""
         self._results[key] = result
         self._results.move_to_end(key)
         while len(self._results) > self._most:
@@ -111,17 +111,17 @@ def clear_review(take: bpy.types.PropertyGroup) -> None:
         shown.property_unset(name)
 
 
-def solved_before(take: bpy.types.PropertyGroup) -> "Reconstruction | None":
+def last_reconstruction(take: bpy.types.PropertyGroup) -> "Reconstruction | None":
     """The take's last reconstruction in this session, for the next to start from."""
     return _solved.get(take.identifier, lambda: None)
 
 
-def keep_solved(take: bpy.types.PropertyGroup, reconstruction: "Reconstruction") -> None:
+def keep_reconstruction(take: bpy.types.PropertyGroup, reconstruction: "Reconstruction") -> None:
     """Keep a reconstruction in memory for the take's next."""
     _solved.put(take.identifier, reconstruction)
 
 
-def forget() -> None:
+def clear_cache() -> None:
     """Let go of all that is held in memory; files stay."""
     for remembered in (_readings, _reviews, _solved):
         remembered.clear()
@@ -162,4 +162,4 @@ def register() -> None:
 
 def unregister() -> None:
     """Let go of what is in memory."""
-    forget()
+    clear_cache()

@@ -32,7 +32,7 @@ def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     return settings.takes[min(settings.active_take, len(settings.takes) - 1)]
 
 
-def take_called(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
+def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
     """The take of an identifier, whichever is worked on now.
 
     Raises:
@@ -85,7 +85,7 @@ def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage
     return Footage(scene, take.clip, take.camera)
 
 
-def bring_forward(scene: bpy.types.Scene) -> None:
+def show_active_take(scene: bpy.types.Scene) -> None:
     """Let the scene show the active take: its clip, its camera, its range of frames, its actor selected."""
     take = find_take(scene)
     if take is None:

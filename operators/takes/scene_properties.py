@@ -6,12 +6,12 @@ from ..footage.take_footage import is_missing
 from ..library.editing.properties import KEYMARK_PG_library
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..overlays.timeline_properties import KEYMARK_PG_timeline
-from ..shell.takes import bring_forward, find_take
+from ..shell.takes import find_take, show_active_take
 from .take_properties import KEYMARK_PG_take
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    bring_forward(settings.id_data)
+    show_active_take(settings.id_data)
     take = find_take(settings.id_data)
     if take is not None:
         take.clip_state.missing = is_missing(take.clip)

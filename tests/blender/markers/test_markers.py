@@ -15,7 +15,7 @@ from keymark.operators.footage.take_footage import note_clip
 from keymark.operators.markers.check_markers import KEYMARK_OT_check_markers
 from keymark.operators.markers.mask_previews import forget_previews, is_of_frame, look_at_frame, preview_of
 from keymark.operators.overlays.mask import free_height, tinted
-from keymark.operators.shell.takes import active_take, add_take, take_called
+from keymark.operators.shell.takes import active_take, add_take, take_by_identifier
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -219,13 +219,14 @@ def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened
     add_take(opened, "Other")
     operator.finish(job, opened, found)
     assert all(
-        marker.has_readout(take_called(opened, first)) for marker in take_called(opened, first).markers
+        marker.has_readout(take_by_identifier(opened, first))
+        for marker in take_by_identifier(opened, first).markers
     )
     assert not len(active_take(opened).markers)
-    take_called(opened, first).markers[2].color = (0.2, 0.2, 0.9)
+    take_by_identifier(opened, first).markers[2].color = (0.2, 0.2, 0.9)
     with pytest.raises(InputError, match="changed while they were looked for"):
         operator.finish(job, opened, found)
-    assert not take_called(opened, first).markers[0].has_readout(take_called(opened, first))
+    assert not take_by_identifier(opened, first).markers[0].has_readout(take_by_identifier(opened, first))
 
 
 def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
