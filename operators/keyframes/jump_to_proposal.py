@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed
+from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
 from ..shell.messages import say
 from ..shell.takes import find_take
 
@@ -49,7 +49,7 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
         """Go there; where there is none, stay and say so."""
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
-        frames = unposed(take) if self.skip_posed else proposed_frames(take)
+        frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:
             say(self, "INFO", "All proposed keyframes are posed")
             return {"CANCELLED"}

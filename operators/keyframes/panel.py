@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed
+from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed_proposals
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress
 from ..shell.takes import active_take
@@ -41,7 +41,7 @@ def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """How many of the proposed keyframes are posed, and how many others; how many are matched."""
-    proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
+    proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     matched = len(matched_frames(take))
     if matched:
         text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)

@@ -3,7 +3,7 @@
 import bpy
 
 from ..matching.matches import state_of
-from ..shell.keyed_frames import keyframes_of, matched_frames, unposed
+from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
 
 FEWEST_KEYFRAMES = 2
 
@@ -23,7 +23,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if not len(take.proposals) and not keyframes_of(take):
         return "Next: match a library, or pose"
     if take.motion_action is None:
-        if unposed(take) and not matched_frames(take):
+        if unposed_proposals(take) and not matched_frames(take):
             return "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"

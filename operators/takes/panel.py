@@ -3,8 +3,8 @@
 import bpy
 
 from ..library import registry
+from ..shell.job_progress import job_is_running
 from ..shell.panel import SidebarPanel, draw_progress
-from ..shell.running_jobs import job_is_running
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer

@@ -15,7 +15,7 @@ from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture
 from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
 from keymark.operators.markers.marker_styles import marker_styles
-from keymark.operators.shell.keyed_frames import posed_frames, unposed
+from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -212,7 +212,7 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     for frame in (1, 4, 7, 10, 13):
         take.proposals.add().frame = frame
     assert posed_frames(take) == (1.0, 7.0, 13.0)
-    assert unposed(take) == [4, 10]
+    assert unposed_proposals(take) == [4, 10]
     opened.frame_set(4)
     bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
     assert opened.frame_current == 10
@@ -224,7 +224,7 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     take.keyframe_action.update_tag()
     bpy.context.view_layer.update()
     assert posed_frames(take) == (1.0, 4.0, 13.0)
-    assert unposed(take) == [7, 10]
+    assert unposed_proposals(take) == [7, 10]
 
 
 def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:

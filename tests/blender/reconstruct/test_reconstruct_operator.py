@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from keymark.core.take.take import Take
 from keymark.operators.shell import results
-from keymark.operators.shell.job_operator import time_left
+from keymark.operators.shell.job_progress import time_left
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
