@@ -3,18 +3,19 @@
 import bpy
 
 from ...core.body.actor import Actor
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, bones_editable, idle
+from ..shell.requirements import bones_editable, idle
 from ..shell.takes import ensure_take, find_take
 
 
-class KEYMARK_OT_build_actor(bpy.types.Operator):
+class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_idname = "keymark.build_actor"
     bl_label = "Build Actor"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (bones_editable, idle)
 
     stature: bpy.props.FloatProperty(
         name="Height",
@@ -32,11 +33,6 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         default=True,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Bones are made in a mode of their own."""
-        return all_met(cls, context, bones_editable, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Take the height from the panel."""
         take = find_take(context.scene)
@@ -44,31 +40,28 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
             self.stature = take.stature
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Build or change it, stand it in the footage, and say what was done."""
-        with reported(self):
-            from ...core.body.kinematics import Body
-            from ..bridge.pose import write_posture
-            from .take_actor import is_posed, performers_place, size_actor
+        from ...core.body.kinematics import Body
+        from ..bridge.pose import write_posture
+        from .take_actor import is_posed, performers_place, size_actor
 
-            body = Body(Actor.from_stature(self.stature))
-            take = ensure_take(context.scene)
-            had_one = size_actor(context, take, body)
-            take.stature = self.stature
-            if is_posed(take):
-                say(
-                    self,
-                    "INFO",
-                    "The actor is {height:.2f} m tall now; its keyframes are kept",
-                    height=self.stature,
-                )
-                return {"FINISHED"}
-            found = performers_place(context.scene, take, body) if self.place else None
-            if found is not None:
-                write_posture(take.armature, found[0])
-            self._tell(had_one, found is not None, found is not None and found[1])
+        body = Body(Actor.from_stature(self.stature))
+        take = ensure_take(context.scene)
+        had_one = size_actor(context, take, body)
+        take.stature = self.stature
+        if is_posed(take):
+            say(
+                self,
+                "INFO",
+                "The actor is {height:.2f} m tall now; its keyframes are kept",
+                height=self.stature,
+            )
             return {"FINISHED"}
-        return {"CANCELLED"}
+        found = performers_place(context.scene, take, body) if self.place else None
+        if found is not None:
+            write_posture(take.armature, found[0])
+        self._tell(had_one, found is not None, found is not None and found[1])
 
     def _tell(self, had_one: bool, placed: bool, by_markers: bool) -> None:
         if by_markers:

@@ -4,12 +4,12 @@ import bpy
 
 from ..markers.marker_styles import marker_styles
 from ..overlays.measuring import Clicks, show
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import all_met, bones_editable, camera, footage, idle
+from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
@@ -19,12 +19,13 @@ NOT_STANDING = (
 )
 
 
-class KEYMARK_OT_measure_actor(bpy.types.Operator):
+class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
     bl_idname = "keymark.measure_actor"
     bl_label = "Measure Actor"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, bones_editable, idle)
 
     stature: bpy.props.FloatProperty(
         name="Height",
@@ -52,11 +53,6 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         description="The performer holds both arms out sideways, so that their lengths can be told as well",
         default=False,
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage and the camera that took it."""
-        return all_met(cls, context, footage, camera, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for two clicks on the footage."""
@@ -109,33 +105,30 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Measure, give the actor what was measured, and stand it there unless it has keyframes."""
-        with reported(self):
-            from ..bridge.pose import write_posture
-            from ..bridge.posing import frame_in_footage, measured_in_frame
-            from .take_actor import is_posed, size_actor
+        from ..bridge.pose import write_posture
+        from ..bridge.posing import frame_in_footage, measured_in_frame
+        from .take_actor import is_posed, size_actor
 
-            take = active_take(context.scene)
-            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
-            measured = measured_in_frame(
-                frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+        take = active_take(context.scene)
+        frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+        measured = measured_in_frame(
+            frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+        )
+        size_actor(context, take, measured.body)
+        take.stature = self.stature
+        if not is_posed(take):
+            write_posture(take.armature, measured.posture)
+        if not measured.stands:
+            say(self, "WARNING", NOT_STANDING)
+        else:
+            say(
+                self,
+                "INFO",
+                "The performer stands {distance:.2f} m from the camera; what was not seen is average",
+                distance=measured.distance_m,
             )
-            size_actor(context, take, measured.body)
-            take.stature = self.stature
-            if not is_posed(take):
-                write_posture(take.armature, measured.posture)
-            if not measured.stands:
-                say(self, "WARNING", NOT_STANDING)
-            else:
-                say(
-                    self,
-                    "INFO",
-                    "The performer stands {distance:.2f} m from the camera; what was not seen is average",
-                    distance=measured.distance_m,
-                )
-            return {"FINISHED"}
-        return {"CANCELLED"}
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

@@ -2,12 +2,13 @@
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
 from ..shell.messages import say
 from ..shell.takes import find_take
 
 
-class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
+class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     """Go to the next or the previous proposed keyframe"""
 
     bl_idname = "keymark.jump_to_proposal"
@@ -45,7 +46,7 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
         cls.poll_message_set("Propose keyframes first")
         return False
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Go there; where there is none, stay and say so."""
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
@@ -67,7 +68,6 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
         else:
             say(self, "INFO", "There is no proposed keyframe before this frame")
             return {"CANCELLED"}
-        return {"FINISHED"}
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

@@ -10,7 +10,7 @@ from ..bridge.frame_times import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import all_colors, all_met, footage, idle, markers
+from ..shell.requirements import all_colors, footage, idle, markers
 from ..shell.results import keep_reading, reading_of
 from ..shell.takes import active_take, footage_of, take_by_identifier
 
@@ -36,11 +36,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.propose_keyframes"
     bl_label = "Propose Keyframes"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """The markers are followed through the footage."""
-        return all_met(cls, context, footage, markers, all_colors, idle)
+    requirements = (footage, markers, all_colors, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Find the frames; a clip that was read before for these markers is not read again."""

@@ -7,7 +7,7 @@ import bpy
 
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, footage, idle, markers, picked_color
+from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .marker_readouts import check_unchanged, look_at_markers, write_readouts
 from .marker_styles import picked_styles
@@ -35,11 +35,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.check_markers"
     bl_label = "Check Markers"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage, and a color to look for."""
-        return all_met(cls, context, footage, markers, picked_color, idle)
+    requirements = (footage, markers, picked_color, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Checked]":
         """Look at the frames."""

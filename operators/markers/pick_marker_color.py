@@ -12,7 +12,7 @@ from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import all_met, footage, idle
+from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .add_marker import append_marker, free_name, next_segment
 from .check_markers import show_frame
@@ -51,6 +51,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
 
     pixel: bpy.props.FloatVectorProperty(
         name="Pixel",
@@ -67,11 +68,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     _masks_before: bool | None = None
     """Whether masks were shown when the eyedropper was taken up; None in a script, which sees none."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage."""
-        return all_met(cls, context, footage, idle)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:

@@ -3,26 +3,23 @@
 import bpy
 
 from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import all_met, footage, idle, markers, picked_color
+from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take
 from .mask_previews import look_at_frame, preview_of
 
 
-class KEYMARK_OT_show_masks(bpy.types.Operator):
+class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
     """Draw over the footage what has the markers' colors, in the camera view and the Movie Clip editor"""
 
     bl_idname = "keymark.show_masks"
     bl_label = "Show Masks"
     bl_options = {"REGISTER"}
+    requirements = (footage, markers, picked_color, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage, and a color to look for."""
-        return all_met(cls, context, footage, markers, picked_color, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Switch over; colors that were not looked for in this session are looked for now."""
         manager = context.window_manager
         with reported(self):

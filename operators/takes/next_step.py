@@ -1,4 +1,4 @@
-"""What to do next with a take, from what costs nothing to look at."""
+"""The next step of the work on a take, from properties alone, so that it can be drawn."""
 
 import bpy
 
@@ -9,7 +9,7 @@ FEWEST_KEYFRAMES = 2
 
 
 def next_step(take: bpy.types.PropertyGroup) -> str:
-    """A few words that fit in a narrow sidebar, to be translated where they are drawn."""
+    """Return a label short enough for a narrow sidebar; it is translated where it is drawn."""
     if take.clip is None:
         return "Next: load the footage"
     if take.clip_state.missing:

@@ -1,4 +1,4 @@
-"""Keymark's part of a scene: its takes and keyframe libraries, and which of them are worked on."""
+"""Keymark's properties of a scene: its takes and keyframe libraries, and which are active."""
 
 import bpy
 
@@ -18,7 +18,7 @@ def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.C
 
 
 class KEYMARK_PG_settings(bpy.types.PropertyGroup):
-    """Keymark's part of a scene."""
+    """Keymark's properties of a scene."""
 
     version: bpy.props.IntProperty(
         name="Version", description="Version of Keymark's properties in this file", options={"HIDDEN"}
@@ -46,6 +46,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them away."""
+    """Remove them."""
     del bpy.types.Scene.keymark
     bpy.utils.unregister_class(KEYMARK_PG_settings)

@@ -2,18 +2,19 @@
 
 import bpy
 
-from ..shell.error_reports import reported
-from ..shell.requirements import actor, all_met, idle
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 from .properties import show_chosen_reference
 
 
-class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
+class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
     """Add cameras that see the actor from the front, from a side and all around; again, it replaces them"""
 
     bl_idname = "keymark.set_up_turntable"
     bl_label = "Set Up Turntable"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
 
     side: bpy.props.EnumProperty(
         name="Side",
@@ -39,35 +40,27 @@ class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
         soft_max=200.0,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be someone to look at."""
-        return all_met(cls, context, actor, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Look where the actor moves, and only then change the scene."""
-        with reported(self):
-            from ..bridge.turntable import add_turntable, remove_turntable, survey
+        from ..bridge.turntable import add_turntable, remove_turntable, survey
 
-            scene, take = context.scene, active_take(context.scene)
-            stage = survey(scene, take.armature, take.camera, self.follow)
-            if take.turntable.collection is not None:
-                remove_turntable(scene, take.turntable.collection)
-            made = add_turntable(
-                scene,
-                take.armature,
-                stage,
-                f"{take.name} Turntable",
-                side=self.side,
-                follow=self.follow,
-                lens_mm=self.lens,
-            )
-            views = take.turntable
-            views.collection = made.collection
-            views.front, views.side, views.turning = made.front, made.side, made.turning
-            show_chosen_reference(views)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        scene, take = context.scene, active_take(context.scene)
+        stage = survey(scene, take.armature, take.camera, self.follow)
+        if take.turntable.collection is not None:
+            remove_turntable(scene, take.turntable.collection)
+        made = add_turntable(
+            scene,
+            take.armature,
+            stage,
+            f"{take.name} Turntable",
+            side=self.side,
+            follow=self.follow,
+            lens_mm=self.lens,
+        )
+        views = take.turntable
+        views.collection = made.collection
+        views.front, views.side, views.turning = made.front, made.side, made.turning
+        show_chosen_reference(views)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_set_up_turntable,))

@@ -4,17 +4,18 @@ import bpy
 
 from ...core.errors import InputError
 from ..footage.camera_view import look_through, viewports
-from ..shell.error_reports import reported
-from ..shell.requirements import all_met, footage
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import footage
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_show_view(bpy.types.Operator):
+class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
     """Look through the footage's camera or another one, in this viewport alone: split it to compare two"""
 
     bl_idname = "keymark.show_view"
     bl_label = "Show View"
     bl_options = {"REGISTER"}
+    requirements = (footage,)
 
     view: bpy.props.EnumProperty(
         name="View",
@@ -32,27 +33,19 @@ class KEYMARK_OT_show_view(bpy.types.Operator):
         """The tooltip of the view a button stands for."""
         return cls.bl_rna.properties["view"].enum_items[properties.view].description
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A take with footage is there."""
-        return all_met(cls, context, footage)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Turn the viewport that asks, or from elsewhere all of them."""
-        with reported(self):
-            take = active_take(context.scene)
-            camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
-            if camera is None or camera.name not in context.view_layer.objects:
-                raise InputError(
-                    f"take '{take.name}' has no camera for the view {self.view.title()}; "
-                    "set up the turntable, or choose the footage's camera"
-                )
-            own = context.space_data
-            asked = isinstance(own, bpy.types.SpaceView3D)
-            for space in [own] if asked else list(viewports(context.window_manager)):
-                look_through(space, context.scene, camera)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
+        if camera is None or camera.name not in context.view_layer.objects:
+            raise InputError(
+                f"take '{take.name}' has no camera for the view {self.view.title()}; "
+                "set up the turntable, or choose the footage's camera"
+            )
+        own = context.space_data
+        asked = isinstance(own, bpy.types.SpaceView3D)
+        for space in [own] if asked else list(viewports(context.window_manager)):
+            look_through(space, context.scene, camera)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_view,))

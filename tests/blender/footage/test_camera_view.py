@@ -7,7 +7,7 @@ import bpy
 import pytest
 from keymark.core.take.take import Take
 from keymark.operators.footage.camera_view import camera_view, free_box, picture_at_factor_one
-from keymark.operators.footage.occluding_objects import names_in_the_way
+from keymark.operators.footage.occluding_objects import occluding_objects
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -59,7 +59,7 @@ def test_what_hides_the_performer_is_named_and_left_alone(tiny_take: Take) -> No
 
     def hiding() -> list[str]:
         context.view_layer.update()
-        return names_in_the_way(context, take)
+        return occluding_objects(context, take)
 
     assert hiding() == ["Cube"]
     assert cube.visible_get()

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.takes import ensure_take
 from .properties import SEGMENTS
@@ -10,14 +11,14 @@ USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The five that serve best, in the order in which they are offered."""
 
 
-class KEYMARK_OT_add_marker(bpy.types.Operator):
+class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
     """Add a marker on the next body part that usually wears one"""
 
     bl_idname = "keymark.add_marker"
     bl_label = "Add Marker"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Add it and make it the active one."""
         take = ensure_take(context.scene)
         segment = next_segment(take)
@@ -25,17 +26,16 @@ class KEYMARK_OT_add_marker(bpy.types.Operator):
             say(self, "ERROR", "Every body part has a marker already")
             return {"CANCELLED"}
         append_marker(take, segment)
-        return {"FINISHED"}
 
 
-class KEYMARK_OT_add_usual_markers(bpy.types.Operator):
+class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
     """Add the five markers that serve best: trunk, both forearms and both shins"""
 
     bl_idname = "keymark.add_usual_markers"
     bl_label = "Add Usual Five"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Add those that are missing; the first of them becomes the active one."""
         take = ensure_take(context.scene)
         taken = {marker.segment for marker in take.markers}
