@@ -25,9 +25,7 @@ def occluding_objects(context: bpy.types.Context, take: bpy.types.PropertyGroup)
     ]
 
 
-def _in_picture(
-    scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object
-) -> bool:
+def _in_picture(scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object) -> bool:
     """Whether the corners of an object's bounding box in front of the camera span part of the picture."""
     corners = [
         world_to_camera_view(scene, camera, blender_object.matrix_world @ Vector(corner))

@@ -8,7 +8,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
-from .take_footage import give_footage, look_through_camera, take_name, show_range
+from .take_footage import give_footage, look_through_camera, show_range, take_name
 
 
 def any_clip(_context: bpy.types.Context) -> str | None:

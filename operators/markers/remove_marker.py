@@ -17,7 +17,7 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
     requirements = (markers,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the one before becomes active."""
+        """Remove the marker; the one before it becomes active."""
         take = active_take(context.scene)
         index = min(take.active_marker, len(take.markers) - 1)
         if take.markers[index].is_picked:

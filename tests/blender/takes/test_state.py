@@ -8,7 +8,7 @@ import pytest
 from keymark.core.take.take import Take
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.shell.takes import VERSION, active_take, add_take
-from keymark.operators.takes.upgrade import is_newer, ensure_unique_identifiers
+from keymark.operators.takes.upgrade import ensure_unique_identifiers, is_newer
 
 RIG = "tiny Actor"
 
