@@ -1,4 +1,4 @@
-"""Give the actor the lengths of the panel."""
+"""Give the actor the lengths in the panel."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .properties import length_names, length_property
 
 
 class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
-    """Give the actor's bones these lengths; its pose, its keyframes and the place of its hips stay"""
+    """Give the actor's bones these lengths; its pose, its keyframes and the position of its hips stay"""
 
     bl_idname = "keymark.apply_lengths"
     bl_label = "Apply Lengths"
@@ -19,7 +19,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
     requirements = (actor, bones_editable, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Change the bones."""
+        """Resize the bones."""
         from ...core.body.kinematics import Body
         from ..bridge.resize import set_lengths
 

@@ -1,4 +1,4 @@
-"""Assisted posing: fit the actor's pose to the markers of the current frame."""
+"""Fit the actor's pose to the markers of the current frame."""
 
 import bpy
 import numpy as np
@@ -40,14 +40,14 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Fit it, and let the animator turn bones at once."""
+        """Fit the pose, and enter Pose Mode, so that the animator can correct it."""
         finished = self.execute(context)
         if finished == {"FINISHED"}:
             _to_pose_mode(context, active_take(context.scene).armature)
         return finished
 
     def run(self, context: bpy.types.Context) -> None:
-        """Fit it, show it, and say how well it explains the markers."""
+        """Fit the pose, set it, and report its distance from the markers."""
         from ..bridge.pose import write_posture
         from ..bridge.posing import fit_to_frame, frame_in_footage
 
@@ -83,7 +83,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
 
 
 def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
-    """Make the actor the active object, in Pose Mode, where it can be seen and nothing else is being done."""
+    """Make the actor active, in Pose Mode, if it is visible and no other object is being edited."""
     layer = context.view_layer
     active = layer.objects.active
     if armature_object.mode == "POSE" or (active is not None and active.mode != "OBJECT"):

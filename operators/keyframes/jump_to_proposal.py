@@ -8,16 +8,22 @@ from ..shell.messages import say
 from ..shell.takes import find_take
 
 
+def proposals(context: bpy.types.Context) -> str | None:
+    """The take has proposed keyframes."""
+    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
+
+
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     """Go to the next or the previous proposed keyframe"""
 
     bl_idname = "keymark.jump_to_proposal"
     bl_label = "Jump to Proposed Keyframe"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (proposals,)
 
     direction: bpy.props.EnumProperty(
         name="Direction",
-        description="Which way to go from the current frame",
+        description="Direction from the current frame",
         items=[
             ("NEXT", "Next", "Go to the next proposed keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
@@ -25,29 +31,21 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     )
     skip_posed: bpy.props.BoolProperty(
         name="Skip Posed",
-        description="Go to a proposed keyframe that is not posed yet; from the last one on to the first",
+        description="Skip proposed keyframes that are posed; after the last one comes the first",
         default=False,
     )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip says which way."""
+        """Return the tooltip for the direction."""
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
         if properties.direction == "NEXT":
             return "Go to the next proposed keyframe"
         return "Go to the previous proposed keyframe"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be proposals."""
-        if proposed_frames(find_take(context.scene)):
-            return True
-        cls.poll_message_set("Propose keyframes first")
-        return False
-
-    def run(self, context: bpy.types.Context) -> None:
-        """Go there; where there is none, stay and say so."""
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Go to the frame; if there is none, stay and report it."""
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
@@ -56,7 +54,7 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         ahead = [frame for frame in frames if frame > scene.frame_current]
         behind = [frame for frame in frames if frame < scene.frame_current]
-        if self.skip_posed:  # around the ends
+        if self.skip_posed:  # wraps around the ends
             ahead, behind = ahead or frames, behind or frames
         if self.direction == "NEXT" and ahead:
             scene.frame_set(ahead[0])
@@ -68,6 +66,7 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         else:
             say(self, "INFO", "There is no proposed keyframe before this frame")
             return {"CANCELLED"}
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

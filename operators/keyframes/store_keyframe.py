@@ -14,7 +14,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
-    """Key the actor's whole pose at the current frame in the keyframe Action, which is then the one shown"""
+    """Key the actor's whole pose at the current frame in the keyframe Action, and show that Action"""
 
     bl_idname = "keymark.store_keyframe"
     bl_label = "Store Keyframe"
@@ -22,7 +22,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     requirements = (actor, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Key it; where the pose goes beyond the skeleton, say by how much."""
+        """Key the pose; report how far it goes beyond the skeleton, if it does."""
         from ..bridge.actor_lengths import read_body
         from ..bridge.keyframes import NOTICEABLE_M, store_pose
         from ..bridge.pose import read_posture
@@ -30,7 +30,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         scene = context.scene
         take = active_take(scene)
         armature_object = take.armature
-        reading = read_posture(armature_object, read_body(armature_object, HUMAN))
+        read = read_posture(armature_object, read_body(armature_object, HUMAN))
         if take.keyframe_action is None:
             take.keyframe_action = new_keyframe_action(armature_object)
         frame = scene.frame_current_final
@@ -39,14 +39,14 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         store_pose(armature_object, take.keyframe_action, HUMAN, frame)
         assign_action(armature_object, take.keyframe_action)
         invalidate_keyed_frames()
-        if reading.furthest_m > NOTICEABLE_M:
+        if read.furthest_m > NOTICEABLE_M:
             say(
                 self,
                 "WARNING",
                 "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
                 "can do, and its nearest posture will be used",
                 frame=frame,
-                beyond=1000.0 * reading.furthest_m,
+                beyond=1000.0 * read.furthest_m,
             )
         elif was_matched:
             say(

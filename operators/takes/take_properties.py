@@ -30,7 +30,7 @@ def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) ->
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Show the lengths of the chosen armature in the panel."""
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
-        from ..actor.new_actor import show_lengths
+        from ..actor.take_actor import show_lengths
         from ..bridge.actor_lengths import read_body
 
         show_lengths(take, read_body(take.armature, HUMAN))

@@ -7,7 +7,7 @@ import bpy
 
 from ...core.arrays import Array
 from ...core.take.take import Take, check_frame_count, open_clip, rate_note, read_take
-from ..actor.new_actor import add_actor
+from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage

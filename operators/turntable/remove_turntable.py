@@ -1,4 +1,4 @@
-"""Remove the views of the actor from other sides."""
+"""Remove the turntable."""
 
 import bpy
 
@@ -17,7 +17,7 @@ class KEYMARK_OT_remove_turntable(BaseOperator, bpy.types.Operator):
     requirements = (turntable, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove them; viewports that looked through one show the footage again."""
+        """Remove the views; viewports that looked through one of them show the footage again."""
         from ..bridge.turntable import remove_turntable
 
         scene, take = context.scene, active_take(context.scene)

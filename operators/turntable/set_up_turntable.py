@@ -1,4 +1,4 @@
-"""Set up views of the actor from other sides than the footage's."""
+"""Set up the turntable."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from .properties import show_chosen_reference
 
 
 class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
-    """Add cameras that see the actor from the front, from a side and all around; again, it replaces them"""
+    """Add cameras that see the actor from the front, from a side and all around, or replace them"""
 
     bl_idname = "keymark.set_up_turntable"
     bl_label = "Set Up Turntable"
@@ -26,13 +26,13 @@ class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
     )
     follow: bpy.props.BoolProperty(
         name="Follow",
-        description="Follow the actor's hips over the floor; otherwise the cameras stand, as one that filmed "
-        "a reference clip did",
+        description="Follow the actor's hips over the floor; otherwise the cameras stand still, like one that "
+        "films a reference clip",
         default=True,
     )
     lens: bpy.props.FloatProperty(
         name="Focal Length",
-        description="Of the cameras, with a sensor 36 mm wide",
+        description="Focal length of the cameras, with a sensor 36 mm wide",
         subtype="DISTANCE_CAMERA",
         default=50.0,
         min=1.0,
@@ -41,7 +41,7 @@ class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Look where the actor moves, and only then change the scene."""
+        """Survey where the actor moves, and only then change the scene."""
         from ..bridge.turntable import add_turntable, remove_turntable, survey
 
         scene, take = context.scene, active_take(context.scene)

@@ -1,4 +1,4 @@
-"""Look at the actor as the footage does, or from another side."""
+"""Look through the footage's camera or one of the turntable's."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
-    """Look through the footage's camera or another one, in this viewport alone: split it to compare two"""
+    """Look through the footage's camera or another one in this viewport; split it to compare two views"""
 
     bl_idname = "keymark.show_view"
     bl_label = "Show View"
@@ -19,7 +19,7 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
 
     view: bpy.props.EnumProperty(
         name="View",
-        description="Where to look from",
+        description="The camera to look through",
         items=(
             ("FOOTAGE", "Footage", "Look through the camera that took the footage"),
             ("FRONT", "Front", "Look at the actor's face"),
@@ -30,11 +30,11 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip of the view a button stands for."""
+        """Return the tooltip of the button's view."""
         return cls.bl_rna.properties["view"].enum_items[properties.view].description
 
     def run(self, context: bpy.types.Context) -> None:
-        """Turn the viewport that asks, or from elsewhere all of them."""
+        """Set the context's viewport, or all of them if the context is another editor."""
         take = active_take(context.scene)
         camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
         if camera is None or camera.name not in context.view_layer.objects:
@@ -43,8 +43,8 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
                 "set up the turntable, or choose the footage's camera"
             )
         own = context.space_data
-        asked = isinstance(own, bpy.types.SpaceView3D)
-        for space in [own] if asked else list(viewports(context.window_manager)):
+        in_viewport = isinstance(own, bpy.types.SpaceView3D)
+        for space in [own] if in_viewport else list(viewports(context.window_manager)):
             look_through(space, context.scene, camera)
 
 
