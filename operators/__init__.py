@@ -1,7 +1,7 @@
 """Keymark in Blender's user interface and on its command line: one folder for each step of the work.
 
-A folder has one operator a file, named after it, its properties, and its panels in `panel.py`. It lists the modules
-to register in its `__init__`: `PROPERTIES` and `MODULES`. Modules that need SciPy or OpenCV are imported inside
+A folder has one operator a file, named after it, its properties, and its panels in `panel.py`. Its `__init__`
+lists the modules to register: `PROPERTIES` and `MODULES`. Modules that need SciPy or OpenCV are imported in
 functions, so that registering does not wait for them and works without them.
 
 Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
@@ -28,7 +28,7 @@ STEPS = (
 
 
 def modules() -> Iterator[str]:
-    """Yield the modules to register, in order: all properties, then the operators and panels that use them."""
+    """Yield the modules to register in order: all properties, then the operators and panels that use them."""
     for folder in ("shell", *STEPS, "takes"):  # a take's properties contain those of the steps
         yield from (f"{folder}.{name}" for name in _listed(folder, "PROPERTIES"))
     for folder in ("shell", "takes", *STEPS, "cli"):  # the main panel comes before the panels inside it

@@ -10,7 +10,7 @@ from ..shell.messages import say
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
 from .load_footage import PATTERNS
-from .take_footage import note_clip
+from .take_footage import update_clip_state
 
 
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
@@ -55,7 +55,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         for scene in bpy.data.scenes:
             for other in scene.keymark.takes:
                 if other.clip == clip and scene.library is None:
-                    note_clip(other)
+                    update_clip_state(other)
         if all(size) and (found.size != size or clip.frame_duration != count):
             say(
                 self,

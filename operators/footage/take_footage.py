@@ -35,7 +35,7 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
     if clip is not None and not shows_behind(take.camera, clip):
         give_footage(take, clip)  # sets the clip, and so calls this again
         return
-    note_clip(take)
+    update_clip_state(take)
     if clip is not None and before and take.clip_state.contents != before:
         take.reading_key = take.review_key = ""
         take.proposals.clear()
@@ -54,20 +54,20 @@ def camera_chosen(take: bpy.types.PropertyGroup) -> None:
         scene.camera = camera
 
 
-def note_clip(take: bpy.types.PropertyGroup) -> None:
+def update_clip_state(take: bpy.types.PropertyGroup) -> None:
     """Check a take's clip, and store the state that panels show."""
     state = take.clip_state
     state.missing = is_missing(take.clip)
     state.variable_rate = False
     if take.clip is None or state.missing:
         return
-    note_contents(take)
+    update_clip_digest(take)
     state.rate = footage_of(take.id_data, take).rate
     if take.clip.source == "MOVIE":
         state.variable_rate = _has_variable_rate(take)
 
 
-def note_contents(take: bpy.types.PropertyGroup) -> None:
+def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
     """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
     try:
         from ...core.footage.reading_key import footage_digest

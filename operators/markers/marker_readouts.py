@@ -7,7 +7,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import within
 from ..bridge.footage import Footage
-from ..footage.take_footage import note_contents
+from ..footage.take_footage import update_clip_digest
 from .mask_previews import keep_preview
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def write_readouts(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> list[str]:
     """Store a check with the markers, and its colors for previews; return all warnings."""
-    note_contents(take)
+    update_clip_digest(take)
     readouts = {readout.name: readout for readout in check.readouts}
     for marker in take.markers:
         readout = readouts.get(marker.name)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..shell.takes import unique_name
 from .properties import SEGMENTS
 
 USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
@@ -16,9 +17,7 @@ def next_segment(take: bpy.types.PropertyGroup) -> str | None:
 
 def free_name(take: bpy.types.PropertyGroup, segment: str) -> str:
     """Return a unique name for a marker: the segment's, with a number if another marker has it."""
-    names = {marker.name for marker in take.markers}
-    numbered = (f"{segment}.{number:03d}" for number in range(1, len(names) + 1))
-    return segment if segment not in names else next(name for name in numbered if name not in names)
+    return unique_name(segment, (marker.name for marker in take.markers))
 
 
 def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.PropertyGroup:

@@ -48,7 +48,7 @@ class JobOperator(BaseOperator):
         """Show a preview of the job's result; by default there is none."""
 
     def unwatch(self) -> None:
-        """Take the preview away: everything is as before `watch`."""
+        """Remove the preview: everything is as before `watch`."""
 
     def run(self, context: bpy.types.Context) -> None:
         """Run the whole job at once."""

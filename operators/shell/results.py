@@ -1,4 +1,4 @@
-"""Cache of what was computed of a take: its reading, its review and its last reconstruction.
+"""Cache of a take's results: its reading, its review and its last reconstruction.
 
 A take holds the keys of its reading and its review. A key is a digest of what the result was computed from;
 undo sets it back. A result is looked up in memory, then in the user's folder of the extension; one that is in
@@ -105,7 +105,9 @@ def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Res
 
     def stored() -> Result | None:
         arrays = _store().load(key)
-        with suppress(KeyError, ValueError, TypeError, IndexError):  # of another version, or somebody else's
+        with suppress(
+            KeyError, ValueError, TypeError, IndexError
+        ):  # of another version, or another program's
             return None if arrays is None else from_arrays(arrays)
         return None
 

@@ -16,7 +16,7 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
     requirements = (footage, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add a take with the same clip and camera: lens and sampled frames hold for both performers."""
+        """Add a take that shares clip, camera and guessed lens with the active one."""
         scene = context.scene
         source = active_take(scene)
         clip, camera, guessed = source.clip, source.camera, source.guessed_lens_mm

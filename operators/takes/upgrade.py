@@ -7,7 +7,7 @@ from uuid import uuid4
 import bpy
 from bpy.app.handlers import persistent
 
-from ..footage.take_footage import is_missing, note_contents
+from ..footage.take_footage import is_missing, update_clip_digest
 from ..shell.takes import VERSION, add_take
 
 VALUES = ("stature", "keyframe_count", "active_marker", "armature", "keyframe_action", "motion_action")
@@ -29,7 +29,7 @@ def upgrade_scene(scene: bpy.types.Scene) -> None:
     for take in settings.takes:
         take.clip_state.missing = is_missing(take.clip)
         if take.clip is not None:
-            note_contents(take)
+            update_clip_digest(take)
     if len(settings.takes):
         settings.version = VERSION
 

@@ -26,8 +26,8 @@ class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
     )
     follow: bpy.props.BoolProperty(
         name="Follow",
-        description="Follow the actor's hips over the floor; otherwise the cameras stand still, like one that "
-        "films a reference clip",
+        description="Follow the actor's hips over the floor; otherwise the cameras stand still, like "
+        "one that films a reference clip",
         default=True,
     )
     lens: bpy.props.FloatProperty(
