@@ -11,7 +11,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take.take import Take
-from keymark.operators.footage.take_footage import note_clip
+from keymark.operators.footage.take_footage import update_clip_state
 from keymark.operators.markers.check_markers import KEYMARK_OT_check_markers
 from keymark.operators.markers.mask_previews import clear_previews, is_of_frame, preview_of, update_masks
 from keymark.operators.overlays.mask import free_height, tinted
@@ -250,7 +250,7 @@ def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.S
     for _ in range(13):
         writer.write(np.full((120, 160, 3), 90, np.uint8))
     writer.release()
-    note_clip(take)
+    update_clip_state(take)
     assert not take.markers[0].has_readout(take) and preview_of(take) is None
     bpy.ops.keymark.check_markers()
     assert take.markers[0].has_readout(take) and take.markers[0].found == 0
