@@ -105,9 +105,7 @@ def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Res
 
     def stored() -> Result | None:
         arrays = _store().load(key)
-        with suppress(
-            KeyError, ValueError, TypeError, IndexError
-        ):  # of another version or program
+        with suppress(KeyError, ValueError, TypeError, IndexError):  # of another version or program
             return None if arrays is None else from_arrays(arrays)
         return None
 

@@ -1,4 +1,4 @@
-"""Results found by the key that a take holds: in memory, in a folder, or known to be absent."""
+"""The cache of results: by the key that a take holds, in memory, in a folder, or known to be absent."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -33,7 +33,7 @@ def loads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
 @pytest.fixture
 def reading(tiny_take: Take) -> Reading:
-    """What is read of the tiny take."""
+    """The reading of the tiny take."""
     return run(read_footage(tiny_take))
 
 
