@@ -41,9 +41,7 @@ def test_everything_is_there_and_gone_again_twice() -> None:
 
 
 @pytest.mark.parametrize("index", [1, 7, len(list(operators.modules()))])
-def test_a_module_that_fails_takes_back_those_before_it(
-    monkeypatch: pytest.MonkeyPatch, position: int
-) -> None:
+def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
     """The error comes through, and Blender is as before."""
     broken = ModuleType("keymark.operators.broken")
 
