@@ -1,4 +1,8 @@
-"""Keymark in Blender's user interface and on its command line: a folder a step of the work.
+"""Keymark in Blender's user interface and on its command line: one folder for each step of the work.
+
+A folder has one operator a file, named after it, its properties, and its panels in `panel.py`. Its `__init__`
+lists the modules to register: `PROPERTIES` and `MODULES`. Modules that need SciPy or OpenCV are imported in
+functions, so that registering does not wait for them and works without them.
 
 Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
 """
@@ -24,18 +28,15 @@ STEPS = (
 
 
 def modules() -> Iterator[str]:
-    """The modules to register, in this order: all properties, then the operators and panels that use them.
-
-    A topic names its own in its `__init__`: `PROPERTIES` and `MODULES`.
-    """
-    for topic in ("shell", *STEPS, "takes"):  # a take's properties hold those of the steps
-        yield from (f"{topic}.{name}" for name in _listed(topic, "PROPERTIES"))
-    for topic in ("shell", "takes", *STEPS, "cli"):  # the main panel comes before the panels inside it
-        yield from (f"{topic}.{name}" for name in _listed(topic, "MODULES"))
+    """Yield the modules to register in order: all properties, then the operators and panels that use them."""
+    for folder in ("shell", *STEPS, "takes"):  # a take's properties contain those of the steps
+        yield from (f"{folder}.{name}" for name in _listed(folder, "PROPERTIES"))
+    for folder in ("shell", "takes", *STEPS, "cli"):  # the main panel comes before the panels inside it
+        yield from (f"{folder}.{name}" for name in _listed(folder, "MODULES"))
 
 
 def register() -> None:
-    """Register every module in order; if one fails, take back those before it and raise."""
+    """Register every module in order; if one fails, unregister those before it and raise."""
     done: list[ModuleType] = []
     try:
         for name in modules():
@@ -54,5 +55,5 @@ def unregister() -> None:
         import_module(f".{name}", __package__).unregister()
 
 
-def _listed(topic: str, names: str) -> tuple[str, ...]:
-    return getattr(import_module(f".{topic}", __package__), names, ())
+def _listed(folder: str, names: str) -> tuple[str, ...]:
+    return getattr(import_module(f".{folder}", __package__), names, ())

@@ -1,4 +1,4 @@
-"""What a .blend holds, as plain values by name: equal where a person would see no difference."""
+"""The state of a .blend as plain values by name, rounded to what a person can tell apart."""
 
 import hashlib
 from typing import Any
@@ -34,7 +34,7 @@ def scene_state() -> State:
 
 
 def differences(before: State, after: State) -> str:
-    """What differs between two states, one clause each; empty where nothing does."""
+    """The differences between two states, one clause each; empty if there are none."""
     names = sorted(before.keys() | after.keys())
     differing = [name for name in names if before.get(name) != after.get(name)]
     return "; ".join(f"{name}: {before.get(name)} became {after.get(name)}" for name in differing)[:1000]
@@ -63,7 +63,7 @@ def _add_object(state: State, blender_object: bpy.types.Object) -> None:
     name = f"object {blender_object.name}"
     data = blender_object.animation_data
     state[name] = (blender_object.type, _name(blender_object.data), _name(blender_object.parent))
-    state[f"{name} place"] = _rounded(np.array(blender_object.matrix_world).ravel())
+    state[f"{name} matrix"] = _rounded(np.array(blender_object.matrix_world).ravel())
     state[f"{name} action"] = _name(data.action) if data else None
     if blender_object.type == "CAMERA":
         lens = blender_object.data
@@ -88,7 +88,7 @@ def _add_action(state: State, action: bpy.types.Action) -> None:
 
 
 def _curve(curve: bpy.types.FCurve) -> tuple[int, str]:
-    """Number of keys, and a digest of where they are and of what kind."""
+    """Number of keys, and a digest of their positions and types."""
     keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
     kinds = np.empty(len(curve.keyframe_points), dtype=np.int32)
     curve.keyframe_points.foreach_get("co", keys)

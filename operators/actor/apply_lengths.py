@@ -1,40 +1,33 @@
-"""Give the actor the lengths of the panel."""
+"""Give the actor the lengths in the panel."""
 
 import bpy
 
 from ...core.body.actor import Actor
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, bones_editable, idle
+from ..shell.requirements import actor, bones_editable, idle
 from ..shell.takes import active_take
 from .properties import length_names, length_property
 
 
-class KEYMARK_OT_apply_lengths(bpy.types.Operator):
-    """Give the actor's bones these lengths; its pose, its keyframes and the place of its hips stay"""
+class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
+    """Give the actor's bones these lengths; its pose, its keyframes and the position of its hips stay"""
 
     bl_idname = "keymark.apply_lengths"
     bl_label = "Apply Lengths"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, bones_editable, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor whose bones can be changed."""
-        return all_met(cls, context, actor, bones_editable, idle)
+    def run(self, context: bpy.types.Context) -> None:
+        """Resize the bones."""
+        from ...core.body.kinematics import Body
+        from ..bridge.resize import set_lengths
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Change the bones."""
-        with reported(self):
-            from ...core.body.kinematics import Body
-            from ..bridge.resize import set_lengths
-
-            take = active_take(context.scene)
-            lengths = {name: getattr(take.lengths, length_property(name)) for name in length_names()}
-            body = Body(Actor(lengths))
-            set_lengths(take.armature, body)
-            say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        lengths = {name: getattr(take.lengths, length_property(name)) for name in length_names()}
+        body = Body(Actor(lengths))
+        set_lengths(take.armature, body)
+        say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_apply_lengths,))

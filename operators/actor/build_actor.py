@@ -3,18 +3,19 @@
 import bpy
 
 from ...core.body.actor import Actor
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, bones_editable, idle
+from ..shell.requirements import bones_editable, idle
 from ..shell.takes import ensure_take, find_take
 
 
-class KEYMARK_OT_build_actor(bpy.types.Operator):
+class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_idname = "keymark.build_actor"
     bl_label = "Build Actor"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (bones_editable, idle)
 
     stature: bpy.props.FloatProperty(
         name="Height",
@@ -32,54 +33,46 @@ class KEYMARK_OT_build_actor(bpy.types.Operator):
         default=True,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Bones are made in a mode of their own."""
-        return all_met(cls, context, bones_editable, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the height from the panel."""
+        """Use the height in the panel."""
         take = find_take(context.scene)
         if take is not None:
             self.stature = take.stature
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Build or change it, stand it in the footage, and say what was done."""
-        with reported(self):
-            from ...core.body.kinematics import Body
-            from ..bridge.pose import write_posture
-            from .place_actor import is_posed, performers_place, size_actor
+    def run(self, context: bpy.types.Context) -> None:
+        """Build or resize the actor, stand it in the footage, and report which."""
+        from ...core.body.kinematics import Body
+        from ..bridge.pose import write_posture
+        from .take_actor import has_keyframes, performers_stance, size_actor
 
-            body = Body(Actor.from_stature(self.stature))
-            take = ensure_take(context.scene)
-            had_one = size_actor(context, take, body)
-            take.stature = self.stature
-            if is_posed(take):
-                say(
-                    self,
-                    "INFO",
-                    "The actor is {height:.2f} m tall now; its keyframes are kept",
-                    height=self.stature,
-                )
-                return {"FINISHED"}
-            found = performers_place(context.scene, take, body) if self.place else None
-            if found is not None:
-                write_posture(take.armature, found[0])
-            self._tell(had_one, found is not None, found is not None and found[1])
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        body = Body(Actor.from_stature(self.stature))
+        take = ensure_take(context.scene)
+        had_actor = size_actor(context, take, body)
+        take.stature = self.stature
+        if has_keyframes(take):
+            say(
+                self,
+                "INFO",
+                "The actor is {height:.2f} m tall now; its keyframes are kept",
+                height=self.stature,
+            )
+            return
+        stance = performers_stance(context.scene, take, body) if self.place else None
+        if stance is not None:
+            write_posture(take.armature, stance[0])
+        self._report_stance(had_actor, stance is not None, stance is not None and stance[1])
 
-    def _tell(self, had_one: bool, placed: bool, by_markers: bool) -> None:
+    def _report_stance(self, had_actor: bool, stands: bool, by_markers: bool) -> None:
         if by_markers:
             say(self, "INFO", "The actor stands where the markers are in this frame")
-        elif placed:
+        elif stands:
             say(
                 self,
                 "INFO",
                 "The actor stands in the middle of the picture; with markers it would stand at the performer",
             )
-        elif had_one:
+        elif had_actor:
             say(self, "INFO", "The actor is {height:.2f} m tall now", height=self.stature)
         else:
             say(self, "INFO", "The actor stands at the world's origin")

@@ -1,30 +1,32 @@
-"""Measure the performer in a frame in which they stand."""
+"""Measure the performer in a frame in which they stand upright."""
 
 import bpy
 
 from ..markers.marker_styles import marker_styles
 from ..overlays.measuring import Clicks, show
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
+from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import all_met, bones_editable, camera, footage, idle
+from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
 NOT_STANDING = (
-    "The markers are not where those of someone who stands upright would be; the lengths are little better "
-    "than average ones. Go to a frame in which the performer stands, and check the height"
+    "The markers do not fit a performer who stands upright, so the lengths are little better than average; "
+    "go to a frame in which the performer stands, and check the height"
 )
 
 
-class KEYMARK_OT_measure_actor(bpy.types.Operator):
+class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
     bl_idname = "keymark.measure_actor"
     bl_label = "Measure Actor"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, bones_editable, idle)
 
     stature: bpy.props.FloatProperty(
         name="Height",
@@ -49,14 +51,9 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
     )
     arms_stretched: bpy.props.BoolProperty(
         name="Arms Stretched Sideways",
-        description="The performer holds both arms out sideways, so that their lengths can be told as well",
+        description="The performer holds both arms out sideways, so that their lengths are measured as well",
         default=False,
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage and the camera that took it."""
-        return all_met(cls, context, footage, camera, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for two clicks on the footage."""
@@ -72,9 +69,8 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the clicks, or stop; the view can be moved and zoomed meanwhile."""
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self.cancel(context)
+        """Take the clicks, or cancel; the view can be moved and zoomed meanwhile."""
+        if cancel_click(self, context, event):
             return {"CANCELLED"}
         if event.type == "MOUSEMOVE":
             self._clicks.mouse = event.mouse_x, event.mouse_y
@@ -102,40 +98,37 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         redraw_footage(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Give the cursor back; Blender calls this as well."""
+        """Restore the cursor and the status bar; Blender calls this as well."""
         show(None)
-        if context.window is not None:  # else Blender is closing it, or opens another file
+        if context.window is not None:  # None while Blender closes it or opens another file
             redraw_footage(context)
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Measure, give the actor what was measured, and stand it there unless it has keyframes."""
-        with reported(self):
-            from ..bridge.pose import write_posture
-            from ..bridge.posing import frame_in_footage, measured_in_frame
-            from .place_actor import is_posed, size_actor
+    def run(self, context: bpy.types.Context) -> None:
+        """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
+        from ..bridge.pose import write_posture
+        from ..bridge.posing import frame_in_footage, measured_in_frame
+        from .take_actor import has_keyframes, size_actor
 
-            take = active_take(context.scene)
-            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
-            measured = measured_in_frame(
-                frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+        take = active_take(context.scene)
+        frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+        measured = measured_in_frame(
+            frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+        )
+        size_actor(context, take, measured.body)
+        take.stature = self.stature
+        if not has_keyframes(take):
+            write_posture(take.armature, measured.posture)
+        if not measured.stands:
+            say(self, "WARNING", NOT_STANDING)
+        else:
+            say(
+                self,
+                "INFO",
+                "The performer stands {distance:.2f} m from the camera; unseen lengths are average",
+                distance=measured.distance_m,
             )
-            size_actor(context, take, measured.body)
-            take.stature = self.stature
-            if not is_posed(take):
-                write_posture(take.armature, measured.posture)
-            if not measured.stands:
-                say(self, "WARNING", NOT_STANDING)
-            else:
-                say(
-                    self,
-                    "INFO",
-                    "The performer stands {distance:.2f} m from the camera; what was not seen is average",
-                    distance=measured.distance_m,
-                )
-            return {"FINISHED"}
-        return {"CANCELLED"}
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

@@ -1,4 +1,4 @@
-"""Who performs."""
+"""The panels of step 3: the actor and its lengths."""
 
 import bpy
 
@@ -8,12 +8,12 @@ from .properties import MIDDLE, SIDED, length_property
 
 
 class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
-    """The armature, and how to build or measure one."""
+    """The armature, and the operators that build or measure it."""
 
     bl_label = "Actor"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw height, what builds and measures, and the armature."""
+        """Draw height, operators and armature."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "stature")
         row = column.row(align=True)
@@ -34,7 +34,7 @@ class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There is an actor."""
+        """Whether there is an actor."""
         return super().poll(context) and active_take(context.scene).armature is not None
 
     def draw(self, context: bpy.types.Context) -> None:

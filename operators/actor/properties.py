@@ -1,10 +1,10 @@
-"""The actor's lengths as the animator edits them, before they are applied to the armature."""
+"""Properties of the actor's lengths, as edited in the panel before they are applied to the armature."""
 
 import bpy
 
 SIDED = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
 MIDDLE = ("trunk", "neck_head", "shoulder_width", "hip_width")
-_MEANING = {
+DESCRIPTIONS = {
     "upper_arm": ("Upper Arm", "From the shoulder joint to the elbow"),
     "forearm": ("Forearm", "From the elbow to the wrist"),
     "hand": ("Hand", "From the wrist to the tip of the fingers"),
@@ -19,12 +19,12 @@ _MEANING = {
 
 
 def length_property(name: str) -> str:
-    """The property that holds one of core's lengths: a dot is no part of a Python name."""
+    """Return the name of the property for one of core's lengths, without its dot."""
     return name.replace(".", "_")
 
 
 def length_names() -> tuple[str, ...]:
-    """All of core's lengths."""
+    """Return the names of all of core's lengths."""
     return (*MIDDLE, *(f"{part}.{side}" for part in SIDED for side in ("L", "R")))
 
 
@@ -33,7 +33,7 @@ def _mirror(part: str, side: str) -> "bpy.types.AnyType":
     own = length_property(f"{part}.{side}")
 
     def update(lengths: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-        # Only a difference is written, so that the other side's update ends here.
+        # Equal lengths are not written again, which ends the mutual updates of the two sides.
         if lengths.symmetric and getattr(lengths, other) != getattr(lengths, own):
             setattr(lengths, other, getattr(lengths, own))
 
@@ -42,11 +42,11 @@ def _mirror(part: str, side: str) -> "bpy.types.AnyType":
 
 def _length(name: str) -> "bpy.types.AnyType":
     part, _, side = name.partition(".")
-    label, meaning = _MEANING[part]
+    label, description = DESCRIPTIONS[part]
     options = {"update": _mirror(part, side)} if side else {}
     return bpy.props.FloatProperty(
         name=f"{label} {side}".rstrip(),
-        description=meaning,
+        description=description,
         subtype="DISTANCE",
         precision=3,
         step=0.5,

@@ -1,4 +1,4 @@
-"""How a viewport shows the footage: all of it, beside the sidebar and not under it."""
+"""Blender's camera view: zoom and offset that show the whole footage beside the sidebar, not under it."""
 
 from collections.abc import Iterator
 from math import sqrt
@@ -6,11 +6,11 @@ from math import sqrt
 import bpy
 
 MARGIN_PX = 12.0
-"""Between the picture and what is around it."""
+"""Margin between the picture and the panels around it."""
 LEAST_SHARE = 0.3
-"""A viewport of which less than this is free shows the picture across all of it."""
+"""Least free share of a viewport; with less, the picture fills the whole viewport."""
 ZOOMS = (-30.0, 600.0)
-"""What Blender allows."""
+"""Blender's limits."""
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top [px]."""
@@ -19,7 +19,7 @@ Box = tuple[float, float, float, float]
 def fit_beside_sidebar(
     area: bpy.types.Area, render: bpy.types.RenderSettings, camera: bpy.types.Camera
 ) -> None:
-    """Let the camera's picture fill what panels leave free of a viewport that looks through it."""
+    """Let the camera's picture fill the part of a viewport that no panel covers."""
     region = next((each for each in area.regions if each.type == "WINDOW"), None)
     view = area.spaces.active.region_3d
     if region is None or view is None or min(region.width, region.height) < 2:
@@ -28,20 +28,20 @@ def fit_beside_sidebar(
         render.resolution_x * render.pixel_aspect_x,
         render.resolution_y * render.pixel_aspect_y,
     )
-    whole = picture_at_factor_one((region.width, region.height), size, camera.sensor_fit)
-    zoom, offset = camera_view((region.width, region.height), free_box(area, region), whole)
+    picture = picture_at_factor_one((region.width, region.height), size, camera.sensor_fit)
+    zoom, offset = camera_view((region.width, region.height), free_box(area, region), picture)
     view.view_camera_zoom, view.view_camera_offset = zoom, offset
 
 
 def free_box(area: bpy.types.Area, region: bpy.types.Region) -> Box:
-    """What no sidebar, toolbar or header lies over, from the region's own corner."""
+    """Return the part of a region that no sidebar, toolbar or header covers, from the region's own corner."""
     left, bottom, right, top = 0.0, 0.0, float(region.width), float(region.height)
     for other in area.regions:
         if other.type not in {"UI", "TOOLS", "HEADER", "TOOL_HEADER"} or min(other.width, other.height) < 2:
             continue
         x, y = other.x - region.x, other.y - region.y
         if x + other.width <= 0 or x >= region.width or y + other.height <= 0 or y >= region.height:
-            continue  # beside it, or above
+            continue  # no overlap
         across = other.type in {"HEADER", "TOOL_HEADER"}
         if across and 2 * y > region.height:
             top = min(top, y)
@@ -59,12 +59,12 @@ def free_box(area: bpy.types.Area, region: bpy.types.Region) -> Box:
 def picture_at_factor_one(
     region_size: tuple[int, int], picture: tuple[float, float], sensor_fit: str
 ) -> tuple[float, float]:
-    """Width and height [px] of the camera's picture where Blender draws one side as long as the region's.
+    """Return width and height [px] of the camera's picture with one side as long as the region's: factor one.
 
     Args:
         region_size: Width and height [px].
-        picture: Width and height, of which only the ratio counts.
-        sensor_fit: Which side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
+        picture: Width and height; only their ratio counts.
+        sensor_fit: The side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
     """
     if sensor_fit == "AUTO":
         scale = max(region_size) / max(picture)
@@ -75,21 +75,21 @@ def picture_at_factor_one(
 
 
 def camera_view(
-    region_size: tuple[int, int], free: Box, whole: tuple[float, float]
+    region_size: tuple[int, int], free: Box, picture: tuple[float, float]
 ) -> tuple[float, tuple[float, float]]:
-    """Zoom and offset of Blender's camera view by which a picture fits into a part of a region.
+    """Return zoom and offset of Blender's camera view that fit a picture into a part of a region.
 
     Blender draws the picture scaled by a factor, the square of (sqrt(2) + zoom / 50) / 2; an offset is a
     share of twice the region's size times that factor.
 
     Args:
         region_size: Width and height [px].
-        free: The part.
-        whole: Width and height of the picture at factor one [px].
+        free: The part of the region.
+        picture: Width and height of the picture at factor one [px].
     """
     left, bottom, right, top = free
     room = max(right - left - 2.0 * MARGIN_PX, 1.0), max(top - bottom - 2.0 * MARGIN_PX, 1.0)
-    factor = min(have / want for have, want in zip(room, whole, strict=True))
+    factor = min(have / want for have, want in zip(room, picture, strict=True))
     zoom = min(max((2.0 * sqrt(factor) - sqrt(2.0)) * 50.0, ZOOMS[0]), ZOOMS[1])
     factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
     away = (0.5 * (region_size[0] - left - right), 0.5 * (region_size[1] - bottom - top))
@@ -100,7 +100,7 @@ def camera_view(
 
 
 def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3D]:
-    """Every 3D viewport that is open."""
+    """Yield the open 3D viewports."""
     for window in manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
@@ -108,7 +108,7 @@ def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3
 
 
 def look_through(space: bpy.types.SpaceView3D, scene: bpy.types.Scene, camera: bpy.types.Object) -> None:
-    """Let one viewport look through a camera; the scene keeps its own."""
+    """Let one viewport look through a camera; the scene keeps its active camera."""
     space.use_local_camera = camera != scene.camera
     if space.use_local_camera:
         space.camera = camera

@@ -1,29 +1,30 @@
-"""Load a clip as the footage behind the camera."""
+"""Load a clip as a take's footage, behind its camera."""
 
 from pathlib import Path
 
 import bpy
 
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle
+from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
-from .occluding_objects import names_in_the_way
-from .take_footage import give_footage, lens_is_guess, look_through_camera, name_for, show_range
+from .occluding_objects import occluding_objects
+from .take_footage import give_footage, lens_is_guess, look_through_camera, show_range, take_name
 
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
-NAMED = 3
-"""So many of the objects that hide the footage are named."""
+MOST_NAMED = 3
+"""Most objects in front of the footage that are named."""
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
 
-class KEYMARK_OT_load_footage(bpy.types.Operator):
+class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     """Load a clip behind the camera, and set the scene's size, frame rate and range from it"""
 
     bl_idname = "keymark.load_footage"
     bl_label = "Load Footage"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (idle,)
 
     filepath: bpy.props.StringProperty(
         name="File Path",
@@ -40,13 +41,8 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Not while a job reads other footage."""
-        return all_met(cls, context, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped; a dropped one never takes another's place."""
+        """Show the file browser, unless a file was dropped; a dropped one never replaces a clip."""
         if not self.filepath:
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
@@ -54,46 +50,47 @@ class KEYMARK_OT_load_footage(bpy.types.Operator):
         self.as_new_take = take is not None and take.clip is not None
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Load it."""
-        with reported(self):
-            from ..bridge.footage_to_scene import load_footage
+    def run(self, context: bpy.types.Context) -> None:
+        """Load the clip and put it behind the camera."""
+        from ..bridge.footage_to_scene import load_footage
 
-            scene = context.scene
-            path = Path(bpy.path.abspath(self.filepath))
-            clip = load_footage(path)
-            take = None if self.as_new_take else find_take(scene)
-            take = take or add_take(scene, name_for(path))
-            give_footage(take, clip)
-            look_through_camera(context, take)
-            show_range(context)
+        scene = context.scene
+        path = Path(bpy.path.abspath(self.filepath))
+        clip = load_footage(path)
+        take = None if self.as_new_take else find_take(scene)
+        take = take or add_take(scene, take_name(path))
+        give_footage(take, clip)
+        look_through_camera(context, take)
+        show_range(context)
+        self._report_footage(context, take)
+
+    def _report_footage(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+        clip = take.clip
+        say(
+            self,
+            "INFO",
+            "Loaded {name}: {count} frames of {width} x {height} pixels",
+            name=clip.name,
+            count=clip.frame_duration,
+            width=clip.size[0],
+            height=clip.size[1],
+        )
+        if lens_is_guess(take):
             say(
                 self,
                 "INFO",
-                "Loaded {name}: {count} frames of {width} x {height} pixels",
-                name=clip.name,
-                count=clip.frame_duration,
-                width=clip.size[0],
-                height=clip.size[1],
+                "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
+                lens=take.guessed_lens_mm,
             )
-            if lens_is_guess(take):
-                say(
-                    self,
-                    "INFO",
-                    "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
-                    lens=take.guessed_lens_mm,
-                )
-            hiding = names_in_the_way(context, take)
-            if hiding:
-                say(
-                    self,
-                    "WARNING",
-                    "In front of the footage: {names}; to see the performer, select what hides them and "
-                    "press H (Alt H brings it back)",
-                    names=", ".join(hiding[:NAMED] + (["..."] if len(hiding) > NAMED else [])),
-                )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        occluding = occluding_objects(context, take)
+        if occluding:
+            say(
+                self,
+                "WARNING",
+                "In front of the footage: {names}; to see the performer, select what hides them and "
+                "press H (Alt H brings it back)",
+                names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
+            )
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

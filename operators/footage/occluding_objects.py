@@ -1,15 +1,15 @@
-"""What stands between a camera and the footage behind everything."""
+"""Objects in front of the footage, which is the background of the camera's view."""
 
 import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
-SOLID = {"MESH", "CURVE", "SURFACE", "META", "FONT", "VOLUME"}
-SEEN_THROUGH = {"WIRE", "BOUNDS"}
+SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "VOLUME"}
+TRANSPARENT_DISPLAYS = {"WIRE", "BOUNDS"}
 
 
-def names_in_the_way(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> list[str]:
-    """Names of the visible solid objects that cover some of the camera's picture; none of the actors' own."""
+def occluding_objects(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> list[str]:
+    """Return the names of the visible solid objects in the camera's picture, except the actors' own."""
     scene, camera = context.scene, take.camera
     if camera is None:
         return []
@@ -17,22 +17,22 @@ def names_in_the_way(context: bpy.types.Context, take: bpy.types.PropertyGroup) 
     return [
         each.name
         for each in context.view_layer.objects
-        if each.type in SOLID
-        and each.display_type not in SEEN_THROUGH
+        if each.type in SOLID_TYPES
+        and each.display_type not in TRANSPARENT_DISPLAYS
         and (each.parent is None or each.parent not in actors)
         and each.visible_get()
-        and _covers(scene, camera, each)
+        and _in_picture(scene, camera, each)
     ]
 
 
-def _covers(scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object) -> bool:
-    """Whether what is in front of the camera of an object's bounding box lies in the picture in part."""
+def _in_picture(scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object) -> bool:
+    """Whether the corners of an object's bounding box in front of the camera span part of the picture."""
     corners = [
         world_to_camera_view(scene, camera, blender_object.matrix_world @ Vector(corner))
         for corner in blender_object.bound_box
     ]
-    before = [corner for corner in corners if corner.z > 0.0]
-    return bool(before) and all(
-        min(corner[axis] for corner in before) < 1.0 and max(corner[axis] for corner in before) > 0.0
+    in_front = [corner for corner in corners if corner.z > 0.0]
+    return bool(in_front) and all(
+        min(corner[axis] for corner in in_front) < 1.0 and max(corner[axis] for corner in in_front) > 0.0
         for axis in (0, 1)
     )

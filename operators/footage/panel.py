@@ -1,11 +1,11 @@
-"""What was filmed."""
+"""The panel of step 1: clip, camera and the take's files."""
 
 import bpy
 
 from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.messages import label
 from ..shell.panel import TakePanel
-from ..shell.takes import active_take
+from ..shell.takes import active_take, find_take
 from .take_footage import lens_is_guess
 
 
@@ -34,15 +34,29 @@ class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
         row.operator("keymark.save_take", icon="FILE_TICK")
 
 
+class KEYMARK_MT_clips(bpy.types.Menu):
+    """The clips of this .blend file."""
+
+    bl_label = "Use Clip of This File"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw one entry a clip."""
+        take = find_take(context.scene)
+        for clip in bpy.data.movieclips:
+            entry = self.layout.operator("keymark.use_clip", text=clip.name, translate=False, icon="TRACKER")
+            entry.clip = clip.name
+            entry.as_new_take = take is not None and take.clip is not None
+
+
 def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """What the clip is, and whether it is there."""
+    """Draw the clip's size, length and rate, or that its file is missing."""
     clip, state = take.clip, take.clip_state
     if state.missing:
         box = column.box().column()
         box.label(text="The clip's file is missing", icon="ERROR")
         box.label(text=bpy.path.basename(clip.filepath), translate=False, icon="BLANK1")
         box.operator("keymark.relocate_clip", text="Find Clip", icon="VIEWZOOM")
-        return  # Blender knows no size of what is not there
+        return  # Blender knows no size of a missing clip
     facts = column.column(align=True)
     facts.active = False
     size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])
@@ -53,7 +67,7 @@ def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
 
 
 def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """The lens, whether it is a guess, and whether the camera moves."""
+    """Draw the lens, whether it is a guess, and whether the camera moves."""
     camera = take.camera
     column.prop(camera.data, "lens")
     column.prop(camera.data, "sensor_width")
@@ -67,7 +81,7 @@ def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.t
     if take.clip is not None and solver_constraint(scene, camera, take.clip):
         column.label(text="Camera moves as the clip was solved", icon="CON_CAMERASOLVER")
     elif may_move(camera):
-        column.label(text="Camera moves, and is used as it does", icon="ANIM")
+        column.label(text="Camera moves; its animation is used", icon="ANIM")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_footage,))
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))

@@ -1,20 +1,20 @@
-"""What was found of a take's clip when it was last looked at, so that panels need not look."""
+"""State of a take's clip at the last check of its file, cached for panels."""
 
 import bpy
 
 
 class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
-    """What was found of a take's clip."""
+    """State of a take's clip at the last check of its file."""
 
     missing: bpy.props.BoolProperty(
         name="Missing", description="The clip's file was not found", options={"HIDDEN"}
     )
     contents: bpy.props.StringProperty(
-        name="Contents", description="What the clip's file is known by again", options={"HIDDEN"}
+        name="Contents", description="Digest of the clip's file", options={"HIDDEN"}
     )
     rate: bpy.props.FloatProperty(
         name="Rate",
-        description="Frames per second by which the clip lies on the time line",
+        description="Frames per second of the clip on the timeline",
         min=0.0,
         options={"HIDDEN"},
     )

@@ -1,24 +1,25 @@
-"""Find a clip whose file is no longer where it was."""
+"""Relocate a clip whose file was moved."""
 
 from pathlib import Path
 
 import bpy
 
 from ...core.errors import InputError
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, footage, idle
+from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
 from .load_footage import PATTERNS
-from .take_footage import note_clip
+from .take_footage import update_clip_state
 
 
-class KEYMARK_OT_relocate_clip(bpy.types.Operator):
-    """Tell where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
+class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
+    """Choose where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
 
     bl_idname = "keymark.relocate_clip"
     bl_label = "Find Clip"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
 
     filepath: bpy.props.StringProperty(
         name="File Path",
@@ -29,56 +30,48 @@ class KEYMARK_OT_relocate_clip(bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a clip to find."""
-        return all_met(cls, context, footage, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, starting from where it was."""
+        """Show the file browser, beginning at the clip's old path."""
         self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Check the file, and only then point the clip there."""
-        with reported(self):
-            from ...core.footage.clips.clip import Clip
-            from ..bridge.footage_to_scene import clip_file, stored_path
+    def run(self, context: bpy.types.Context) -> None:
+        """Check the file, and only then set the clip's path."""
+        from ...core.footage.clips.clip import Clip
+        from ..bridge.footage_to_scene import clip_file, stored_path
 
-            take = active_take(context.scene)
-            clip, path = take.clip, Path(bpy.path.abspath(self.filepath))
-            if clip.library is not None:
-                raise InputError(
-                    f"clip '{clip.name}' is linked from {clip.library.filepath}; "
-                    "find it in that file, or load it here"
-                )
-            found = Clip.open(path)
-            size, count = (clip.size[0], clip.size[1]), clip.frame_duration
-            clip.filepath = stored_path(clip_file(path))
-            context.view_layer.update()  # has Blender read the clip again
-            for scene in bpy.data.scenes:
-                for other in scene.keymark.takes:
-                    if other.clip == clip and scene.library is None:
-                        note_clip(other)
-            if all(size) and (found.size != size or clip.frame_duration != count):
-                say(
-                    self,
-                    "WARNING",
-                    "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
-                    "{old_width} x {old_height}; is it the right one?",
-                    file=path.name,
-                    count=clip.frame_duration,
-                    width=found.size[0],
-                    height=found.size[1],
-                    old_count=count,
-                    old_width=size[0],
-                    old_height=size[1],
-                )
-            else:
-                say(self, "INFO", "Found {name}", name=clip.name)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        clip, path = take.clip, Path(bpy.path.abspath(self.filepath))
+        if clip.library is not None:
+            raise InputError(
+                f"clip '{clip.name}' is linked from {clip.library.filepath}; "
+                "find it in that file, or load it here"
+            )
+        found = Clip.open(path)
+        size, count = (clip.size[0], clip.size[1]), clip.frame_duration
+        clip.filepath = stored_path(clip_file(path))
+        context.view_layer.update()  # makes Blender read the clip again
+        for scene in bpy.data.scenes:
+            for other in scene.keymark.takes:
+                if other.clip == clip and scene.library is None:
+                    update_clip_state(other)
+        if all(size) and (found.size != size or clip.frame_duration != count):
+            say(
+                self,
+                "WARNING",
+                "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
+                "{old_width} x {old_height}; is it the right one?",
+                file=path.name,
+                count=clip.frame_duration,
+                width=found.size[0],
+                height=found.size[1],
+                old_count=count,
+                old_width=size[0],
+                old_height=size[1],
+            )
+        else:
+            say(self, "INFO", "Found {name}", name=clip.name)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_relocate_clip,))

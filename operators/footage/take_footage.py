@@ -1,4 +1,4 @@
-"""A take's footage in its scene: which camera a clip goes behind, and what is known of its file."""
+"""A take's footage in its scene: the camera it is put behind, and the state of its file."""
 
 from itertools import islice
 from pathlib import Path
@@ -14,10 +14,10 @@ from ..shell.results import clear_review
 from ..shell.takes import find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
 
-PLAIN_NAME = "clip"
-"""What the clip in every take's folder is called."""
-LOOKED_AT = 90
-"""Frames whose times tell whether the rate varies; a phone's rate varies from the start."""
+GENERIC_STEM = "clip"
+"""File name, without its extension, of the clip in every saved take's folder."""
+SAMPLED_FRAMES = 90
+"""Frames whose times are checked for a variable rate; a phone's rate varies from the start."""
 
 
 def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> None:
@@ -26,16 +26,16 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
     attached = attach_footage(scene, clip, _camera_for(take, clip), take.guessed_lens_mm)
     take.guessed_lens_mm = attached.guessed_lens_mm or _guess_of_others(take, attached.camera)
     take.camera = attached.camera
-    take.clip = clip  # has its state noted, see `clip_chosen`
+    take.clip = clip  # its update notes the state, see `clip_chosen`
 
 
 def clip_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Follow a clip that was chosen for a take, by whatever way; what was found in another one is let go."""
+    """Update a take whose clip was set; results from another clip are dropped."""
     clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
-        give_footage(take, clip)  # which comes back here
+        give_footage(take, clip)  # sets the clip, and so calls this again
         return
-    note_clip(take)
+    update_clip_state(take)
     if clip is not None and before and take.clip_state.contents != before:
         take.reading_key = take.review_key = ""
         take.proposals.clear()
@@ -44,7 +44,7 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
 
 
 def camera_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Follow a camera that was chosen for a take: it shows the clip, and the scene looks through it."""
+    """Update a take whose camera was set: the camera shows the clip and becomes the scene's."""
     camera, scene = take.camera, take.id_data
     if camera is None:
         return
@@ -54,31 +54,31 @@ def camera_chosen(take: bpy.types.PropertyGroup) -> None:
         scene.camera = camera
 
 
-def note_clip(take: bpy.types.PropertyGroup) -> None:
-    """Look at a take's clip once and note what panels show of it."""
+def update_clip_state(take: bpy.types.PropertyGroup) -> None:
+    """Check a take's clip, and store the state that panels show."""
     state = take.clip_state
     state.missing = is_missing(take.clip)
     state.variable_rate = False
     if take.clip is None or state.missing:
         return
-    note_contents(take)
+    update_clip_digest(take)
     state.rate = footage_of(take.id_data, take).rate
     if take.clip.source == "MOVIE":
         state.variable_rate = _has_variable_rate(take)
 
 
-def note_contents(take: bpy.types.PropertyGroup) -> None:
-    """Note what a take's clip is known by, as it is on disk now; one that is not there stays what it was."""
+def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
+    """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
     try:
         from ...core.footage.reading_key import footage_digest
 
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
-    except (InputError, ModuleNotFoundError):  # what reads the clip will say so
+    except (InputError, ModuleNotFoundError):  # reported when the clip is read
         return
 
 
 def is_missing(clip: bpy.types.MovieClip | None) -> bool:
-    """Whether a clip's file is not where the clip says."""
+    """Whether a clip's file is missing."""
     if clip is None:
         return False
     try:
@@ -88,13 +88,13 @@ def is_missing(clip: bpy.types.MovieClip | None) -> bool:
     return False
 
 
-def name_for(path: Path) -> str:
-    """What to call a take of a clip: as its file, or as its folder where the file is just called clip."""
-    return path.parent.name if path.stem == PLAIN_NAME and path.parent.name else path.stem
+def take_name(path: Path) -> str:
+    """Return the name for a take of a clip: the file's, or the folder's if the file is just called clip."""
+    return path.parent.name if path.stem == GENERIC_STEM and path.parent.name else path.stem
 
 
 def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
-    """Let the viewport at work show the footage: otherwise nothing of it would be seen."""
+    """Let the viewport of the context show the footage, which is visible only through the camera."""
     space, camera = context.space_data, take.camera
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
         return
@@ -103,8 +103,8 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
 
 
 def show_range(context: bpy.types.Context) -> None:
-    """Let the timelines span the scene's range, which the footage has just given it."""
-    if bpy.app.background:  # nobody sees one, and Blender may have none
+    """Zoom the timelines to the scene's range of frames."""
+    if bpy.app.background:  # there may be no screen
         return
     for area in context.screen.areas:
         region = next((each for each in area.regions if each.type == "WINDOW"), None)
@@ -120,10 +120,11 @@ def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
 
 
 def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy.types.Object | None:
-    """The camera to put a clip behind; None for a new one.
+    """Return the camera to put a clip behind; None for a new one.
 
-    The take's own, unless another take needs it for another clip; else one that moves as the clip's solution
-    says; else that of a take with the same clip; else the scene's, if it is nobody's and not just Blender's.
+    The take's own, unless another take uses it for another clip; else the one animated by the clip's camera
+    solution; else that of a take with the same clip; else the scene's, unless a take uses it or it is the one
+    of Blender's startup file.
     """
     scene = take.id_data
     others = [other for other in scene.keymark.takes if other != take]
@@ -142,7 +143,7 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
 
 
 def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) -> float:
-    """The guess that a take with the same camera has noted; 0 for none."""
+    """Return the guessed focal length of another take with the same camera; 0 for none."""
     takes = take.id_data.keymark.takes
     return next((other.guessed_lens_mm for other in takes if other != take and other.camera == camera), 0.0)
 
@@ -150,6 +151,6 @@ def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) ->
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:
     try:
         stamps = footage_of(take.id_data, take).open().source.time_stamps()
-        return is_variable_frame_rate(list(islice(stamps, LOOKED_AT)))
-    except (InputError, ModuleNotFoundError):  # what reads the clip will say so
+        return is_variable_frame_rate(list(islice(stamps, SAMPLED_FRAMES)))
+    except (InputError, ModuleNotFoundError):  # reported when the clip is read
         return False

@@ -1,21 +1,28 @@
-"""Use a clip that Blender has already."""
+"""Use a clip that is in the .blend file already."""
 
 from pathlib import Path
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle
+from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
-from .take_footage import give_footage, look_through_camera, name_for, show_range
+from .take_footage import give_footage, look_through_camera, show_range, take_name
 
 
-class KEYMARK_OT_use_clip(bpy.types.Operator):
-    """Use a clip that is in this file already, with the lens and the solution that its tracking holds"""
+def any_clip(_context: bpy.types.Context) -> str | None:
+    """The file has a clip."""
+    return None if bpy.data.movieclips else "This file has no clip; load the footage"
+
+
+class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
+    """Use a clip that is in this file already, with the lens and the camera solution of its tracking"""
 
     bl_idname = "keymark.use_clip"
     bl_label = "Use Clip"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (any_clip, idle)
 
     clip: bpy.props.StringProperty(
         name="Clip",
@@ -29,16 +36,8 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be one."""
-        if not bpy.data.movieclips:
-            cls.poll_message_set("This file has no clip; load the footage")
-            return False
-        return all_met(cls, context, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Put it behind the take's camera."""
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Put the clip behind the take's camera."""
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:
@@ -51,27 +50,11 @@ class KEYMARK_OT_use_clip(bpy.types.Operator):
             )
             return {"CANCELLED"}
         take = None if self.as_new_take else find_take(scene)
-        take = take or add_take(scene, name_for(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
+        take = take or add_take(scene, take_name(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
         give_footage(take, clip)
         look_through_camera(context, take)
         show_range(context)
-        return {"FINISHED"}
+        return None
 
 
-class KEYMARK_MT_clips(bpy.types.Menu):
-    """The clips that are in this file already."""
-
-    bl_label = "Use Clip of This File"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """One entry a clip."""
-        take = find_take(context.scene)
-        for clip in bpy.data.movieclips:
-            entry = self.layout.operator(
-                KEYMARK_OT_use_clip.bl_idname, text=clip.name, translate=False, icon="TRACKER"
-            )
-            entry.clip = clip.name
-            entry.as_new_take = take is not None and take.clip is not None
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_use_clip, KEYMARK_MT_clips))
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_use_clip,))

@@ -1,24 +1,25 @@
-"""Assisted posing: fit the actor's pose to the markers of the current frame."""
+"""Fit the actor's pose to the markers of the current frame."""
 
 import bpy
 import numpy as np
 
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, camera, footage, idle, markers
+from ..shell.requirements import actor, camera, footage, idle, markers
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
 
-class KEYMARK_OT_fit_pose(bpy.types.Operator):
+class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     """Pose the actor so that its markers lie where this frame shows them; nothing is keyed before you do"""
 
     bl_idname = "keymark.fit_pose"
     bl_label = "Fit Pose to Markers"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, actor, markers, idle)
 
     start: bpy.props.EnumProperty(
         name="Start From",
@@ -38,59 +39,51 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
         ],
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor, and markers to be seen through a camera."""
-        return all_met(cls, context, footage, camera, actor, markers, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Fit it, and let the animator turn bones at once."""
+        """Fit the pose, and enter Pose Mode, so that the animator can correct it."""
         finished = self.execute(context)
         if finished == {"FINISHED"}:
             _to_pose_mode(context, active_take(context.scene).armature)
         return finished
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Fit it, show it, and say how well it explains the markers."""
-        with reported(self):
-            from ..bridge.pose import write_posture
-            from ..bridge.posing import fit_to_frame, frame_in_footage
+    def run(self, context: bpy.types.Context) -> None:
+        """Fit the pose, set it, and report its distance from the markers."""
+        from ..bridge.pose import write_posture
+        from ..bridge.posing import fit_to_frame, frame_in_footage
 
-            take = active_take(context.scene)
-            frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
-            matches = known_matches(take)
-            fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
-            show_keyframes(take)
-            write_posture(take.armature, fit.posture)
-            if fit.misplaced:
-                names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
-                say(
-                    self,
-                    "WARNING",
-                    "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
-                    names=names,
-                )
-            elif not (np.isfinite(fit.before_px).any() and np.isfinite(fit.residual_px).any()):
-                say(
-                    self,
-                    "WARNING",
-                    "Seen from the camera, the body hides the markers that this frame shows; check the pose",
-                )
-            else:
-                say(
-                    self,
-                    "INFO",
-                    "Markers off by {before:.1f} pixels before, {after:.1f} now; "
-                    "look at it from the side too, where no marker tells the depth, then store it",
-                    before=float(np.nanmean(fit.before_px)),
-                    after=float(np.nanmean(fit.residual_px)),
-                )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+        matches = known_matches(take)
+        fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
+        show_keyframes(take)
+        write_posture(take.armature, fit.posture)
+        if fit.misplaced:
+            names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
+            say(
+                self,
+                "WARNING",
+                "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
+                names=names,
+            )
+        elif not (np.isfinite(fit.before_px).any() and np.isfinite(fit.residual_px).any()):
+            say(
+                self,
+                "WARNING",
+                "Seen from the camera, the body hides the markers that this frame shows; check the pose",
+            )
+        else:
+            say(
+                self,
+                "INFO",
+                "Markers off by {before:.1f} pixels before, {after:.1f} now; "
+                "look at it from the side too, where no marker tells the depth, then store it",
+                before=float(np.nanmean(fit.before_px)),
+                after=float(np.nanmean(fit.residual_px)),
+            )
 
 
 def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
-    """Make the actor the active object, in Pose Mode, where it can be seen and nothing else is being done."""
+    """Make the actor active, in Pose Mode, if it is visible and no other object is being edited."""
     layer = context.view_layer
     active = layer.objects.active
     if armature_object.mode == "POSE" or (active is not None and active.mode != "OBJECT"):

@@ -2,21 +2,28 @@
 
 import bpy
 
-from ..shell.keyed_frames import forget, proposed_frames, unposed
+from ..shell.base_operator import BaseOperator
+from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
 from ..shell.messages import say
 from ..shell.takes import find_take
 
 
-class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
+def proposals(context: bpy.types.Context) -> str | None:
+    """The take has proposed keyframes."""
+    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
+
+
+class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     """Go to the next or the previous proposed keyframe"""
 
     bl_idname = "keymark.jump_to_proposal"
     bl_label = "Jump to Proposed Keyframe"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (proposals,)
 
     direction: bpy.props.EnumProperty(
         name="Direction",
-        description="Which way to go from the current frame",
+        description="Direction from the current frame",
         items=[
             ("NEXT", "Next", "Go to the next proposed keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
@@ -24,38 +31,30 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
     )
     skip_posed: bpy.props.BoolProperty(
         name="Skip Posed",
-        description="Go to a proposed keyframe that is not posed yet; from the last one on to the first",
+        description="Skip proposed keyframes that are posed; after the last one comes the first",
         default=False,
     )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip says which way."""
+        """Return the tooltip for the direction."""
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
         if properties.direction == "NEXT":
             return "Go to the next proposed keyframe"
         return "Go to the previous proposed keyframe"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be proposals."""
-        if proposed_frames(find_take(context.scene)):
-            return True
-        cls.poll_message_set("Propose keyframes first")
-        return False
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Go there; where there is none, stay and say so."""
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Go to the frame; if there is none, stay and report it."""
         scene, take = context.scene, find_take(context.scene)
-        forget()
-        frames = unposed(take) if self.skip_posed else proposed_frames(take)
+        invalidate_keyed_frames()
+        frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:
             say(self, "INFO", "All proposed keyframes are posed")
             return {"CANCELLED"}
         ahead = [frame for frame in frames if frame > scene.frame_current]
         behind = [frame for frame in frames if frame < scene.frame_current]
-        if self.skip_posed:  # around the ends
+        if self.skip_posed:  # wraps around the ends
             ahead, behind = ahead or frames, behind or frames
         if self.direction == "NEXT" and ahead:
             scene.frame_set(ahead[0])
@@ -67,7 +66,7 @@ class KEYMARK_OT_jump_to_proposal(bpy.types.Operator):
         else:
             say(self, "INFO", "There is no proposed keyframe before this frame")
             return {"CANCELLED"}
-        return {"FINISHED"}
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_proposal,))

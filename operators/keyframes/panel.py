@@ -1,20 +1,20 @@
-"""Where to pose, and posing there."""
+"""The panels of step 4: the frames to pose, and the operators that pose."""
 
 import bpy
 
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed
+from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed_proposals
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress
 from ..shell.takes import active_take
 
 
 class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
-    """Going to where a keyframe is wanted, fitting a pose there, and storing it."""
+    """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
     bl_label = "Keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw how far the posing is, and what poses and stores."""
+        """Draw the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
         if not len(take.proposals):
             _draw_propose(column, context)
@@ -34,14 +34,14 @@ class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
 
 
 def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The button that proposes frames, or how far that is."""
+    """Draw the button that proposes frames, or the progress of its job."""
     if not draw_progress(layout, context, "keymark.propose_keyframes"):
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
 def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """How many of the proposed keyframes are posed, and how many others; how many are matched."""
-    proposed, left, posed = len(proposed_frames(take)), len(unposed(take)), len(posed_frames(take))
+    """Draw the numbers of proposed frames that are posed, of other posed frames, and of matched ones."""
+    proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     matched = len(matched_frames(take))
     if matched:
         text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)
@@ -61,7 +61,7 @@ def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> No
 
 
 def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """What this frame is: posed, proposed, or the motion's, which is no good to pose in."""
+    """Draw whether this frame is posed, matched or proposed, or that the motion is shown instead."""
     frame = scene.frame_current
     data = take.armature.animation_data if take.armature is not None else None
     shown = data.action if data is not None else None
@@ -82,7 +82,7 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
 
 
 class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
-    """Which frames to pose, and where they are kept."""
+    """The proposed frames, and the Action with the keyframes."""
 
     bl_label = "Proposals"
     bl_parent_id = "KEYMARK_PT_keyframes"
@@ -90,7 +90,7 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
     bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what proposes frames, and the Action with the keyframes."""
+        """Draw number and button of the proposals, and the Action."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "keyframe_count")
         _draw_propose(column, context)

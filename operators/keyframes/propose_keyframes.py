@@ -1,4 +1,4 @@
-"""Propose frames worth posing, from how fast the markers move."""
+"""Propose frames to pose, from the speed of the markers."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,9 +10,9 @@ from ..bridge.frame_times import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import all_colors, all_met, footage, idle, markers
+from ..shell.requirements import all_colors, footage, idle, markers
 from ..shell.results import keep_reading, reading_of
-from ..shell.takes import active_take, footage_of, take_called
+from ..shell.takes import active_take, footage_of, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
@@ -21,29 +21,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What the job hands over to the scene."""
+    """Result of the job."""
 
     take: str
     """The take's identifier."""
     reading: "Reading"
     frames: tuple[int, ...]
-    """Scene frames worth posing."""
+    """Proposed scene frames."""
 
 
 class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
-    """Follow the markers through the footage and propose the frames that are best posed"""
+    """Track the markers through the footage and propose the frames that are best posed"""
 
     bl_idname = "keymark.propose_keyframes"
     bl_label = "Propose Keyframes"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """The markers are followed through the footage."""
-        return all_met(cls, context, footage, markers, all_colors, idle)
+    requirements = (footage, markers, all_colors, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
-        """Find the frames; a clip that was read before for these markers is not read again."""
+        """Return the job; a clip that was read for these markers before is not read again."""
         from ...core.footage.read_clip import read_clip
         from ...core.footage.reading_key import of_same_footage, reading_key
         from ...core.prior.marker_speed import marker_speed, propose_keyframes
@@ -61,8 +57,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames))
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
-        """Keep them with the take, and what was read of the clip for the reconstruction."""
-        take = take_called(scene, result.take)
+        """Store the proposals with the take, and cache the reading for the reconstruction."""
+        take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
         take.proposals.clear()
         for frame in result.frames:

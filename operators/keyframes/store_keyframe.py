@@ -5,72 +5,65 @@ import bpy
 from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..matching.matches import known_matches
-from ..shell.error_reports import reported
-from ..shell.keyed_frames import forget
+from ..shell.base_operator import BaseOperator
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_store_keyframe(bpy.types.Operator):
-    """Key the actor's whole pose at the current frame in the keyframe Action, which is then the one shown"""
+class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
+    """Key the actor's whole pose at the current frame in the keyframe Action, and show that Action"""
 
     bl_idname = "keymark.store_keyframe"
     bl_label = "Store Keyframe"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor."""
-        return all_met(cls, context, actor, idle)
+    def run(self, context: bpy.types.Context) -> None:
+        """Key the pose; report how far it goes beyond the skeleton, if it does."""
+        from ..bridge.actor_lengths import read_body
+        from ..bridge.keyframes import NOTICEABLE_M, store_pose
+        from ..bridge.pose import read_posture
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Key it; where the pose goes beyond the skeleton, say by how much."""
-        with reported(self):
-            from ..bridge.actor_lengths import read_body
-            from ..bridge.keyframes import NOTICEABLE_M, store_pose
-            from ..bridge.pose import read_posture
-
-            scene = context.scene
-            take = active_take(scene)
-            armature_object = take.armature
-            reading = read_posture(armature_object, read_body(armature_object, HUMAN))
-            if take.keyframe_action is None:
-                take.keyframe_action = new_keyframe_action(armature_object)
-            frame = scene.frame_current_final
-            switched = not shows_keyframes(take)
-            was_matched = frame in known_matches(take)
-            store_pose(armature_object, take.keyframe_action, HUMAN, frame)
-            assign_action(armature_object, take.keyframe_action)
-            forget()
-            if reading.furthest_m > NOTICEABLE_M:
-                say(
-                    self,
-                    "WARNING",
-                    "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
-                    "can do, and its nearest posture will be used",
-                    frame=frame,
-                    beyond=1000.0 * reading.furthest_m,
-                )
-            elif was_matched:
-                say(
-                    self,
-                    "INFO",
-                    "Stored a keyframe at frame {frame:g}; it was matched, and counts as posed now",
-                    frame=frame,
-                )
-            elif switched:
-                say(
-                    self,
-                    "INFO",
-                    "Stored a keyframe at frame {frame:g}; the actor shows the keyframes now",
-                    frame=frame,
-                )
-            else:
-                say(self, "INFO", "Stored a keyframe at frame {frame:g}", frame=frame)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        scene = context.scene
+        take = active_take(scene)
+        armature_object = take.armature
+        read = read_posture(armature_object, read_body(armature_object, HUMAN))
+        if take.keyframe_action is None:
+            take.keyframe_action = new_keyframe_action(armature_object)
+        frame = scene.frame_current_final
+        switched = not shows_keyframes(take)
+        was_matched = frame in known_matches(take)
+        store_pose(armature_object, take.keyframe_action, HUMAN, frame)
+        assign_action(armature_object, take.keyframe_action)
+        invalidate_keyed_frames()
+        if read.furthest_m > NOTICEABLE_M:
+            say(
+                self,
+                "WARNING",
+                "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
+                "can do, and its nearest posture will be used",
+                frame=frame,
+                beyond=1000.0 * read.furthest_m,
+            )
+        elif was_matched:
+            say(
+                self,
+                "INFO",
+                "Stored a keyframe at frame {frame:g}; it was matched, and counts as posed now",
+                frame=frame,
+            )
+        elif switched:
+            say(
+                self,
+                "INFO",
+                "Stored a keyframe at frame {frame:g}; the actor shows the keyframes now",
+                frame=frame,
+            )
+        else:
+            say(self, "INFO", "Stored a keyframe at frame {frame:g}", frame=frame)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

@@ -7,7 +7,7 @@ import bpy
 from ...core.errors import ConversionError, InputError
 from ..shell.error_reports import reported
 from ..shell.messages import label, say
-from ..shell.requirements import a_shelved_library, all_met, idle
+from ..shell.requirements import all_met, idle, registered_library
 from .registry import chosen, fill
 
 
@@ -21,7 +21,7 @@ class KEYMARK_OT_discard_library(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """One of the user's own must be chosen."""
-        return all_met(cls, context, a_shelved_library, _an_own_library, idle)
+        return all_met(cls, context, registered_library, _an_own_library, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask."""

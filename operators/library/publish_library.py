@@ -4,7 +4,7 @@ import bpy
 
 from ..shell.error_reports import reported
 from ..shell.messages import say
-from ..shell.requirements import a_library_here, all_met, idle
+from ..shell.requirements import all_met, idle, scene_library
 from .conflict_dialog import WIDTH, draw_question
 from .conflicts import CHOICES, Conflict, conflicts, keep_on_shelf, on_shelf, settled
 from .library_choice import chosen_library
@@ -28,7 +28,7 @@ class KEYMARK_OT_keep_library(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be one."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask where another one is at hand."""

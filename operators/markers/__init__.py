@@ -1,4 +1,12 @@
-"""Step 2, the markers: what the performer wears, its colors, and how well it is found."""
+"""Step 2, the markers: garments in strong colors, picked from the footage and checked in it."""
 
 PROPERTIES = ("properties",)
-MODULES = ("add_marker", "remove_marker", "check_markers", "pick_marker_color", "show_masks", "panel")
+MODULES = (
+    "add_marker",
+    "add_usual_markers",
+    "remove_marker",
+    "check_markers",
+    "pick_marker_color",
+    "show_masks",
+    "panel",
+)

@@ -1,4 +1,4 @@
-"""Looking at a take's markers in frames spread over its clip, and what the scene keeps of it."""
+"""Readouts of a take's markers: found in sampled frames of the clip, stored with the markers."""
 
 from typing import TYPE_CHECKING
 
@@ -7,7 +7,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import within
 from ..bridge.footage import Footage
-from ..footage.take_footage import note_contents
+from ..footage.take_footage import update_clip_digest
 from .mask_previews import keep_preview
 
 if TYPE_CHECKING:
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
     from ...core.progress import Job
 
 MOST_CLIPS = 2
-"""Clips whose samples are kept, some megabytes each, so that another color is judged at once."""
+"""Clips whose sampled frames are cached, some megabytes each, so that another color is checked at once."""
 SAMPLING_SHARE = 0.7
 
 _samples: "dict[str, ClipSamples]" = {}
-"""By what the clip's file is known by."""
+"""By the digest of the clip's file, the least recently used first."""
 
 
-def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job[MarkerCheck]":
-    """Find markers in frames spread over a clip.
+def find_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job[MarkerCheck]":
+    """Find markers in frames sampled over a clip, which are decoded once a session.
 
     Yields:
-        Progress; the frames are decoded only once a session.
+        Progress.
 
     Raises:
-        InputError: There is no clip, or it cannot be read.
+        InputError: The clip is missing or cannot be read.
     """
     from ...core.footage.clips.clip_samples import sample_clip
     from ...core.footage.marker_check import check_markers
@@ -42,7 +42,7 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
     if samples is None:
         job = sample_clip(footage.open())
         samples = yield from within("Looking at frames of the clip", job, 0.0, SAMPLING_SHARE)
-    _samples[key] = samples  # the one used last comes last
+    _samples[key] = samples  # the most recently used one last
     while len(_samples) > MOST_CLIPS:
         del _samples[next(iter(_samples))]
     check = check_markers(samples, styles)
@@ -50,10 +50,10 @@ def look_at_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job
 
 
 def check_unchanged(now: "tuple[MarkerStyle, ...]", then: "tuple[MarkerStyle, ...]") -> None:
-    """Refuse a result about markers that are others by now.
+    """Refuse a result if the markers were changed while the job ran.
 
     Raises:
-        InputError: They are.
+        InputError: They were.
     """
     if now != then:
         raise InputError("the markers were changed while they were looked for; nothing was stored, try again")
@@ -62,8 +62,8 @@ def check_unchanged(now: "tuple[MarkerStyle, ...]", then: "tuple[MarkerStyle, ..
 def write_readouts(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> list[str]:
-    """Store what was found with the markers, keep the colors for previews; return all warnings."""
-    note_contents(take)
+    """Store a check with the markers, and its colors for previews; return all warnings."""
+    update_clip_digest(take)
     readouts = {readout.name: readout for readout in check.readouts}
     for marker in take.markers:
         readout = readouts.get(marker.name)

@@ -1,7 +1,7 @@
-"""What has the markers' colors in the frame that the scene shows, kept in memory for the overlay.
+"""Masks of the markers' colors in the current frame, cached in memory for the overlay.
 
-Nothing of it is saved. It is found again by the footage and the colors it was made for, so that undo brings
-the matching preview back, and a preview of other colors is never shown.
+No file keeps them. Their key is the footage and the colors they were made for: undo brings the matching
+preview back, and a preview of other colors is never shown.
 """
 
 from dataclasses import dataclass, field
@@ -25,28 +25,28 @@ MOST_PREVIEWS = 4
 
 @dataclass(frozen=True, eq=False)
 class ColorMask:
-    """What has one color in a frame."""
+    """Mask of one color in a frame."""
 
     label: str
-    """Name of the marker, or names of all that bear the color."""
+    """Name of the marker, or names of all markers of this color."""
     color: tuple[float, float, float]
     """The marker's color in sRGB, 0 to 1."""
     coverage: SingleArray
-    """(rows, columns) share of each pixel of the measuring grid, 0 to 1."""
+    """(rows, columns) share of each pixel that has the color, 0 to 1, at the resolution of segmentation."""
     outlines: list[Array]
     """Closed outlines (N, 2) in footage pixels, the longest first."""
 
 
 @dataclass(eq=False)
 class Preview:
-    """The learned colors of a take's markers, and the masks of the frame that was looked at last."""
+    """The learned colors of a take's markers, and the masks of the last frame."""
 
     check: "MarkerCheck"
     labels: tuple[str, ...]
     colors: tuple[tuple[float, float, float], ...]
     reader: "FrameReader | None" = None
     time_s: float | None = None
-    """Of that frame, from the clip's first [s]."""
+    """Time of the masks' frame, from the clip's first [s]."""
     masks: tuple[ColorMask, ...] = field(default=())
 
 
@@ -56,7 +56,7 @@ _previews: dict[Key, Preview] = {}
 def keep_preview(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> None:
-    """Keep what was learned of a take's markers."""
+    """Cache the learned colors of a take's markers."""
     groups = check.groups
     labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
     colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
@@ -67,20 +67,20 @@ def keep_preview(
 
 
 def preview_of(take: bpy.types.PropertyGroup) -> Preview | None:
-    """What was learned of a take's markers as they are now; None where they were not looked at."""
+    """Return the preview of a take's markers as they are now; None if they were not checked."""
     return _previews.get(_key(take)) if take.clip is not None else None
 
 
-def forget_previews() -> None:
-    """Let go of all previews and of the files they hold open."""
+def clear_previews() -> None:
+    """Drop all previews, and close their files."""
     _previews.clear()
 
 
-def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
-    """Make the masks of the frame that the scene shows, where they are not there yet.
+def update_masks(scene: bpy.types.Scene) -> Preview | None:
+    """Make the masks of the current frame, unless they are made already; return their preview.
 
     Raises:
-        InputError: The clip is gone or cannot be read.
+        InputError: The clip is missing or cannot be read.
     """
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
@@ -92,10 +92,17 @@ def look_at_frame(scene: bpy.types.Scene) -> Preview | None:
     return preview
 
 
-def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
-    """Whether a preview of the active take's markers is of the frame that the scene shows.
+def update_shown_masks(scene: bpy.types.Scene) -> None:
+    """Make the masks of the current frame if they are shown."""
+    if bpy.context.window_manager.keymark_show_masks:
+        update_masks(scene)
 
-    Another scene may show the same clip at other times, and a clip may be moved in time.
+
+def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
+    """Whether a preview of the active take's markers is of the scene's current frame.
+
+    It is compared by the clip's time: another scene may show the same clip at other times, and a clip may be
+    moved in time.
     """
     take = find_take(scene)
     return take is not None and preview.time_s == footage_of(scene, take).shown_s
@@ -119,6 +126,6 @@ def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
 
 
 def _key(take: bpy.types.PropertyGroup) -> Key:
-    """What the footage is known by, and the names and colors of the markers that have one."""
+    """Return the key: digest of the footage, names and colors of the markers that have one."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
     return take.clip_state.contents, picked

@@ -1,23 +1,17 @@
-"""What the performer wears, in the 3D viewport's sidebar and in the Movie Clip editor's."""
-
-from textwrap import wrap
+"""The panel of step 2, the markers, in the sidebars of the 3D viewport and of the Movie Clip editor."""
 
 import bpy
 
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_progress
+from ..shell.panel import TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take, find_take
 
-CHARACTER_WIDTH = 6.2
-"""Pixels that a letter of a label takes on a plain screen, on the wide side of usual."""
-MARGIN = 75.0
-"""Pixels of a sidebar beside the words of a label with an icon."""
 LABEL_SHARE = 0.4
-"""Of the width that Blender gives to labels in its two columns."""
+"""Share of the width that Blender gives to the labels of its two columns."""
 
 
 class KEYMARK_UL_markers(bpy.types.UIList):
-    """Markers with their colors and in how many frames they are found."""
+    """Markers with their colors and the number of sampled frames in which they are found."""
 
     def draw_item(
         self,
@@ -57,7 +51,7 @@ class KEYMARK_PT_markers(TakePanel, bpy.types.Panel):
 
 
 class KEYMARK_PT_clip_markers(bpy.types.Panel):
-    """The same beside the clip."""
+    """The same in the Movie Clip editor."""
 
     bl_label = "Markers"
     bl_space_type = "CLIP_EDITOR"
@@ -66,7 +60,7 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There is a take."""
+        """Whether there is a take."""
         return find_take(context.scene) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -78,7 +72,7 @@ class KEYMARK_PT_clip_markers(bpy.types.Panel):
 
 
 def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the list, the active marker, and what is done with them."""
+    """Draw the list, the active marker, and the operators of both."""
     take = active_take(context.scene)
     if not len(take.markers):
         layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
@@ -106,7 +100,7 @@ def _draw_marker(
     take: bpy.types.PropertyGroup,
     marker: bpy.types.PropertyGroup,
 ) -> None:
-    """Draw the active marker, how to pick its color, and what was found of it."""
+    """Draw the active marker: the button that picks its color, its properties and its readout."""
     pick = layout.row()
     pick.scale_y = 1.3
     if not draw_progress(pick, context, "keymark.pick_marker_color"):
@@ -125,25 +119,16 @@ def _draw_marker(
     _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
     _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():
-        _draw_warning(layout, context, sentence)
+        draw_sentence(layout, context, sentence, icon="ERROR")
 
 
 def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
-    """A name and a value in the two columns that properties have."""
+    """Draw a name and a value in the two columns of properties."""
     row = layout.split(factor=LABEL_SHARE)
     left = row.row()
     left.alignment = "RIGHT"
     left.label(text=name)
     row.label(text=value, translate=False)
-
-
-def _draw_warning(layout: bpy.types.UILayout, context: bpy.types.Context, sentence: str) -> None:
-    """Draw a sentence on as many lines as the sidebar's width asks for."""
-    room = context.region.width / context.preferences.system.ui_scale - MARGIN
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    for number, line in enumerate(wrap(sentence, max(int(room / CHARACTER_WIDTH), 20))):
-        column.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
 
 
 register, unregister = bpy.utils.register_classes_factory(

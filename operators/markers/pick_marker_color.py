@@ -1,23 +1,23 @@
-"""Pick a marker's color from the footage, and see at once how well it is found."""
+"""Pick a marker's color from the footage, and check at once how well the marker is found."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.errors import InputError
+from ..shell.cancel_on_esc import cancel_click
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import all_met, footage, idle
-from ..shell.takes import active_take, footage_of, take_called
-from .add_marker import append_marker, free_name, next_segment
-from .check_markers import show_frame
-from .marker_readouts import check_unchanged, look_at_markers, write_readouts
-from .marker_styles import marker_styles, set_marker_color
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take, footage_of, take_by_identifier
+from .marker_readouts import check_unchanged, find_markers, write_readouts
+from .marker_styles import Rgb, set_marker_color, styles_with_color
+from .mask_previews import update_shown_masks
+from .new_markers import append_marker, next_segment
 from .properties import segment_title
 
 if TYPE_CHECKING:
@@ -34,13 +34,13 @@ MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 @dataclass(frozen=True, eq=False)
 class Picked:
-    """What a click found."""
+    """Result of the job."""
 
     take: str
     """The take's identifier."""
     index: int | None
-    """Which marker gets the color; None for a new one."""
-    color: tuple[int, int, int]
+    """The marker that is given the color; None for a new one."""
+    color: Rgb
     styles: "tuple[MarkerStyle, ...]"
     check: "MarkerCheck"
 
@@ -51,6 +51,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
 
     pixel: bpy.props.FloatVectorProperty(
         name="Pixel",
@@ -66,16 +67,11 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     )
 
     _masks_before: bool | None = None
-    """Whether masks were shown when the eyedropper was taken up; None in a script, which sees none."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage."""
-        return all_met(cls, context, footage, idle)
+    """Whether masks were shown before the eyedropper; None in a script, which shows none."""
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip: which marker gets the color."""
+        """Return the tooltip, which says which marker is given the color."""
         if properties.add:
             return "Click on another marker in the footage, to add it on the next body part in its color"
         return "Click on the active marker in the footage, to take its color from there and look for it"
@@ -100,15 +96,14 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage, then go on with the job that it starts."""
+        """Wait for a click on the footage, then run the job that it starts."""
         if self._job is not None:
             return super().modal(context, event)
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self.cancel(context)
+        if cancel_click(self, context, event):
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             return self._clicked(context, event)
-        # What moves the view lets the animator go nearer to the marker or to another frame.
+        # Navigation: the animator may zoom in on the marker or go to another frame.
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -126,7 +121,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Give the cursor back and stop the job; Blender calls this as well."""
+        """Restore cursor and masks, and close the job; Blender calls this as well."""
         if self._job is None and context.window is not None:
             context.window.cursor_modal_restore()
         if self._masks_before is not None:
@@ -134,29 +129,32 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
-        """Read the pixel from the footage's file, free of the viewport's colors; look for its color."""
+        """Return the job that reads the pixel from the clip's file and looks for its color.
+
+        The viewport's own pixel has gone through color management.
+        """
         from ..bridge.pixel_color import footage_color
 
         take = active_take(scene)
         source, identifier, index = footage_of(scene, take), take.identifier, self._index(take)
         color = footage_color(source, self.pixel)
-        styles = _styles(take, index, color)
-        check = yield from look_at_markers(source, styles)
+        styles = styles_with_color(take, index, color)
+        check = yield from find_markers(source, styles)
         return Picked(identifier, index, color, styles, check)
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        """Give the color to the marker, and store what was found of all of them."""
-        take = take_called(scene, result.take)
-        check_unchanged(_styles(take, result.index, result.color), result.styles)
+        """Give the marker its color, and store the readouts of all markers."""
+        take = take_by_identifier(scene, result.take)
+        check_unchanged(styles_with_color(take, result.index, result.color), result.styles)
         if result.index is None:
             marker = append_marker(take, result.styles[-1].segment)
         else:
             marker = take.markers[result.index]
         set_marker_color(marker, result.color)
         write_readouts(take, result.styles, result.check)
-        if self._masks_before is not None:  # picked by a click: what would be found of it is seen at once
+        if self._masks_before is not None:  # picked by a click: its mask is shown at once
             _show_masks(bpy.context, True)
-        show_frame(scene)
+        update_shown_masks(scene)
         for sentence in marker.warning.splitlines():
             self.report({"WARNING"}, sentence)
         say(
@@ -170,13 +168,13 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         )
 
     def _index(self, take: bpy.types.PropertyGroup) -> int | None:
-        """The marker whose color is picked; None for a new one."""
+        """Return the index of the marker whose color is picked; None for a new one."""
         if self.add or not len(take.markers):
             return None
         return min(int(take.active_marker), len(take.markers) - 1)
 
     def _segment(self, take: bpy.types.PropertyGroup) -> str | None:
-        """The body part whose marker is picked; None where there is none left to add one on."""
+        """Return the segment whose marker is picked; None if there is none left for a new marker."""
         index = self._index(take)
         return next_segment(take) if index is None else str(take.markers[index].segment)
 
@@ -184,34 +182,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 def _show_masks(context: bpy.types.Context, shown: bool) -> None:
     context.window_manager.keymark_show_masks = shown
     redraw_footage(context)
-
-
-def _styles(
-    take: bpy.types.PropertyGroup, picked: int | None, color: tuple[int, int, int]
-) -> "tuple[MarkerStyle, ...]":
-    """The markers as they will be.
-
-    Args:
-        take: Whose markers.
-        picked: Which of them gets the color; None for a new one.
-        color: Red, green, blue in 0 to 255.
-
-    Raises:
-        InputError: Two markers have one name or one segment, or every body part has one.
-    """
-    from ...core.footage.marker_style import MarkerStyle
-
-    styles = [
-        replace(style, color_srgb=color) if index == picked else style
-        for index, style in enumerate(marker_styles(take))
-        if index == picked or take.markers[index].is_picked
-    ]
-    if picked is None:
-        segment = next_segment(take)
-        if segment is None:
-            raise InputError("every body part has a marker already; choose the one to pick a color for")
-        styles.append(MarkerStyle(free_name(take, segment), segment, color))
-    return tuple(styles)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

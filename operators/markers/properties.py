@@ -1,4 +1,4 @@
-"""A colored marker as the scene stores it."""
+"""Properties of a colored marker, and the switch that shows masks."""
 
 import bpy
 
@@ -10,47 +10,47 @@ SEGMENTS = (
     WHOLE_TRUNK,
     *(segment.name for segment in HUMAN.segments if not segment.name.startswith(WITHOUT_VOLUME)),
 )
-"""What a marker can be bound to."""
+"""Segments that a marker can be bound to."""
 
 
 def segment_title(segment: str) -> str:
-    """What people call a segment."""
+    """Return a segment's label."""
     part, _, side = segment.partition(".")
     return part.replace("_", " ").title() + {"L": " Left", "R": " Right", "": ""}[side]
 
 
 def _take_of(marker: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
-    """The take that a marker belongs to."""
+    """Return the take that a marker belongs to."""
     takes = marker.id_data.keymark.takes
     return next((take for take in takes if any(other == marker for other in take.markers)), None)
 
 
 def clear_readouts(take: bpy.types.PropertyGroup) -> None:
-    """Forget what was found of a take's markers: each one's readout depends on all of them."""
+    """Clear the readouts of a take's markers: each depends on all markers."""
     for marker in take.markers:
         marker.sampled = 0
 
 
-def _changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _on_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     take = _take_of(marker)
     if take is not None and marker.is_picked:
         clear_readouts(take)
 
 
-def _segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _on_segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     if marker.name == marker.named_after:
         marker.name = marker.named_after = marker.segment
 
 
 class KEYMARK_PG_marker(bpy.types.PropertyGroup):
-    """One colored marker, and what a look at the footage found of it."""
+    """A colored marker, and its readout from the footage."""
 
-    name: bpy.props.StringProperty(name="Name", description="The marker's name", update=_changed)
+    name: bpy.props.StringProperty(name="Name", description="The marker's name", update=_on_changed)
     segment: bpy.props.EnumProperty(
         name="Segment",
         description="The body part that wears the marker; left and right are the performer's own",
         items=[(segment, segment_title(segment), "") for segment in SEGMENTS],
-        update=_segment_changed,
+        update=_on_segment_changed,
     )
     color: bpy.props.FloatVectorProperty(
         name="Color",
@@ -60,7 +60,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=(0.5, 0.5, 0.5),
-        update=_changed,
+        update=_on_changed,
     )
     named_after: bpy.props.StringProperty(
         name="Named After",
@@ -68,37 +68,36 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
     sampled: bpy.props.IntProperty(
-        name="Frames Looked At", description="Frames in which the marker was looked for; 0 for none yet"
+        name="Sampled Frames", description="Frames in which the marker was looked for; 0 for none yet"
     )
-    found: bpy.props.IntProperty(
-        name="Found In", description="Frames, of those looked at, in which the marker was found"
-    )
+    found: bpy.props.IntProperty(name="Found In", description="Sampled frames in which the marker was found")
     area: bpy.props.FloatProperty(
-        name="Area", description="What the marker usually covers, in pixels of the footage"
+        name="Area", description="Area that the marker usually covers, in pixels of the footage"
     )
     area_share: bpy.props.FloatProperty(
-        name="Share of the Picture", description="What the marker usually covers, as a share of the picture"
+        name="Share of the Picture",
+        description="Share of the picture that the marker usually covers",
     )
     distinctness: bpy.props.FloatProperty(
         name="Distinctness",
-        description="How surely its color tells the marker from everything else in the footage, 0 to 1",
+        description="Certainty that its color belongs to the marker and nothing else in the footage, 0 to 1",
     )
     warning: bpy.props.StringProperty(
-        name="Warning", description="What may go wrong with the marker, one sentence a line"
+        name="Warning", description="Likely problems with the marker, one sentence a line"
     )
     checked_clip: bpy.props.StringProperty(
         name="Checked Clip",
-        description="What the clip in which the marker was looked for is known by",
+        description="Digest of the clip in which the marker was looked for",
         options={"HIDDEN"},
     )
 
     @property
     def is_picked(self) -> bool:
-        """Whether the marker was ever given a color."""
+        """Whether the marker has a color."""
         return bool(self.is_property_set("color"))
 
     def has_readout(self, take: bpy.types.PropertyGroup) -> bool:
-        """Whether what was found holds for the footage of the take it belongs to."""
+        """Whether the readout is of the footage of the take that the marker belongs to."""
         contents = take.clip_state.contents
         return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
 
@@ -107,11 +106,11 @@ def register() -> None:
     """Register the marker, and the switch for masks, which no file keeps."""
     bpy.utils.register_class(KEYMARK_PG_marker)
     bpy.types.WindowManager.keymark_show_masks = bpy.props.BoolProperty(
-        name="Show Masks", description="Draw over the footage what has the markers' colors", default=False
+        name="Show Masks", description="Highlight the markers' colors over the footage", default=False
     )
 
 
 def unregister() -> None:
-    """Take both away."""
+    """Remove both."""
     del bpy.types.WindowManager.keymark_show_masks
     bpy.utils.unregister_class(KEYMARK_PG_marker)

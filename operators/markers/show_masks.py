@@ -1,46 +1,39 @@
-"""Show or hide what has the markers' colors."""
+"""Show or hide the masks of the markers' colors."""
 
 import bpy
 
 from ...core.errors import InputError
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.redraw import redraw_footage
-from ..shell.requirements import a_color, all_met, footage, idle, markers
+from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take
-from .mask_previews import look_at_frame, preview_of
+from .mask_previews import preview_of, update_masks
 
 
-class KEYMARK_OT_show_masks(bpy.types.Operator):
-    """Draw over the footage what has the markers' colors, in the camera view and the Movie Clip editor"""
+class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
+    """Highlight the markers' colors over the footage, in the camera view and the Movie Clip editor"""
 
     bl_idname = "keymark.show_masks"
     bl_label = "Show Masks"
     bl_options = {"REGISTER"}
+    requirements = (footage, markers, picked_color, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be footage, and a color to look for."""
-        return all_met(cls, context, footage, markers, a_color, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Switch over; colors that were not looked for in this session are looked for now."""
+    def run(self, context: bpy.types.Context) -> None:
+        """Toggle the masks; markers that were not checked in this session are checked first."""
         manager = context.window_manager
-        with reported(self):
-            if not manager.keymark_show_masks:
-                if preview_of(active_take(context.scene)) is None:
-                    _look_for_markers()
-                look_at_frame(context.scene)
-            manager.keymark_show_masks = not manager.keymark_show_masks
-            redraw_footage(context)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        if not manager.keymark_show_masks:
+            if preview_of(active_take(context.scene)) is None:
+                _check_markers()
+            update_masks(context.scene)
+        manager.keymark_show_masks = not manager.keymark_show_masks
+        redraw_footage(context)
 
 
-def _look_for_markers() -> None:
-    """Have them looked for, on a timer where there is one.
+def _check_markers() -> None:
+    """Run the check of the markers, on a timer in the user interface.
 
     Raises:
-        InputError: They cannot be.
+        InputError: The markers cannot be checked.
     """
     try:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")

@@ -4,7 +4,7 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ..shell.error_reports import reported
-from ..shell.keyed_frames import forget
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle, matches
 from ..shell.takes import active_take
@@ -30,12 +30,12 @@ class KEYMARK_OT_accept_match(bpy.types.Operator):
 
             take = active_take(context.scene)
             match = chosen_match(take)
-            forget()
+            invalidate_keyed_frames()
             if state_of(take, match) != "MATCHED":
                 say(self, "INFO", "Nothing is matched at frame {frame:g} any more", frame=match.frame)
                 return {"CANCELLED"}
             take_over(take.armature, take.keyframe_action, HUMAN, (round(match.frame, 3),))
-            forget()
+            invalidate_keyed_frames()
             say(self, "INFO", "Frame {frame:g} counts as posed now", frame=match.frame)
             return {"FINISHED"}
         return {"CANCELLED"}

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..shell.keyed_frames import forget
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
 from ..shell.requirements import all_met, matches
 from ..shell.takes import active_take
@@ -44,7 +44,7 @@ class KEYMARK_OT_jump_to_match(bpy.types.Operator):
         """Choose it in the list, which goes there."""
         scene, take = context.scene, active_take(context.scene)
         matching = take.matching
-        forget()
+        invalidate_keyed_frames()
         wanted = [
             (match.frame, place)
             for place, match in enumerate(matching.matches)

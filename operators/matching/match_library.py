@@ -16,7 +16,7 @@ from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, all_colors, all_met, camera, footage, idle, markers
 from ..shell.results import keep_reading, reading_of
-from ..shell.takes import active_take, footage_of, take_called
+from ..shell.takes import active_take, footage_of, take_by_identifier
 from .matches import keep_choice, known_matches
 from .properties import FLOORS
 
@@ -110,7 +110,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Key what was found beside what is posed; what earlier matching gave goes."""
-        take = take_called(scene, result.take)
+        take = take_by_identifier(scene, result.take)
         keep_choice(take, result.choice, result.keyframes, result.frames)
         keep_reading(take, result.reading)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)

@@ -10,7 +10,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
-from ..shell.keyed_frames import forget, has_frame, matched_frames, posed_frames
+from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, matched_frames, posed_frames
 from ..shell.keyframe_action import new_keyframe_action
 from ..shell.takes import actor_of
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def known_matches(take: bpy.types.PropertyGroup) -> "dict[float, Matched]":
     """What the take's keyframes were matched with that nobody has touched since, by scene frame."""
-    forget()  # a script may have changed a key that Blender has not told of yet
+    invalidate_keyed_frames()  # a script may have changed a key that Blender has not told of yet
     untouched = set(matched_frames(take))
     matches = take.matching.matches
     return {round(match.frame, 3): match.matched for match in matches if round(match.frame, 3) in untouched}
@@ -105,7 +105,7 @@ def keep_choice(
     """
     from ..bridge.matched_keyframes import remove_keyframes, take_over
 
-    forget()
+    invalidate_keyed_frames()
     actor, earlier, posed = actor_of(take), matched_frames(take), posed_frames(take)
     if take.keyframe_action is not None:
         take_over(actor, take.keyframe_action, HUMAN, posed)
@@ -123,7 +123,7 @@ def keep_choice(
         known = {frame.index: frame.candidates for frame in found.frames}
         free = [each for each in keyframes if not has_frame(posed, float(clip_frames[each.index]))]
         _keep_matches(take, free, known, clip_frames)
-    forget()
+    invalidate_keyed_frames()
 
 
 def _keep_matches(
@@ -153,4 +153,4 @@ def key_matches(take: bpy.types.PropertyGroup, frames: "Array", postures: "Seque
     take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)
     write_matched(actor, take.keyframe_action, frames, postures)
     assign_action(actor, take.keyframe_action)
-    forget()
+    invalidate_keyed_frames()

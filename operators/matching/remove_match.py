@@ -4,7 +4,7 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ..shell.error_reports import reported
-from ..shell.keyed_frames import forget
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle, matches
 from ..shell.takes import active_take
@@ -31,11 +31,11 @@ class KEYMARK_OT_remove_match(bpy.types.Operator):
             scene = context.scene
             take = active_take(scene)
             matching, match = take.matching, chosen_match(take)
-            forget()
+            invalidate_keyed_frames()
             frame = round(match.frame, 3)
             if state_of(take, match) == "MATCHED":
                 remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
-                forget()
+                invalidate_keyed_frames()
             matching.matches.remove(matching.active_match)
             matching.active_match = max(0, min(matching.active_match, len(matching.matches) - 1))
             scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)

@@ -14,8 +14,8 @@ from ..review.review_results import show_review
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
-from ..shell.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
-from ..shell.takes import active_take, actor_of, footage_of, take_called
+from ..shell.results import keep_reading, keep_reconstruction, keep_review, last_reconstruction, reading_of
+from ..shell.takes import active_take, actor_of, footage_of, take_by_identifier
 from .live_preview import LivePreview
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
 
         settings = active_take(scene)
         identifier, method, armature = settings.identifier, settings.method, settings.armature
-        watched, kept, earlier = settings.live_preview, reading_of(settings), solved_before(settings)
+        watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
         reading_scene = read_scene_take(
             footage_of(scene, settings),
             armature,
@@ -95,14 +95,14 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         """Write the motion's Action and let it animate the actor; the keyframes stay in theirs."""
         from ..bridge.fcurves import write_motion
 
-        take, motion = take_called(scene, result.take), result.reconstruction.motion
+        take, motion = take_by_identifier(scene, result.take), result.reconstruction.motion
         take.motion_action = write_motion(
             actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
         )
         take.motion_action.use_fake_user = True
         take.finish.outdated = take.finish.action is not None
         keep_reading(take, result.reconstruction.reading)
-        keep_solved(take, result.reconstruction)
+        keep_reconstruction(take, result.reconstruction)
         keep_review(take, result.review)
         show_review(take, result.review)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)

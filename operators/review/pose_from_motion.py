@@ -6,7 +6,7 @@ from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..shell.error_reports import reported
-from ..shell.keyed_frames import forget
+from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action
 from ..shell.messages import say
 from ..shell.requirements import actor, all_met, idle, motion
@@ -55,7 +55,7 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
             assign_action(take.armature, action)
             whole = int(frame // 1.0)
             scene.frame_set(whole, subframe=frame - whole)
-            forget()
+            invalidate_keyed_frames()
             say(
                 self,
                 "INFO",

@@ -1,4 +1,4 @@
-"""How operators run: jobs, requirements, messages, the base of panels, and the take they are about."""
+"""How operators run: requirements, error reports, jobs and Esc; the base of panels; the takes of a scene."""
 
-PROPERTIES = ("progress_properties",)
+PROPERTIES = ("job_progress",)
 MODULES = ("results", "keyed_frames")

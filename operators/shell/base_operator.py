@@ -1,4 +1,4 @@
-"""Base of Keymark's operators: what they require, and expected failures as error reports."""
+"""Base of Keymark's operators: requirements before they run, expected failures as error reports."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -11,11 +11,11 @@ from .requirements import Requirement, all_met
 
 
 class BaseOperator:
-    """Mixin of an operator: a subclass names what it requires, and gives `run`."""
+    """Mixin of an operator: a subclass lists its requirements and gives `run`."""
 
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     requirements: ClassVar[tuple[Requirement, ...]] = ()
-    """What must be there before the operator can run; the first that is missing becomes the tooltip."""
+    """What must hold before the operator can run; the first that does not becomes the tooltip."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -33,8 +33,8 @@ class BaseOperator:
         """Do the work.
 
         Returns:
-            None where it is done; {"CANCELLED"} where there was nothing to do, and so nothing to undo.
+            None when done; {"CANCELLED"} when nothing was changed, so that Blender adds no undo step.
 
         Raises:
-            KeymarkError: It could not be done; the sentence is reported.
+            KeymarkError: The work failed; its sentence is reported.
         """

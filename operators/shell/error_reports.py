@@ -1,4 +1,4 @@
-"""What can go wrong, as one sentence in Blender's status bar."""
+"""Expected failures as error reports in Blender's status bar."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,7 +14,7 @@ from .redraw import redraw_sidebars_soon
 def reported(operator: bpy.types.Operator) -> Iterator[None]:
     """Turn expected failures into the operator's error report.
 
-    In a script the report is raised by Blender as RuntimeError. Unexpected failures pass through.
+    In a script Blender raises the report as a RuntimeError. Unexpected failures pass through.
     """
     try:
         yield
@@ -31,4 +31,4 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
     except KeymarkError as error:
         operator.report({"ERROR"}, str(error))
     except ReferenceError:
-        say(operator, "ERROR", "Something the job works on was removed meanwhile; run it again")
+        say(operator, "ERROR", "An object or a take of this job was removed while it ran; run it again")

@@ -1,4 +1,4 @@
-"""What operators share that wait for a click on the footage."""
+"""Operators that wait for a click on the footage: events they pass on, and whether footage is shown."""
 
 import bpy
 
@@ -18,13 +18,13 @@ NAVIGATION = {
     ),
     *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
 }
-"""Events that move the view or the frame, and are left to Blender meanwhile."""
+"""Events that move the view or change the frame; the operator passes them on to Blender."""
 
 
 def footage_is_shown(
     operator: bpy.types.Operator, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> bool:
-    """Whether an editor of the window shows the take's footage; where none does, the operator says so."""
+    """Whether an editor of the window shows the take's footage; if not, an error is reported."""
     with reported(operator):
         if shows_footage(context, take):
             return True

@@ -1,7 +1,7 @@
-"""Where an editor shows the footage: pixels of the file to places in a region, and back.
+"""The footage in an editor: footage pixels to positions in a region, and back.
 
-Footage pixels count from the top left corner, x right and y down, in the file's own picture. The 3D viewport
-shows it straightened, as its camera has no distortion; the Movie Clip editor shows it as it is.
+Footage pixels are those of the file's own picture: from its top left corner, x right, y down. The 3D viewport
+shows the picture undistorted, as Blender's camera has no distortion; the Movie Clip editor shows it as it is.
 """
 
 from dataclasses import dataclass, replace
@@ -25,25 +25,25 @@ class FootageView:
     size: tuple[int, int]
     """Width and height of the footage [px]."""
     top_left: Array
-    """(2,) place of the picture's corner in the region, y up [px]."""
+    """(2,) position of the picture's top left corner in the region, y up [px]."""
     extent: Array
-    """(2,) from there to the bottom right corner [px]."""
+    """(2,) vector from there to the bottom right corner [px]."""
     lens: Camera | None
-    """The lens whose distortion the region takes out; None where it shows the picture as it is."""
+    """The lens whose distortion is removed in the region; None if the picture is shown as it is."""
 
     def to_region(self, pixels: ArrayLike) -> Array:
-        """Places (..., 2) in the region of footage pixels (..., 2)."""
+        """Positions (..., 2) in the region of footage pixels (..., 2)."""
         flat = np.asarray(pixels, dtype=np.float64)
         if self.lens is not None:
             _, direction = self.lens.rays(flat)
-            flat = _straight(self.lens).project(direction)[0]
+            flat = _undistorted(self.lens).project(direction)[0]
         return np.asarray(self.top_left + flat / self.size * self.extent)
 
-    def to_footage(self, places: ArrayLike) -> Array:
-        """Footage pixels (..., 2) at places (..., 2) in the region."""
-        flat = (np.asarray(places, dtype=np.float64) - self.top_left) / self.extent * self.size
+    def to_footage(self, positions: ArrayLike) -> Array:
+        """Footage pixels (..., 2) at positions (..., 2) in the region."""
+        flat = (np.asarray(positions, dtype=np.float64) - self.top_left) / self.extent * self.size
         if self.lens is not None:
-            _, direction = _straight(self.lens).rays(flat)
+            _, direction = _undistorted(self.lens).rays(flat)
             flat = self.lens.project(direction)[0]
         return np.asarray(flat)
 
@@ -51,9 +51,9 @@ class FootageView:
 def footage_view(
     scene: bpy.types.Scene, take: bpy.types.PropertyGroup, area: bpy.types.Area, region: bpy.types.Region
 ) -> FootageView | None:
-    """How a region of an editor shows a take's footage; None where it does not show it.
+    """Return how a region of an editor shows a take's footage; None if it does not.
 
-    In place of a file that is missing Blender shows a picture of another size.
+    Instead of a missing file Blender shows a picture of another size, which is not the footage.
     """
     if take.clip is None or take.clip_state.missing or region.type != "WINDOW" or not all(take.clip.size):
         return None
@@ -68,7 +68,14 @@ def footage_view(
 def pixel_under(
     context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
 ) -> tuple[float, float] | None:
-    """The footage pixel under a place in the window, in whichever editor shows the footage there."""
+    """Return the footage pixel under the mouse; None if no editor shows the footage there.
+
+    Args:
+        context: Its window is searched.
+        take: The take.
+        mouse_x: Mouse position in the window, from its left edge [px].
+        mouse_y: The same from its bottom edge [px].
+    """
     for area in context.screen.areas:
         if not (area.x <= mouse_x < area.x + area.width and area.y <= mouse_y < area.y + area.height):
             continue
@@ -102,7 +109,7 @@ def _camera_view(
     if camera is None or camera != take.camera or view is None or view.view_perspective != "CAMERA":
         return None
     matrix = camera.matrix_world.normalized()
-    # Top right, bottom right, bottom left, top left.
+    # `view_frame` gives top right, bottom right, bottom left, top left.
     frame = [matrix @ corner for corner in camera.data.view_frame(scene=scene)]
     corners = [location_3d_to_region_2d(region, view, corner) for corner in (frame[3], frame[1])]
     if any(corner is None for corner in corners):
@@ -133,5 +140,5 @@ def _clip_view(
     )
 
 
-def _straight(lens: Camera) -> Camera:
+def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))

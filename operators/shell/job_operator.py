@@ -10,25 +10,24 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run as run_job
 from .base_operator import BaseOperator
+from .cancel_on_esc import cancel_job
 from .error_reports import reported
-from .messages import label, say
+from .job_progress import time_left
 from .redraw import redraw_sidebars, redraw_sidebars_soon
 
 if TYPE_CHECKING:
     from ...core.progress import Progress
 
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
-"""How long a job runs before the user interface is drawn again: as long as drawing took, between these."""
+"""Bounds of a time slice; in between, a job runs as long as the user interface took to draw."""
 TIMER_S = 0.01
-EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
-"""Before so much is done nobody can tell how long the rest takes."""
 
 
 class JobOperator(BaseOperator):
-    """Mixin of an operator whose work is a job that yields its progress.
+    """Mixin of an operator whose work is a job: a generator that yields its progress and returns its result.
 
     A subclass gives `start`, which changes nothing, and `finish`, which writes the result into the scene:
-    so a job that is cancelled or fails leaves everything as it was.
+    so a job that is cancelled (see `cancel_on_esc`) or fails leaves everything as it was.
     """
 
     _job: Generator[Any, None, Any] | None = None
@@ -39,24 +38,24 @@ class JobOperator(BaseOperator):
 
     @abstractmethod
     def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
-        """The job; it must leave the scene as it was."""
+        """Return the job; it must leave the scene as it was."""
 
     @abstractmethod
     def finish(self, scene: bpy.types.Scene, result: Any) -> None:
         """Write the job's result into the scene."""
 
     def watch(self, progress: "Progress") -> None:
-        """Show what the job has found so far; by default nothing is shown."""
+        """Show a preview of the job's result; by default there is none."""
 
     def unwatch(self) -> None:
-        """Leave everything as it was before `watch`."""
+        """Remove the preview: everything is as before `watch`."""
 
     def run(self, context: bpy.types.Context) -> None:
-        """Do the whole job at once."""
+        """Run the whole job at once."""
         self.finish(context.scene, run_job(self.start(context.scene)))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Do the job in slices, so that the user interface stays alive."""
+        """Run the job in time slices, so that the user interface stays alive."""
         if bpy.app.background:  # there are no timer events
             return self.execute(context)
         with reported(self):
@@ -66,7 +65,7 @@ class JobOperator(BaseOperator):
         return {"CANCELLED"}
 
     def begin(self, context: bpy.types.Context) -> None:
-        """Start the job and the timer that keeps it going; `modal` must be called from then on."""
+        """Start the job and its timer, whose events Blender passes to `modal`."""
         self._job = self.start(context.scene)
         self._scene_uid = context.scene.session_uid
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
@@ -74,10 +73,8 @@ class JobOperator(BaseOperator):
         self._show(context, "Starting", 0.0)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Go on with the job, or stop it."""
-        if event.type == "ESC" and event.value == "PRESS":
-            self.cancel(context)
-            say(self, "INFO", "Cancelled")
+        """Run the job for one time slice, or cancel it."""
+        if cancel_job(self, context, event):
             return {"CANCELLED"}
         if event.type != "TIMER" or self._job is None:
             return {"PASS_THROUGH"}
@@ -106,7 +103,7 @@ class JobOperator(BaseOperator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Stop the job and take its timer and its progress bar away; Blender calls this as well."""
+        """Close the job, and remove its preview, timer and progress bar; Blender calls this as well."""
         if self._job is not None:
             self._job.close()
             self._job = None
@@ -120,11 +117,15 @@ class JobOperator(BaseOperator):
         redraw_sidebars_soon()
 
     def _scene(self) -> bpy.types.Scene:
-        """The scene that the job was started in, whatever it is called by now."""
+        """The scene that the job was started in, which may have been renamed.
+
+        Raises:
+            InputError: It was removed.
+        """
         for scene in bpy.data.scenes:
             if scene.session_uid == self._scene_uid:
                 return scene
-        raise InputError("the scene that the job was about has been removed meanwhile; nothing was changed")
+        raise InputError("the scene of this job was removed while it ran; nothing was changed")
 
     def _show(self, context: bpy.types.Context, stage: str, fraction: float) -> None:
         left = time_left(monotonic() - self._begun, fraction)
@@ -132,20 +133,3 @@ class JobOperator(BaseOperator):
         words = f"{stage}: {100.0 * fraction:.0f}%   |   "
         context.workspace.status_text_set(words + (f"{left}   |   " if left else "") + "Esc: Cancel")
         redraw_sidebars(context)
-
-
-def time_left(elapsed_s: float, fraction: float) -> str:
-    """About how long a job will still take, in words; empty while nobody can tell.
-
-    Args:
-        elapsed_s: How long it has taken so far.
-        fraction: How much of it is done.
-    """
-    if elapsed_s < EARLIEST_S or fraction < LEAST_FRACTION:
-        return ""
-    seconds = elapsed_s * (1.0 - fraction) / fraction
-    if seconds >= 90.0:
-        return label("about {minutes:.0f} min left", minutes=seconds / 60.0)
-    # To what a person can tell apart, so that the words do not flicker.
-    step = 10.0 if seconds > 30.0 else 5.0 if seconds > 10.0 else 1.0
-    return label("about {seconds:.0f} s left", seconds=max(step * round(seconds / step), 1.0))

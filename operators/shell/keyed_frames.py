@@ -1,4 +1,4 @@
-"""Which frames are keyframes, posed or matched, known without looking at the keys at every redraw."""
+"""Scene frames of keyframes, posed and matched, cached so that redraws need not read the keys."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -11,35 +11,35 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
 SAME_FRAME = 0.5
-"""A key nearer than this [frames] is the frame's own."""
+"""A key nearer to a frame than this [frames] counts as that frame's."""
 
 
 @dataclass(frozen=True)
 class KeyedFrames:
-    """Scene frames keyed in an Action, in order."""
+    """Scene frames keyed in an Action, in ascending order."""
 
     all: tuple[float, ...] = ()
     untouched: tuple[float, ...] = ()
-    """Those of them whose keys are as matching wrote them."""
+    """Those whose keys are unchanged since matching wrote them."""
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
-"""By an armature and an Action, as Blender numbers them in a session."""
+"""By the session numbers (`session_uid`) of an armature and an Action."""
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Scene frames of all of the take's keyframes, posed or matched, in order, wherever they were moved."""
+    """Return the scene frames of a take's keyframes, posed and matched, in ascending order."""
     return _keyed_of(take).all
 
 
 def matched_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Scene frames that were matched with a library and not touched since, in order."""
+    """Return the scene frames that were matched with a library and not changed since, in ascending order."""
     known = {round(match.frame, 3) for match in take.matching.matches}
     return tuple(frame for frame in _keyed_of(take).untouched if frame in known)
 
 
 def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Scene frames that the animator has posed, in order."""
+    """Return the scene frames that the animator posed, in ascending order."""
     matched = set(matched_frames(take))
     return tuple(frame for frame in keyframes_of(take) if frame not in matched)
 
@@ -47,75 +47,75 @@ def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
 def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
     if take.armature is None or take.keyframe_action is None:
         return KeyedFrames()
-    both = take.armature.session_uid, take.keyframe_action.session_uid
-    if both not in _keyed:
+    key = take.armature.session_uid, take.keyframe_action.session_uid
+    if key not in _keyed:
         from ..bridge.keyframes import keyed_frames
         from ..bridge.matched_keyframes import untouched_frames
 
-        given = take.armature, take.keyframe_action, HUMAN
+        source = take.armature, take.keyframe_action, HUMAN
         try:
-            _keyed[both] = KeyedFrames(keyed_frames(*given), untouched_frames(*given))
+            _keyed[key] = KeyedFrames(keyed_frames(*source), untouched_frames(*source))
         except InputError:  # an armature of other bones
-            _keyed[both] = KeyedFrames()
-    return _keyed[both]
+            _keyed[key] = KeyedFrames()
+    return _keyed[key]
 
 
 def is_posed(take: bpy.types.PropertyGroup, frame: float) -> bool:
-    """Whether the animator has posed a frame of the clip, which may lie between whole ones."""
+    """Whether the animator posed a frame; a clip's frame may lie between whole scene frames."""
     return has_frame(posed_frames(take), frame)
 
 
 def has_frame(frames: Sequence[float], frame: float) -> bool:
-    """Whether one of some frames, in order, is this one."""
+    """Whether ascending frames contain one within `SAME_FRAME`."""
     after = bisect_left(frames, frame)
     return any(abs(near - frame) < SAME_FRAME for near in frames[max(0, after - 1) : after + 1])
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """The take's proposed scene frames, in order."""
+    """Return the take's proposed scene frames, in ascending order."""
     return sorted({proposal.frame for proposal in take.proposals}) if take else []
 
 
-def unposed(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """The proposed frames that have no keyframe yet, in order."""
+def unposed_proposals(take: bpy.types.PropertyGroup | None) -> list[int]:
+    """Return the proposed frames without a keyframe, in ascending order."""
     if take is None:
         return []
     keyed = {round(frame) for frame in keyframes_of(take)}
     return [frame for frame in proposed_frames(take) if frame not in keyed]
 
 
-def forget() -> None:
-    """Look at the keys again next time."""
+def invalidate_keyed_frames() -> None:
+    """Empty the cache: the next query reads the keys again."""
     _keyed.clear()
 
 
 @persistent
-def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _on_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     if depsgraph is None or depsgraph.id_type_updated("ACTION"):
-        forget()
+        invalidate_keyed_frames()
 
 
 @persistent
-def _loaded(*_arguments: object) -> None:
-    forget()
+def _on_load(*_arguments: object) -> None:
+    invalidate_keyed_frames()
 
 
-_ON_CHANGE = ("depsgraph_update_post",)
-_ON_LOAD = ("load_post", "undo_post", "redo_post")
+CHANGE_HANDLERS = ("depsgraph_update_post",)
+LOAD_HANDLERS = ("load_post", "undo_post", "redo_post")
 
 
 def register() -> None:
-    """Forget whenever keys may have changed."""
-    for name in _ON_CHANGE:
-        getattr(bpy.app.handlers, name).append(_changed)
-    for name in _ON_LOAD:
-        getattr(bpy.app.handlers, name).append(_loaded)
+    """Add handlers that empty the cache when keys may have changed."""
+    for name in CHANGE_HANDLERS:
+        getattr(bpy.app.handlers, name).append(_on_change)
+    for name in LOAD_HANDLERS:
+        getattr(bpy.app.handlers, name).append(_on_load)
 
 
 def unregister() -> None:
-    """Take the handlers away."""
-    for name in _ON_CHANGE:
-        getattr(bpy.app.handlers, name).remove(_changed)
-    for name in _ON_LOAD:
-        getattr(bpy.app.handlers, name).remove(_loaded)
-    forget()
+    """Remove the handlers."""
+    for name in CHANGE_HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_on_change)
+    for name in LOAD_HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_on_load)
+    invalidate_keyed_frames()

@@ -1,4 +1,4 @@
-"""The Action that is posed in: it must be the one that animates the actor while the animator poses."""
+"""A take's keyframe Action: it must animate the actor while the animator poses."""
 
 import bpy
 
@@ -7,15 +7,15 @@ from ..bridge.object_space import evaluated
 
 
 def shows_keyframes(take: bpy.types.PropertyGroup) -> bool:
-    """Whether nothing but the keyframes animates the actor."""
+    """Whether the actor is animated by its keyframe Action, or by none."""
     data = take.armature.animation_data
     return data is None or data.action is None or data.action == take.keyframe_action
 
 
 def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
-    """Let the keyframes animate the actor instead of the motion; whether anything was changed.
+    """Let the keyframe Action animate the actor instead of the motion; return whether that changed anything.
 
-    A new Action is evaluated once, at once, so that what is posed afterwards stays.
+    The new Action is evaluated at once: evaluated later, it would overwrite a pose set in between.
     """
     data = take.armature.animation_data
     if data is None or data.action == take.keyframe_action:
@@ -29,7 +29,7 @@ def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
 
 
 def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
-    """An empty Action for keyframes, kept even while the motion's Action is the one in use."""
+    """Return an empty Action for keyframes, with a fake user: kept while the motion's is in use."""
     action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
     action.use_fake_user = True
     return action

@@ -1,7 +1,7 @@
-"""Sentences for people, from templates that can be translated.
+"""Reports and labels, from templates that can be translated.
 
-A template is a plain literal where it is said, so that Blender's own tools find it for translators; what
-varies stands in braces and is filled in after translation.
+A template is a plain literal in the call, where Blender's tools find it for translators. Values stand in
+braces and are filled in after translation.
 """
 
 from typing import Any
@@ -10,25 +10,25 @@ import bpy
 
 
 def say(operator: bpy.types.Operator, kind: str, template: str, **values: Any) -> None:
-    """Report a sentence.
+    """Report a sentence in the status bar.
 
     Args:
-        operator: Whose report it is.
+        operator: The operator that reports it.
         kind: INFO, WARNING or ERROR; in a script, ERROR becomes a RuntimeError.
-        template: The sentence, with what varies in braces.
-        values: What goes into the braces.
+        template: The sentence, with values in braces.
+        values: The values, by name.
     """
     operator.report({kind}, bpy.app.translations.pgettext_rpt(template).format(**values))
 
 
 def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup) -> None:
-    """Say so where a take's final Action, which goes out, was made from an earlier motion."""
+    """Warn that a take's final Action, which is about to be used, was baked from an earlier motion."""
     if take.finish.action is not None and take.finish.outdated:
         say(operator, "WARNING", "The final Action is of an earlier motion; bake it again for the newest")
 
 
 def label(template: str, **values: Any) -> str:
-    """A line of a panel; draw it with `translate=False`, as it is translated already."""
+    """Return a translated label; draw it with `translate=False`."""
     return str(bpy.app.translations.pgettext_iface(template)).format(**values)
 
 

@@ -1,20 +1,23 @@
-"""What Keymark's panels share."""
+"""Bases of Keymark's panels, and their rows: a job's progress, a wrapped sentence.
+
+Each step of the work has its panels in its own folder's `panel.py`.
+"""
 
 from textwrap import wrap
 
 import bpy
 
-from .running_jobs import job_is_running
+from .job_progress import job_is_running
 from .takes import find_take
 
 ESCAPE_UNITS = 2.9
-"""Width of the word Esc with an icon."""
-LETTER, MARGIN = 6.2, 80.0
-"""Pixels that a letter of a label takes on a plain screen, and those beside the words."""
+"""Width of the label Esc with its icon."""
+LETTER_PX, MARGIN_PX = 6.2, 80.0
+"""Width of a label's letter, and of what stands beside its text, at a UI scale of 1."""
 
 
 class SidebarPanel:
-    """Where all of Keymark's panels are."""
+    """A panel in the 3D viewport's sidebar, under the tab Keymark."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -22,37 +25,37 @@ class SidebarPanel:
 
 
 class SubPanel(SidebarPanel):
-    """A panel inside the main one, with properties in Blender's two columns."""
+    """A panel inside the main panel, with properties in Blender's two columns."""
 
     bl_parent_id = "KEYMARK_PT_main"
     layout: bpy.types.UILayout
 
     def column(self) -> bpy.types.UILayout:
-        """The panel's column of properties."""
+        """Return the panel's column of properties."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         return self.layout.column()
 
 
 class TakePanel(SubPanel):
-    """A step of the work on the active take; there is none to show without a take."""
+    """A panel of the active take; hidden without a take."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There is a take."""
+        """Whether there is a take."""
         return find_take(context.scene) is not None
 
 
 def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: str = "") -> bool:
-    """Draw how far the running job is, on one line; return whether it runs.
+    """Draw the progress of the running job on one line; return whether a job runs.
 
-    What it stands in for is a line as well, so that nothing moves when a job begins or ends: Blender draws
-    panels over each other for a moment where that happens. An eyedropper that waits does no work.
+    It replaces one line, so that nothing moves when a job begins or ends: where panels change their height,
+    Blender draws them over each other for a moment. An eyedropper that waits for a click has no progress.
 
     Args:
-        layout: Where.
-        context: Whose job.
-        job: Only that of this operator, as in `keymark.reconstruct`; any by default.
+        layout: Where it is drawn.
+        context: Its windows are searched for the job.
+        job: Only the job of this operator, as in `keymark.reconstruct`; any by default.
     """
     progress = context.window_manager.keymark_progress
     if not progress.stage or not job_is_running(context, job):
@@ -73,17 +76,17 @@ def draw_sentence(
     icon: str = "DOT",
     most_lines: int | None = None,
 ) -> None:
-    """Draw a sentence that is translated already, broken into lines as wide as the sidebar.
+    """Draw a translated sentence, wrapped to the width of the sidebar.
 
     Args:
-        layout: Where.
-        context: Whose sidebar.
-        sentence: What to draw.
-        icon: Before the first line.
-        most_lines: What is longer ends in dots.
+        layout: Where it is drawn.
+        context: Its region is the sidebar.
+        sentence: The sentence.
+        icon: Icon before the first line.
+        most_lines: Number of lines after which the sentence is cut off with dots.
     """
     scale = context.preferences.system.ui_scale
-    letters = max(20, int((context.region.width / scale - MARGIN) / LETTER))
+    letters = max(20, int((context.region.width / scale - MARGIN_PX) / LETTER_PX))
     lines = layout.column(align=True)
     lines.scale_y = 0.8
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")

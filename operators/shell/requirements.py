@@ -1,30 +1,30 @@
-"""What operators need before they can run, as sentences for their tooltips."""
+"""Requirements of operators: a function returns None if met, else the tooltip that says what to do first."""
 
 from collections.abc import Callable
 
 import bpy
 
-from .keyed_frames import forget, keyframes_of
-from .running_jobs import job_is_running
+from .job_progress import job_is_running
+from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context], str | None]
 
 
 def footage(context: bpy.types.Context) -> str | None:
-    """A clip is loaded."""
+    """The take has a clip."""
     take = find_take(context.scene)
     return None if take and take.clip else "Load the footage or open a take first"
 
 
 def camera(context: bpy.types.Context) -> str | None:
-    """The footage's camera is known."""
+    """The take has a camera."""
     take = find_take(context.scene)
     return None if take and take.camera else "Choose the camera that the footage was taken with first"
 
 
 def actor(context: bpy.types.Context) -> str | None:
-    """The scene has an actor."""
+    """The take's actor is in the scene and can be edited."""
     take = find_take(context.scene)
     armature_object = take.armature if take else None
     if armature_object is None or armature_object.name not in context.scene.objects:
@@ -35,102 +35,102 @@ def actor(context: bpy.types.Context) -> str | None:
 
 
 def markers(context: bpy.types.Context) -> str | None:
-    """There are markers."""
+    """The take has markers."""
     take = find_take(context.scene)
     return None if take and len(take.markers) else "Add the markers that the performer wears first"
 
 
-def a_color(context: bpy.types.Context) -> str | None:
-    """A marker was given a color."""
+def picked_color(context: bpy.types.Context) -> str | None:
+    """At least one marker has a color."""
     take = find_take(context.scene)
     picked = take is not None and any(marker.is_picked for marker in take.markers)
     return None if picked else "Pick the color of a marker first"
 
 
 def all_colors(context: bpy.types.Context) -> str | None:
-    """Every marker was given a color."""
+    """Every marker has a color."""
     take = find_take(context.scene)
     picked = take is not None and all(marker.is_picked for marker in take.markers)
     return None if picked else "Pick the colors of all markers first, or remove those that have none"
 
 
 def keyframes(context: bpy.types.Context) -> str | None:
-    """There is an Action with keyframes."""
+    """The take has a keyframe Action."""
     take = find_take(context.scene)
     return None if take and take.keyframe_action else "Pose the actor and store a keyframe first"
 
 
 def two_keyframes(context: bpy.types.Context) -> str | None:
-    """There are keyframes to find frames between."""
+    """The take has at least two keyframes."""
     take = find_take(context.scene)
     if take is None or take.keyframe_action is None:
         return keyframes(context)
     if len(keyframes_of(take)) == 1:
-        forget()  # a script may have set a key that Blender has not told of yet
+        invalidate_keyed_frames()  # a script may have set a key for which Blender has called no handler yet
     if len(keyframes_of(take)) == 1:
         return "Store a keyframe at another frame first; there is only one"
     return None
 
 
 def matches(context: bpy.types.Context) -> str | None:
-    """There are frames that a library gave postures."""
+    """The take has frames matched with a library."""
     take = find_take(context.scene)
     return None if take and len(take.matching.matches) else "Match a library first"
 
 
 def motion(context: bpy.types.Context) -> str | None:
-    """There is a reconstructed motion."""
+    """The take has a reconstructed motion."""
     take = find_take(context.scene)
     return None if take and take.motion_action else "Reconstruct the motion first"
 
 
 def turntable(context: bpy.types.Context) -> str | None:
-    """There are views of the actor from other sides."""
+    """The take has a turntable."""
     take = find_take(context.scene)
     return None if take and take.turntable.collection else "Set up the turntable first"
 
 
 def weak_frames(context: bpy.types.Context) -> str | None:
-    """There are frames worth another keyframe."""
+    """The review found frames worth another keyframe."""
     take = find_take(context.scene)
     if take is None or take.review.frame_count == 0:
         return "Reconstruct the motion first"
     return None if len(take.review.weak_frames) else "No frame needs another keyframe"
 
 
-def a_library_here(context: bpy.types.Context) -> str | None:
-    """A keyframe library is made in this file."""
+def scene_library(context: bpy.types.Context) -> str | None:
+    """The scene has a keyframe library of its own."""
     return None if len(context.scene.keymark.libraries) else "Begin a keyframe library first"
 
 
-def a_shelved_library(context: bpy.types.Context) -> str | None:
-    """There is a keyframe library at hand."""
+def registered_library(context: bpy.types.Context) -> str | None:
+    """The registry has a keyframe library."""
     return None if len(context.window_manager.keymark_shelf.libraries) else "Import a keyframe library first"
 
 
 def object_mode_possible(context: bpy.types.Context) -> str | None:
-    """No object is being edited."""
+    """The active object is in Object Mode, in which Blender adds objects."""
     active = context.view_layer.objects.active
     return None if active is None or active.mode == "OBJECT" else "Leave the active object's mode first (Tab)"
 
 
 def bones_editable(context: bpy.types.Context) -> str | None:
-    """Nothing is in a mode from which bones cannot be changed."""
+    """The active object is in Object or Pose Mode, from which bones can be edited."""
     active = context.view_layer.objects.active
     free = active is None or active.mode in ("OBJECT", "POSE")
     return None if free else "Leave the active object's mode first (Tab)"
 
 
 def idle(context: bpy.types.Context) -> str | None:
-    """None of Keymark's jobs runs."""
+    """No job of Keymark's runs."""
     return "Another of Keymark's jobs is running" if job_is_running(context) else None
 
 
 def all_met(
-    operator_class: type[bpy.types.Operator], context: bpy.types.Context, *needed: Requirement
+    operator_class: type[bpy.types.Operator], context: bpy.types.Context, *requirements: Requirement
 ) -> bool:
-    """Whether everything is there; the first thing that is not becomes the tooltip."""
-    for requirement in needed:
+    """Whether all requirements are met; the sentence of the first unmet one becomes the tooltip."""
+    for requirement in requirements:
         sentence = requirement(context)
         if sentence is not None:
             operator_class.poll_message_set(sentence)

@@ -1,4 +1,4 @@
-"""The takes of a scene: finding, adding and switching between them."""
+"""The takes of a scene: finding one, adding one, switching between them."""
 
 from collections.abc import Iterable
 from uuid import uuid4
@@ -9,14 +9,14 @@ from ...core.errors import InputError
 from ..bridge.footage import Footage, set_scene_range
 
 VERSION = 1
-"""Version of Keymark's properties; a scene says by which it was written."""
+"""Version of Keymark's properties; each scene holds the version that wrote it."""
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """The take that is worked on.
+    """Return the active take.
 
     Raises:
-        InputError: The scene has none.
+        InputError: The scene has no take.
     """
     take = find_take(scene)
     if take is None:
@@ -25,30 +25,30 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
 
 
 def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
-    """The take that is worked on; None where the scene has none."""
+    """Return the active take; None if the scene has no take."""
     settings = scene.keymark
     if not len(settings.takes):
         return None
     return settings.takes[min(settings.active_take, len(settings.takes) - 1)]
 
 
-def take_called(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
-    """The take of an identifier, whichever is worked on now.
+def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
+    """Return the take with an identifier, active or not.
 
     Raises:
-        InputError: It has been removed.
+        InputError: There is none: it was removed.
     """
     for take in scene.keymark.takes:
         if take.identifier == identifier:
             return take
-    raise InputError("the take that the job was about has been removed meanwhile; nothing was changed")
+    raise InputError("the take of this job was removed while it ran; nothing was changed")
 
 
 def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
-    """A take's armature.
+    """Return a take's armature.
 
     Raises:
-        InputError: It has none, or it has been deleted.
+        InputError: The take has none, or it was deleted.
     """
     if take.armature is None:
         raise InputError(f"take '{take.name}' has no actor; build one, or choose its armature")
@@ -56,18 +56,18 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
 
 
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
-    """Add a take, which becomes the active one; a number makes its name unique."""
+    """Add a take and make it the active one; a number makes its name unique."""
     settings = scene.keymark
     settings.version = max(settings.version, VERSION)
     take = settings.takes.add()
-    take.name = name  # made unique, see `unique_name`
+    take.name = name  # its update makes it unique, see `unique_name`
     take.identifier = uuid4().hex
     settings.active_take = len(settings.takes) - 1
     return take
 
 
 def unique_name(name: str, others: Iterable[str]) -> str:
-    """A name that none of the others has, by a number like Blender's own."""
+    """Return a name that none of the others has, made unique by a number like Blender's own (`Walk.001`)."""
     taken = set(others)
     stem, _, number = name.rpartition(".")
     base = stem if stem and len(number) == 3 and number.isdigit() else name
@@ -76,17 +76,17 @@ def unique_name(name: str, others: Iterable[str]) -> str:
 
 
 def ensure_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """The active take, or a first one."""
+    """Return the active take; if there is none, add the first one."""
     return find_take(scene) or add_take(scene, "Take")
 
 
 def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage:
-    """A take's clip and camera in its scene."""
+    """Return a take's clip and camera in its scene."""
     return Footage(scene, take.clip, take.camera)
 
 
-def bring_forward(scene: bpy.types.Scene) -> None:
-    """Let the scene show the active take: its clip, its camera, its range of frames, its actor selected."""
+def show_active_take(scene: bpy.types.Scene) -> None:
+    """Set the scene's clip, camera and frame range to the active take's, and select its actor."""
     take = find_take(scene)
     if take is None:
         return
@@ -107,7 +107,7 @@ def bring_forward(scene: bpy.types.Scene) -> None:
 
 
 def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) -> None:
-    """Let timelines and the next mode be about an actor, unless the animator is busy with another's."""
+    """Select an actor and make it active, unless another object is being edited."""
     layer = bpy.context.view_layer
     if armature_object is None or bpy.context.scene != scene or armature_object.name not in layer.objects:
         return

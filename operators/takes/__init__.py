@@ -1,4 +1,4 @@
-"""Takes: opening, saving and switching between them, and the sidebar's main panel."""
+"""Takes: their properties, opening and saving them, the sidebar's main panel, and files of other versions."""
 
 PROPERTIES = ("take_properties", "scene_properties")
 MODULES = (
@@ -7,7 +7,7 @@ MODULES = (
     "add_performer",
     "remove_take",
     "open_dropped",
-    "drop_files",
+    "file_handlers",
     "panel",
     "upgrade",
 )

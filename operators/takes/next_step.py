@@ -1,15 +1,15 @@
-"""What to do next with a take, from what costs nothing to look at."""
+"""The next step of the work on a take, from properties alone, so that it can be drawn."""
 
 import bpy
 
 from ..matching.matches import state_of
-from ..shell.keyed_frames import keyframes_of, matched_frames, unposed
+from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
 
 FEWEST_KEYFRAMES = 2
 
 
 def next_step(take: bpy.types.PropertyGroup) -> str:
-    """A few words that fit in a narrow sidebar, to be translated where they are drawn."""
+    """Return a label short enough for a narrow sidebar; it is translated where it is drawn."""
     if take.clip is None:
         return "Next: load the footage"
     if take.clip_state.missing:
@@ -23,7 +23,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if not len(take.proposals) and not keyframes_of(take):
         return "Next: match a library, or pose"
     if take.motion_action is None:
-        if unposed(take) and not matched_frames(take):
+        if unposed_proposals(take) and not matched_frames(take):
             return "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"

@@ -6,22 +6,23 @@ import bpy
 
 from ..footage.load_footage import VIDEOS
 from ..footage.take_footage import look_through_camera, show_range
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle, object_mode_possible
+from ..shell.requirements import idle, object_mode_possible
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_open_take(bpy.types.Operator):
-    """Open a take: its footage behind its camera, its actor, its markers, and the keyframes posed for it"""
+class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
+    """Open a take: its footage behind its camera, its actor, its markers and its keyframes"""
 
     bl_idname = "keymark.open_take"
     bl_label = "Open Take"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (object_mode_possible, idle)
 
     filepath: bpy.props.StringProperty(
         name="File Path",
-        description="The take's folder, or the take.json in it; of a shoot also a mere clip",
+        description="The take's folder, or the take.json in it; in a shoot, also the clip alone",
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
@@ -35,34 +36,26 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     )
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Blender adds objects in Object Mode."""
-        return all_met(cls, context, object_mode_possible, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped."""
+        """Show the file browser, unless a file was dropped."""
         if self.filepath:
             return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Read the take, and only then change the scene."""
-        with reported(self):
-            from ...core.shoot.finding.take_location import take_place
-            from .take_to_scene import read_for_scene, show_take
+        from ...core.shoot.finding.take_location import take_place
+        from .take_to_scene import add_take_to_scene, read_for_scene
 
-            opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)
-            show_take(context, opened)
-            look_through_camera(context, active_take(context.scene))
-            show_range(context)
-            for note in opened.notes:
-                self.report({"WARNING"}, note)
-            count = len(opened.take.keyframes)
-            say(self, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)
+        add_take_to_scene(context, opened)
+        look_through_camera(context, active_take(context.scene))
+        show_range(context)
+        for note in opened.notes:
+            self.report({"WARNING"}, note)
+        count = len(opened.take.keyframes)
+        say(self, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -76,6 +69,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take both away."""
+    """Remove both."""
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     bpy.utils.unregister_class(KEYMARK_OT_open_take)

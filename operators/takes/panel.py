@@ -1,10 +1,10 @@
-"""The main panel: the running job, or the takes of the scene and what to do next."""
+"""The main panel: the takes of the scene, and the running job or the next step."""
 
 import bpy
 
 from ..library import registry
+from ..shell.job_progress import job_is_running
 from ..shell.panel import SidebarPanel, draw_progress
-from ..shell.running_jobs import job_is_running
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer
@@ -18,12 +18,12 @@ STEPS = (
     ("OVERLAY", "Review: see where another keyframe helps"),
     ("CHECKMARK", "Finish: bake, mark as asset, export"),
 )
-"""Icon and sentence of each step."""
-BIG = 1.6
+"""Icon and label of each step."""
+BUTTON_SCALE = 1.6
 
 
 class KEYMARK_UL_takes(bpy.types.UIList):
-    """Takes by name, with an icon that tells whether there is a motion yet."""
+    """Takes by name; the icon tells whether a take has a motion."""
 
     def draw_item(
         self,
@@ -44,12 +44,12 @@ class KEYMARK_UL_takes(bpy.types.UIList):
 
 
 class KEYMARK_MT_add_take(bpy.types.Menu):
-    """Ways to another take."""
+    """Ways to add a take."""
 
     bl_label = "Add Take"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Same clip, other clip, or one from disk."""
+        """Draw them: the same clip, another clip, a take from disk."""
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
         layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
@@ -58,12 +58,12 @@ class KEYMARK_MT_add_take(bpy.types.Menu):
 
 
 class KEYMARK_MT_take_specials(bpy.types.Menu):
-    """What is seldom done to a take."""
+    """Less frequent operators of takes."""
 
     bl_label = "Take Specials"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Removing with everything, and the guide."""
+        """Draw removal with all data, and the guide."""
         layout = self.layout
         entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
         entry.delete_data = True
@@ -71,7 +71,7 @@ class KEYMARK_MT_take_specials(bpy.types.Menu):
 
 
 class KEYMARK_PT_guide(bpy.types.Panel):
-    """The way from a video to an Action, in seven lines."""
+    """The steps from a video to an Action, one line each."""
 
     bl_label = "How It Works"
     bl_space_type = "VIEW_3D"
@@ -80,19 +80,19 @@ class KEYMARK_PT_guide(bpy.types.Panel):
     bl_ui_units_x = 16
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw one line a step."""
+        """Draw the steps."""
         column = self.layout.column(align=True)
         for icon, text in STEPS:
             column.label(text=text, icon=icon)
 
 
 class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
-    """What runs, which takes there are, and what to do next."""
+    """The takes, and the running job or the next step."""
 
     bl_label = "Keymark"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the running job, or the takes and the next step."""
+        """Draw the takes, and the running job or the next step."""
         registry.need()
         layout, take = self.layout, find_take(context.scene)
         if is_newer(context.scene):
@@ -100,7 +100,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             box.label(text="A newer Keymark wrote this file", icon="ERROR")
             box.label(text="Update Keymark before editing", icon="BLANK1")
         if take is None:
-            # Installing shows its progress among the libraries; what is above must not move.
+            # Installation shows its progress in the panel of libraries; the panel above must not move.
             if job_is_running(context, "keymark.install_") or not draw_progress(layout, context):
                 _draw_beginning(layout)
             return
@@ -110,9 +110,9 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
-    """What to begin with in an empty scene."""
+    """Draw what to begin with in an empty scene."""
     column = layout.column()
-    column.scale_y = BIG
+    column.scale_y = BUTTON_SCALE
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
     column.operator("keymark.open_take", icon="FILE_FOLDER")
     column.popover("KEYMARK_PT_guide", icon="HELP")
@@ -121,7 +121,7 @@ def _draw_beginning(layout: bpy.types.UILayout) -> None:
 
 
 def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """The list of takes; a single one is a line."""
+    """Draw the list of takes; a single take is one row."""
     row = layout.row()
     if len(settings.takes) == 1:
         buttons = row.row(align=True)

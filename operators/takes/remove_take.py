@@ -4,53 +4,52 @@ from collections.abc import Iterator
 
 import bpy
 
-from ..shell.requirements import all_met, idle
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import idle
 from ..shell.takes import active_take, find_take
 
-HELPERS = {"CAMERA", "EMPTY"}
+TURNTABLE_TYPES = {"CAMERA", "EMPTY"}
+"""Types of the objects that a turntable consists of."""
 
 
-class KEYMARK_OT_remove_take(bpy.types.Operator):
-    """Take the active take from the list; its clip, camera, actor and Actions stay unless said otherwise"""
+def take(context: bpy.types.Context) -> str | None:
+    """The scene has a take."""
+    return "There is no take to remove" if find_take(context.scene) is None else None
+
+
+class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
+    """Remove the active take from the list; its clip, camera, actor and Actions stay, unless deleted too"""
 
     bl_idname = "keymark.remove_take"
     bl_label = "Remove Take"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (take, idle)
 
     delete_data: bpy.props.BoolProperty(
         name="Delete Its Data",
-        description="Delete its actor, Actions, camera and clip too, but for what another take uses",
+        description="Delete its actor, Actions, camera and clip too, except those that another take uses",
         default=False,
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be one, and no job at work on it."""
-        if find_take(context.scene) is None:
-            cls.poll_message_set("There is no take to remove")
-            return False
-        return all_met(cls, context, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Remove it; the one before becomes active."""
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove the take; the one before it becomes active."""
         settings = context.scene.keymark
-        take = active_take(context.scene)
-        index = next(i for i, each in enumerate(settings.takes) if each == take)
-        own = set(_data_of(take))
+        active = active_take(context.scene)
+        index = next(i for i, each in enumerate(settings.takes) if each == active)
+        own = set(_data_of(active))
         settings.takes.remove(index)
         settings.active_take = max(0, index - 1)
         if self.delete_data:
             others = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
-            gone = own.difference(*(_data_of(other) for other in others))
-            inner = [block.data for block in gone if isinstance(block, bpy.types.Object)]
+            deleted = own.difference(*(_data_of(other) for other in others))
+            inner = [block.data for block in deleted if isinstance(block, bpy.types.Object)]
             alone = [block for block in inner if block is not None and block.users == 1]
-            bpy.data.batch_remove([*gone, *alone])
-        return {"FINISHED"}
+            bpy.data.batch_remove([*deleted, *alone])
 
 
 def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
-    """What a group of properties points to, the groups in it included."""
+    """Yield the data-blocks that a group of properties points to, nested groups included."""
     for definition in group.bl_rna.properties:
         if definition.type != "POINTER" or definition.identifier == "rna_type":
             continue
@@ -59,8 +58,8 @@ def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
             yield from _data_of(value)
         elif isinstance(value, bpy.types.ID):
             yield value
-            if isinstance(value, bpy.types.Collection):  # of the turntable's cameras and what they hang on
-                yield from (each for each in value.objects if each.type in HELPERS)
+            if isinstance(value, bpy.types.Collection):  # the turntable's
+                yield from (each for each in value.objects if each.type in TURNTABLE_TYPES)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_take,))

@@ -1,4 +1,4 @@
-"""Save the scene's take as a folder, to be converted elsewhere."""
+"""Save the active take as a folder, to convert it elsewhere."""
 
 from pathlib import Path
 
@@ -8,18 +8,19 @@ from ...core.errors import InputError
 from ...core.progress import run
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, footage, idle, markers
+from ..shell.requirements import actor, footage, idle, markers
 from ..shell.takes import active_take, footage_of
 
 
-class KEYMARK_OT_save_take(bpy.types.Operator):
+class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     """Save footage, camera, actor, markers and keyframes as a take folder, to convert it elsewhere"""
 
     bl_idname = "keymark.save_take"
     bl_label = "Save Take"
     bl_options = {"REGISTER"}
+    requirements = (footage, actor, markers, idle)
 
     directory: bpy.props.StringProperty(
         name="Folder",
@@ -28,44 +29,36 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
     )
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A take needs all but keyframes."""
-        return all_met(cls, context, footage, actor, markers, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the folder."""
+        """Show the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read the scene and write the folder."""
-        with reported(self):
-            from ...core.shoot.finding.take_location import check_free
-            from ...core.take.take import write_take
-            from ..bridge.take_from_scene import read_scene_take
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the take from the scene and write the folder."""
+        from ...core.shoot.finding.take_location import check_free
+        from ...core.take.take import write_take
+        from ..bridge.take_from_scene import read_scene_take
 
-            if not self.directory:
-                raise InputError("no folder is named to save the take in; give directory")
-            scene_take = active_take(context.scene)
-            take, notes = run(
-                read_scene_take(
-                    footage_of(context.scene, scene_take),
-                    scene_take.armature,
-                    scene_take.keyframe_action,
-                    marker_styles(scene_take),
-                    known_matches(scene_take),
-                )
+        if not self.directory:
+            raise InputError("directory is empty; name the folder to save the take in")
+        scene_take = active_take(context.scene)
+        take, notes = run(
+            read_scene_take(
+                footage_of(context.scene, scene_take),
+                scene_take.armature,
+                scene_take.keyframe_action,
+                marker_styles(scene_take),
+                known_matches(scene_take),
             )
-            folder = Path(bpy.path.abspath(self.directory))
-            check_free(folder)
-            folder.mkdir(parents=True, exist_ok=True)
-            write_take(take, folder)
-            for note in notes:
-                self.report({"WARNING"}, note)
-            say(self, "INFO", "Saved the take in {folder}", folder=folder)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        )
+        folder = Path(bpy.path.abspath(self.directory))
+        check_free(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_take(take, folder)
+        for note in notes:
+            self.report({"WARNING"}, note)
+        say(self, "INFO", "Saved the take in {folder}", folder=folder)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_save_take,))

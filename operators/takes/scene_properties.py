@@ -1,4 +1,4 @@
-"""Keymark's part of a scene: its takes and keyframe libraries, and which of them are worked on."""
+"""Keymark's properties of a scene: its takes and keyframe libraries, and which are active."""
 
 import bpy
 
@@ -6,19 +6,19 @@ from ..footage.take_footage import is_missing
 from ..library.editing.properties import KEYMARK_PG_library
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..overlays.timeline_properties import KEYMARK_PG_timeline
-from ..shell.takes import bring_forward, find_take
+from ..shell.takes import find_take, show_active_take
 from .take_properties import KEYMARK_PG_take
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    bring_forward(settings.id_data)
+    show_active_take(settings.id_data)
     take = find_take(settings.id_data)
     if take is not None:
         take.clip_state.missing = is_missing(take.clip)
 
 
 class KEYMARK_PG_settings(bpy.types.PropertyGroup):
-    """Keymark's part of a scene."""
+    """Keymark's properties of a scene."""
 
     version: bpy.props.IntProperty(
         name="Version", description="Version of Keymark's properties in this file", options={"HIDDEN"}
@@ -46,6 +46,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them away."""
+    """Remove them."""
     del bpy.types.Scene.keymark
     bpy.utils.unregister_class(KEYMARK_PG_settings)

@@ -1,4 +1,4 @@
-"""One take: a performer in a clip, with all that the animator says and Keymark finds of it."""
+"""Properties of a take: a performer in a clip, what the animator enters and what Keymark finds."""
 
 from contextlib import suppress
 
@@ -28,9 +28,9 @@ def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) ->
 
 
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """The panel shows the lengths of the armature that is chosen, not of the one before."""
-    with suppress(InputError, ModuleNotFoundError):  # another skeleton, or Keymark without its libraries
-        from ..actor.new_actor import show_lengths
+    """Show the lengths of the chosen armature in the panel."""
+    with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
+        from ..actor.take_actor import show_lengths
         from ..bridge.actor_lengths import read_body
 
         show_lengths(take, read_body(take.armature, HUMAN))
@@ -62,7 +62,7 @@ class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
 
 
 class KEYMARK_PG_note(bpy.types.PropertyGroup):
-    """What the last run says of its result."""
+    """A note of the last reconstruction."""
 
     text: bpy.props.StringProperty(name="Note", description="A sentence that the last reconstruction left")
 
@@ -71,10 +71,10 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     """A performer in a clip."""
 
     name: bpy.props.StringProperty(
-        name="Name", description="What you call this take", default="Take", update=_renamed
+        name="Name", description="Your name for this take", default="Take", update=_renamed
     )
     identifier: bpy.props.StringProperty(
-        name="Identifier", description="Tells takes apart whatever they are called", options={"HIDDEN"}
+        name="Identifier", description="Tells takes apart, whatever their names", options={"HIDDEN"}
     )
     clip: bpy.props.PointerProperty(
         name="Clip",
@@ -85,14 +85,14 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     clip_state: bpy.props.PointerProperty(type=KEYMARK_PG_clip_state)
     camera: bpy.props.PointerProperty(
         name="Camera",
-        description="The camera that the footage was taken with; if it moves, it is used as it moves",
+        description="The camera that took the footage; its animation is used, if it moves",
         type=bpy.types.Object,
         poll=_is_camera,
         update=_camera_chosen,
     )
     guessed_lens_mm: bpy.props.FloatProperty(
         name="Guessed Lens",
-        description="The focal length that was guessed as nobody had stated one; 0 for none",
+        description="The focal length guessed because none was stated; 0 for none",
         min=0.0,
         options={"HIDDEN"},
     )
@@ -147,10 +147,10 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     notes: bpy.props.CollectionProperty(type=KEYMARK_PG_note)
     reading_key: bpy.props.StringProperty(
-        name="Reading", description="Under which key lies what was read of the clip", options={"HIDDEN"}
+        name="Reading", description="Key of the cached reading of the clip", options={"HIDDEN"}
     )
     review_key: bpy.props.StringProperty(
-        name="Review", description="Under which key lies what is known of the motion", options={"HIDDEN"}
+        name="Review", description="Key of the cached review of the motion", options={"HIDDEN"}
     )
     review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
     finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)

@@ -1,4 +1,4 @@
-"""A take from disk in a scene."""
+"""From a take on disk to the scene; `bridge/take_from_scene` goes the other way."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,7 +7,7 @@ import bpy
 
 from ...core.arrays import Array
 from ...core.take.take import Take, check_frame_count, open_clip, rate_note, read_take
-from ..actor.new_actor import add_actor
+from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
@@ -21,13 +21,13 @@ from ..shell.takes import add_take
 
 @dataclass(frozen=True, eq=False)
 class OpenedTake:
-    """A take whose clip has been gone through."""
+    """A take read from disk, checked against its clip."""
 
     take: Take
     time_s: Array
     """(F,) time of each frame [s]."""
     notes: tuple[str, ...]
-    """What a person should know, one sentence each."""
+    """Sentences to report."""
 
 
 def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
@@ -35,7 +35,7 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
 
     Args:
         folder: The take's folder.
-        keyframe_file: Name of the keyframe file in it; a take without the usual one opens unposed.
+        keyframe_file: Name of the keyframe file in it; the usual one may be missing.
 
     Raises:
         InputError: The take or its clip is unusable.
@@ -49,11 +49,11 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
     return OpenedTake(take, time_s, (*take.notes, *([rate] if rate else [])))
 
 
-def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
+def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
     """Add a take to the scene: footage, camera, actor, markers, keyframes; returns the armature object.
 
     Raises:
-        InputError: Blender cannot read the clip; the scene is as before then.
+        InputError: Blender cannot read the clip; the scene is unchanged.
     """
     take, scene = opened.take, context.scene
     rate = clip_rate(load_footage(take.clip), take.fps)
@@ -73,8 +73,8 @@ def show_take(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Objec
         assign_action(armature_object, action)
     for keyframe in take.keyframes:
         if keyframe.matched is not None:
-            known = keyframe.matched
-            match = add_match(settings, float(frames[keyframe.index]), known.library)
-            add_candidate(match, keyframe.posture, known.posture, known.mirrored, known.confidence)
+            matched = keyframe.matched
+            match = add_match(settings, float(frames[keyframe.index]), matched.library)
+            add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
     scene.frame_set(scene.frame_start)
     return armature_object

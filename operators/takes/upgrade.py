@@ -1,4 +1,4 @@
-"""Files of other versions of Keymark, and of other machines: looked at whenever a file is opened."""
+"""Files of other versions of Keymark, and from other machines: updated when Blender opens them."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -7,40 +7,40 @@ from uuid import uuid4
 import bpy
 from bpy.app.handlers import persistent
 
-from ..footage.take_footage import is_missing, note_contents
+from ..footage.take_footage import is_missing, update_clip_digest
 from ..shell.takes import VERSION, add_take
 
 VALUES = ("stature", "keyframe_count", "active_marker", "armature", "keyframe_action", "motion_action")
-"""What version 0 kept in the scene itself and a take has under the same name."""
+"""Properties that version 0 kept in the scene itself; a take has them under the same names."""
 CHOICES = ("method",)
-"""The same, as numbers of menu entries."""
+"""The same for menus; version 0 stored the number of the entry."""
 
 
-def look_at(scene: bpy.types.Scene) -> None:
-    """Bring a scene's properties up to date, and note which clips are missing.
+def upgrade_scene(scene: bpy.types.Scene) -> None:
+    """Upgrade a scene's properties to this version, and note which clips are missing.
 
-    What a newer Keymark has written is left alone, so that nothing of it is lost.
+    The properties of a newer Keymark are left alone, so that nothing of them is lost.
     """
     settings = scene.keymark
     if scene.library is not None or is_newer(scene):
         return
     if not len(settings.takes):
-        _upgrade_flat(scene)
+        _upgrade_version_0(scene)
     for take in settings.takes:
         take.clip_state.missing = is_missing(take.clip)
         if take.clip is not None:
-            note_contents(take)
+            update_clip_digest(take)
     if len(settings.takes):
         settings.version = VERSION
 
 
 def is_newer(scene: bpy.types.Scene) -> bool:
-    """Whether a newer Keymark has written the scene's properties."""
+    """Whether a newer Keymark wrote the scene's properties."""
     return bool(scene.keymark.version > VERSION)
 
 
-def _upgrade_flat(scene: bpy.types.Scene) -> None:
-    """Make a take of what version 0 kept in the scene itself, when a scene had one performer."""
+def _upgrade_version_0(scene: bpy.types.Scene) -> None:
+    """Make a take of the properties that version 0, with one performer a scene, kept in the scene itself."""
     flat = _stored(scene)
     if flat is None or not any(name in flat for name in (*VALUES, "markers")):
         return
@@ -62,7 +62,7 @@ def _upgrade_flat(scene: bpy.types.Scene) -> None:
 
 
 def _set(group: bpy.types.PropertyGroup, name: str, value: Any) -> None:
-    """Set a property from what a file holds of it; menu entries are stored by their number."""
+    """Set a property to a stored value; a menu's is the number of its entry."""
     definition = group.bl_rna.properties.get(name)
     if definition is None or value is None:
         return
@@ -72,15 +72,15 @@ def _set(group: bpy.types.PropertyGroup, name: str, value: Any) -> None:
 
 
 def _stored(scene: bpy.types.Scene) -> Any:
-    """The scene's properties as the file holds them, whatever they are defined as now."""
+    """Return the scene's properties as stored in the file, independent of their definitions now."""
     if hasattr(scene, "bl_system_properties_get"):  # Blender 5.0 and later
         properties = scene.bl_system_properties_get()
         return properties.get("keymark") if properties is not None else None
     return scene.get("keymark")
 
 
-def tell_apart(scenes: Iterable[bpy.types.Scene]) -> None:
-    """Give takes that cannot be told apart, as those of a copied scene, identifiers of their own."""
+def ensure_unique_identifiers(scenes: Iterable[bpy.types.Scene]) -> None:
+    """Give new identifiers to takes that share one, as those of a copied scene do."""
     seen: set[str] = set()
     for scene in scenes:
         if scene.library is not None or is_newer(scene):
@@ -92,24 +92,24 @@ def tell_apart(scenes: Iterable[bpy.types.Scene]) -> None:
 
 
 @persistent
-def _opened(*_given: Any) -> None:
+def _on_load(*_arguments: Any) -> None:
     for scene in bpy.data.scenes:
-        look_at(scene)
-    tell_apart(bpy.data.scenes)
+        upgrade_scene(scene)
+    ensure_unique_identifiers(bpy.data.scenes)
 
 
 HANDLERS = ("load_post", "blend_import_post")
 
 
 def register() -> None:
-    """Look at every file that is opened, and at the one that is open."""
+    """Upgrade the open file, and add handlers for the files that are opened."""
     for name in HANDLERS:
-        getattr(bpy.app.handlers, name).append(_opened)
+        getattr(bpy.app.handlers, name).append(_on_load)
     if hasattr(bpy.data, "scenes"):  # while Blender starts, there are none yet
-        _opened()
+        _on_load()
 
 
 def unregister() -> None:
-    """Look no longer."""
+    """Remove the handlers."""
     for name in HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_opened)
+        getattr(bpy.app.handlers, name).remove(_on_load)

@@ -1,4 +1,4 @@
-"""Views of the actor from other sides than the footage's."""
+"""The turntable: views of the actor from the front, from a side and all around, beside a reference clip."""
 
 PROPERTIES = ("properties",)
 MODULES = ("set_up_turntable", "remove_turntable", "show_view", "panel")

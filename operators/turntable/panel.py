@@ -1,4 +1,4 @@
-"""Looking at the motion from other sides, beside a reference clip."""
+"""The panel of the turntable: views from other sides, and a reference clip."""
 
 import bpy
 
@@ -29,13 +29,13 @@ class KEYMARK_PT_turntable(TakePanel, bpy.types.Panel):
         choice.active = views.reference is not None
         choice.prop(views, "reference_view")
         choice.prop(views, "reference_offset")
-        _draw_place(choice, views)
+        _draw_background(choice, views)
         column.separator()
         column.operator("keymark.remove_turntable", icon="X")
 
 
-def _draw_place(layout: bpy.types.UILayout, views: bpy.types.PropertyGroup) -> None:
-    """Where in the view the reference is: it was filmed from another place than the view is seen from."""
+def _draw_background(layout: bpy.types.UILayout, views: bpy.types.PropertyGroup) -> None:
+    """Draw opacity, offset and scale of the reference, which another camera filmed than the view's."""
     camera = {"FRONT": views.front, "SIDE": views.side, "TURNING": views.turning}[views.reference_view]
     if camera is not None and camera.data.background_images:
         background = camera.data.background_images[0]
@@ -45,7 +45,7 @@ def _draw_place(layout: bpy.types.UILayout, views: bpy.types.PropertyGroup) -> N
 
 
 def _draw_views(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """A button a view; that of the viewport's own is pressed."""
+    """Draw a button for each view; the one of this viewport's view is pressed."""
     take, space = active_take(context.scene), context.space_data
     cameras = {
         "FOOTAGE": take.camera,
@@ -53,11 +53,11 @@ def _draw_views(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         "SIDE": take.turntable.side,
         "TURNING": take.turntable.turning,
     }
-    looking = space.region_3d is not None and space.region_3d.view_perspective == "CAMERA"
+    through_camera = space.region_3d is not None and space.region_3d.view_perspective == "CAMERA"
     shown = space.camera if space.use_local_camera else context.scene.camera
     grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for view, title in VIEWS:
-        pressed = looking and shown is not None and shown == cameras[view]
+        pressed = through_camera and shown is not None and shown == cameras[view]
         grid.operator("keymark.show_view", text=title, depress=pressed).view = view
 
 

@@ -1,4 +1,4 @@
-"""A take's views of the actor from other sides, and a clip to compare one of them with."""
+"""Properties of a take's turntable: its cameras, and a reference clip to compare the motion with."""
 
 import bpy
 
@@ -14,7 +14,7 @@ def _take_of(turntable: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | No
 
 
 def _is_no_footage(turntable: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bool:
-    """A reference is moved in time, which footage must not be."""
+    """Whether no take uses the clip: a reference is shifted in time, which footage must not be."""
     return all(take.clip != clip for take in turntable.id_data.keymark.takes)
 
 
@@ -23,8 +23,7 @@ def _reference_changed(turntable: bpy.types.PropertyGroup, _context: bpy.types.C
 
 
 def show_chosen_reference(turntable: bpy.types.PropertyGroup) -> None:
-    """Show the reference clip behind the view that was chosen for it, and behind no other."""
-    # Registering must not need the libraries that the bridge does.
+    """Show the reference clip behind the chosen view, and behind no other."""
     from ..bridge.turntable import show_reference
 
     take = _take_of(turntable)
@@ -43,10 +42,10 @@ class KEYMARK_PG_turntable(bpy.types.PropertyGroup):
     """Views of the actor from other sides."""
 
     collection: bpy.props.PointerProperty(
-        name="Collection", description="Where the views' cameras are", type=bpy.types.Collection
+        name="Collection", description="The collection of the views' cameras", type=bpy.types.Collection
     )
     front: bpy.props.PointerProperty(
-        name="Front", description="The camera before the actor", type=bpy.types.Object
+        name="Front", description="The camera in front of the actor", type=bpy.types.Object
     )
     side: bpy.props.PointerProperty(
         name="Side", description="The camera beside the actor", type=bpy.types.Object
@@ -56,7 +55,7 @@ class KEYMARK_PG_turntable(bpy.types.PropertyGroup):
     )
     reference: bpy.props.PointerProperty(
         name="Reference",
-        description="A clip of the same performance, or of another, to compare the motion with",
+        description="A clip of this performance or another, to compare the motion with",
         type=bpy.types.MovieClip,
         poll=_is_no_footage,
         update=_reference_changed,
@@ -70,7 +69,7 @@ class KEYMARK_PG_turntable(bpy.types.PropertyGroup):
     )
     reference_offset: bpy.props.IntProperty(
         name="Offset",
-        description="How many frames after the footage the reference begins; negative: before",
+        description="Frames from the footage's first frame to the reference's; negative: earlier",
         default=0,
         soft_min=-100,
         soft_max=100,

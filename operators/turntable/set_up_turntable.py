@@ -1,19 +1,20 @@
-"""Set up views of the actor from other sides than the footage's."""
+"""Set up the turntable."""
 
 import bpy
 
-from ..shell.error_reports import reported
-from ..shell.requirements import actor, all_met, idle
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 from .properties import show_chosen_reference
 
 
-class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
-    """Add cameras that see the actor from the front, from a side and all around; again, it replaces them"""
+class KEYMARK_OT_set_up_turntable(BaseOperator, bpy.types.Operator):
+    """Add cameras that see the actor from the front, from a side and all around, or replace them"""
 
     bl_idname = "keymark.set_up_turntable"
     bl_label = "Set Up Turntable"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
 
     side: bpy.props.EnumProperty(
         name="Side",
@@ -25,13 +26,13 @@ class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
     )
     follow: bpy.props.BoolProperty(
         name="Follow",
-        description="Follow the actor's hips over the floor; otherwise the cameras stand, as one that filmed "
-        "a reference clip did",
+        description="Follow the actor's hips over the floor; otherwise the cameras stand still, like "
+        "one that films a reference clip",
         default=True,
     )
     lens: bpy.props.FloatProperty(
         name="Focal Length",
-        description="Of the cameras, with a sensor 36 mm wide",
+        description="Focal length of the cameras, with a sensor 36 mm wide",
         subtype="DISTANCE_CAMERA",
         default=50.0,
         min=1.0,
@@ -39,35 +40,27 @@ class KEYMARK_OT_set_up_turntable(bpy.types.Operator):
         soft_max=200.0,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be someone to look at."""
-        return all_met(cls, context, actor, idle)
+    def run(self, context: bpy.types.Context) -> None:
+        """Survey where the actor moves, and only then change the scene."""
+        from ..bridge.turntable import add_turntable, remove_turntable, survey
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Look where the actor moves, and only then change the scene."""
-        with reported(self):
-            from ..bridge.turntable import add_turntable, remove_turntable, survey
-
-            scene, take = context.scene, active_take(context.scene)
-            stage = survey(scene, take.armature, take.camera, self.follow)
-            if take.turntable.collection is not None:
-                remove_turntable(scene, take.turntable.collection)
-            made = add_turntable(
-                scene,
-                take.armature,
-                stage,
-                f"{take.name} Turntable",
-                side=self.side,
-                follow=self.follow,
-                lens_mm=self.lens,
-            )
-            views = take.turntable
-            views.collection = made.collection
-            views.front, views.side, views.turning = made.front, made.side, made.turning
-            show_chosen_reference(views)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        scene, take = context.scene, active_take(context.scene)
+        stage = survey(scene, take.armature, take.camera, self.follow)
+        if take.turntable.collection is not None:
+            remove_turntable(scene, take.turntable.collection)
+        made = add_turntable(
+            scene,
+            take.armature,
+            stage,
+            f"{take.name} Turntable",
+            side=self.side,
+            follow=self.follow,
+            lens_mm=self.lens,
+        )
+        views = take.turntable
+        views.collection = made.collection
+        views.front, views.side, views.turning = made.front, made.side, made.turning
+        show_chosen_reference(views)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_set_up_turntable,))

@@ -1,4 +1,4 @@
-"""Files that earlier versions have written: they open as they were, and the work goes on in them."""
+"""Files of earlier versions: they open as they were saved, and the work goes on in them."""
 
 import json
 import os
@@ -21,7 +21,7 @@ VERSIONS = ("0.1.0",)
 ROUNDED = 1e-5
 """Values were noted with five decimals."""
 CLOSE = 1e-4
-"""Between what two Blenders make of the same curve."""
+"""Difference between two Blenders' values of the same curve."""
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -48,7 +48,7 @@ def saved(request: pytest.FixtureRequest, tmp_path: Path) -> Saved:
     """The files of a version, where they may be changed."""
     folder = Path(shutil.copytree(SAVED / request.param, tmp_path / "saved"))
     held = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
-    # By its time, too, a clip is known again.
+    # A clip is recognized by its modification time as well.
     os.utime(folder / "shoot" / "take" / "clip.mp4", (held["clip_time_s"],) * 2)
     return Saved(folder, held)
 
@@ -61,12 +61,12 @@ def scene(saved: Saved) -> bpy.types.Scene:
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """The take at work; asked for anew after every operator."""
+    """The active take; looked up anew after every operator."""
     return scene.keymark.takes[scene.keymark.active_take]
 
 
 def found(scene: bpy.types.Scene, path: str) -> Any:
-    """What a scene holds under a path, as JSON would have it."""
+    """The value under a path of a scene's properties, as JSON."""
     value: Any = scene
     for name, index in re.findall(r"(\w+)(?:\[(\d+)\])?", path.removesuffix(".len")):
         value = getattr(value, name)
@@ -96,20 +96,20 @@ def curves(action: bpy.types.Action) -> dict[tuple[str, int], bpy.types.FCurve]:
 
 
 def keys_by_type(curve: bpy.types.FCurve) -> dict[str, int]:
-    """How many keys of which type a curve has."""
+    """The number of keys of each type in a curve."""
     types = [key.type for key in curve.keyframe_points]
     return {kind: types.count(kind) for kind in sorted(set(types))}
 
 
 def exported_library(folder: Path) -> dict[str, Any]:
-    """What the library made in the file is as a file."""
+    """The library made in the scene, exported to a file."""
     path = folder / "exported.json"
     assert bpy.ops.keymark.export_library(filepath=str(path)) == {"FINISHED"}
     return json.loads(path.read_text(encoding="utf-8"))
 
 
 def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Takes, markers, matches, reviews, libraries, overlays: whatever that version knew is where it was."""
+    """Takes, markers, matches, reviews, libraries, overlays: every property of then has its value."""
     expected = saved.held["properties"]
     assert expected["keymark.takes.len"] == 2 and expected["keymark.takes[0].matching.matches.len"] >= 3
     differing = [
@@ -151,7 +151,7 @@ def test_every_action_has_its_curves(saved: Saved, scene: bpy.types.Scene) -> No
 
 
 def test_what_was_found_of_the_markers_still_holds(saved: Saved, scene: bpy.types.Scene) -> None:
-    """The clip is known again; with another one in its place nothing holds any more."""
+    """The clip is recognized; results do not hold for another file under its name."""
     take = active_take(scene)
     assert len(take.markers) == 5 and all(marker.has_readout(take) for marker in take.markers)
     os.utime(saved.take / "clip.mp4")

@@ -1,4 +1,4 @@
-"""Registering the extension, and taking it back."""
+"""Registering and unregistering the extension."""
 
 import subprocess
 import sys
@@ -12,7 +12,7 @@ from keymark import operators
 
 
 def traces() -> list[str]:
-    """What of Keymark is in Blender now."""
+    """Keymark's classes, operators, properties and menu entries in Blender."""
     classes = [name for name in dir(bpy.types) if name.startswith("KEYMARK_")]
     operator_names = [name for name in dir(bpy.ops.keymark)]
     properties = [
@@ -40,8 +40,8 @@ def test_everything_is_there_and_gone_again_twice() -> None:
         assert traces() == []
 
 
-@pytest.mark.parametrize("place", [1, 7, len(list(operators.modules()))])
-def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, place: int) -> None:
+@pytest.mark.parametrize("index", [1, 7, len(list(operators.modules()))])
+def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
     """The error comes through, and Blender is as before."""
     broken = ModuleType("keymark.operators.broken")
 
@@ -51,7 +51,7 @@ def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.Monk
     broken.register = register
     monkeypatch.setitem(sys.modules, "keymark.operators.broken", broken)
     names = list(operators.modules())
-    names.insert(place, "broken")
+    names.insert(index, "broken")
     monkeypatch.setattr(operators, "modules", lambda: names)
     with pytest.raises(RuntimeError, match="broken on purpose"):
         keymark.register()

@@ -1,4 +1,4 @@
-"""The session that the documentation gives as a script, run as it stands."""
+"""docs/session.py, run as it stands."""
 
 import importlib.util
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What people read: labels in title case, descriptions without a full stop, sentences that are templates."""
+"""Labels in title case, descriptions without a full stop, reports and labels from literal templates."""
 
 import ast
 from collections.abc import Iterator
@@ -13,24 +13,24 @@ OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
 """Names that Blender gives its own meaning; the rest of an operator's properties are Keymark's."""
 PUT_TOGETHER = (ast.JoinedStr, ast.BinOp)
-"""How sentences are put together in a program; a template kept elsewhere and said by its name is fine."""
+"""Expressions that put strings together; the name of a template is fine."""
 SMALL = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "on", "or", "the", "to", "with"}
-"""Words that stay small inside a label, as in Blender's own."""
+"""Words in lower case inside a label, as in Blender's own."""
 NAMES = {"glTF"}
-"""Written as their makers do."""
+"""Names written as their owners write them."""
 
 
 def is_title(text: str) -> bool:
     """Whether every word but the small ones inside begins with a capital."""
     words = [word for word in text.replace("/", " ").split() if word not in NAMES]
     return all(
-        not word[0].isalpha() or word[0].isupper() or (0 < place and word in SMALL)
-        for place, word in enumerate(words)
+        not word[0].isalpha() or word[0].isupper() or (0 < index and word in SMALL)
+        for index, word in enumerate(words)
     )
 
 
 def definitions() -> Iterator[tuple[str, str, str]]:
-    """Where, label and description of all that Keymark defines."""
+    """Yield path, label and description of Keymark's operators and properties."""
     for name in dir(bpy.ops.keymark):
         kind = getattr(bpy.ops.keymark, name).get_rna_type()
         yield f"keymark.{name}", kind.name, kind.description
@@ -39,17 +39,17 @@ def definitions() -> Iterator[tuple[str, str, str]]:
 
 
 def properties(where: str, kind: bpy.types.Struct) -> Iterator[tuple[str, str, str]]:
-    """The same of what is shown of a class's own properties, with the entries of menus, and of its parts."""
+    """Yield the same of a class's shown properties, of the entries of its menus, and of nested groups."""
     for definition in kind.properties:
-        place = f"{where}.{definition.identifier}"
+        path = f"{where}.{definition.identifier}"
         if definition.identifier in ("rna_type", *OUTSIDE) or definition.is_hidden:
             continue
         if definition.type in ("COLLECTION", "POINTER") and definition.fixed_type.identifier.startswith(OWN):
-            yield from properties(place, definition.fixed_type)
+            yield from properties(path, definition.fixed_type)
             continue
-        yield place, definition.name, definition.description
+        yield path, definition.name, definition.description
         for item in definition.enum_items if definition.type == "ENUM" else ():
-            yield f"{place}.{item.identifier}", item.name, item.description or "said by its name"
+            yield f"{path}.{item.identifier}", item.name, item.description or "said by its name"
 
 
 @pytest.mark.usefixtures("registered")

@@ -1,4 +1,4 @@
-"""Every step of the work is taken back by one undo, brought again by one redo, and kept in the file."""
+"""Every step of the work is undone by one undo, redone by one redo, and saved in the file."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -27,7 +27,7 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
             marker.color = [value / 255.0 for value in style.color_srgb]
 
     def align() -> None:
-        """Let the camera stand where the footage's stood."""
+        """Set the camera to the footage's."""
         camera = bpy.context.scene.camera
         camera.matrix_world = np.array(take.camera.matrix_world).T.tolist()
         camera.data.lens, camera.data.sensor_width = take.camera.lens_mm, take.camera.sensor_width_mm

@@ -119,7 +119,7 @@ def relative_imports(file: Path, name: str, known: set[str]) -> Iterator[str]:
         ("core.estimate.reconstruct", "from keymark.core import errors"),
         ("core.take.take", "from ..shoot.shoot import Shoot"),
         ("operators.bridge.fcurves", "from ..cli.convert import run"),
-        ("operators.shell.takes", "from ..footage.take_footage import note_clip"),
+        ("operators.shell.takes", "from ..footage.take_footage import update_clip_state"),
         ("operators.review.panel", "def late():\n    from ..keyframes import fit_pose"),
         ("operators.cli.convert", "from .....elsewhere import run"),
     ],

@@ -10,7 +10,7 @@ from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_library_here, all_met, idle
+from ...shell.requirements import all_met, idle, scene_library
 from ...shell.takes import find_take
 from .scene_libraries import library_here
 
@@ -52,7 +52,7 @@ class KEYMARK_OT_add_motion(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a library."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the name."""

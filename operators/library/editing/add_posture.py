@@ -6,7 +6,7 @@ from ....core.body.human import HUMAN
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_library_here, actor, all_met, idle
+from ...shell.requirements import actor, all_met, idle, scene_library
 from ...shell.takes import active_take
 from .scene_libraries import library_here
 
@@ -38,7 +38,7 @@ class KEYMARK_OT_add_posture(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be an actor and a library."""
-        return all_met(cls, context, actor, a_library_here, idle)
+        return all_met(cls, context, actor, scene_library, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the name."""

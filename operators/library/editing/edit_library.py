@@ -6,7 +6,7 @@ from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_shelved_library, all_met, idle
+from ...shell.requirements import all_met, idle, registered_library
 from ..registry import chosen, library_called
 from .scene_libraries import add_library
 
@@ -27,7 +27,7 @@ class KEYMARK_OT_edit_library(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Not while a job runs."""
-        return all_met(cls, context, a_shelved_library, idle)
+        return all_met(cls, context, registered_library, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make its postures pose assets of this file."""

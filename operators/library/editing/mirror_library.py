@@ -6,7 +6,7 @@ from ....core.errors import InputError
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_library_here, all_met, idle
+from ...shell.requirements import all_met, idle, scene_library
 from .scene_libraries import add_library, library_here, library_of
 
 
@@ -30,7 +30,7 @@ class KEYMARK_OT_mirror_library(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a library."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add them at the end of the list."""

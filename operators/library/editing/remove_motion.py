@@ -4,7 +4,7 @@ import bpy
 
 from ...shell.error_reports import reported
 from ...shell.messages import say
-from ...shell.requirements import a_library_here, all_met, idle
+from ...shell.requirements import all_met, idle, scene_library
 from .scene_libraries import active_motion, active_posture, library_here, show_again
 
 STEP_S = 0.1
@@ -19,7 +19,7 @@ class MotionOperator:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a library."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
 
 class KEYMARK_OT_remove_motion(MotionOperator, bpy.types.Operator):

@@ -5,7 +5,7 @@ import bpy
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_library_here, all_met, idle
+from ...shell.requirements import all_met, idle, scene_library
 from .scene_libraries import active_posture, library_here, show_again
 
 
@@ -19,7 +19,7 @@ class KEYMARK_OT_remove_posture(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a library."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove entry, Action and steps."""
@@ -61,7 +61,7 @@ class KEYMARK_OT_move_posture(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be a library."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Exchange two entries."""

@@ -5,7 +5,7 @@ import bpy
 from ...shell.error_reports import reported
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import a_library_here, all_met, idle
+from ...shell.requirements import all_met, idle, scene_library
 from .scene_libraries import library_here
 
 
@@ -19,7 +19,7 @@ class KEYMARK_OT_remove_library(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """There must be one."""
-        return all_met(cls, context, a_library_here, idle)
+        return all_met(cls, context, scene_library, idle)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it and its Actions."""

@@ -26,7 +26,12 @@ from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.markers.marker_styles import marker_styles
 from keymark.operators.matching.matches import known_matches
-from keymark.operators.shell.keyed_frames import forget, keyframes_of, matched_frames, posed_frames
+from keymark.operators.shell.keyed_frames import (
+    invalidate_keyed_frames,
+    keyframes_of,
+    matched_frames,
+    posed_frames,
+)
 from keymark.operators.shell.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -156,7 +161,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
     assert key.type == "KEYFRAME" and key.amplitude >= 0.0
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
-    forget()
+    invalidate_keyed_frames()
     assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)
 
 

@@ -1,4 +1,4 @@
-"""The footage in a viewport: all of it beside the sidebar, and what stands in front of it."""
+"""The footage in a viewport: all of it beside the sidebar, and the objects in front of it."""
 
 from math import sqrt
 from types import SimpleNamespace
@@ -7,7 +7,7 @@ import bpy
 import pytest
 from keymark.core.take.take import Take
 from keymark.operators.footage.camera_view import camera_view, free_box, picture_at_factor_one
-from keymark.operators.footage.occluding_objects import names_in_the_way
+from keymark.operators.footage.occluding_objects import occluding_objects
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -36,7 +36,7 @@ def test_panels_take_their_room() -> None:
 @pytest.mark.parametrize("picture", [(1920.0, 1080.0), (1080.0, 1920.0), (960.0, 912.0)])
 @pytest.mark.parametrize("sensor_fit", ["HORIZONTAL", "VERTICAL", "AUTO"])
 def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fit: str) -> None:
-    """Centerd there, touching the margin on one pair of sides and within it on the other."""
+    """Centered there, touching the margin on one pair of sides and within it on the other."""
     free = (40.0, 0.0, 750.0, 570.0)
     whole = picture_at_factor_one(REGION, picture, sensor_fit)
     zoom, offset = camera_view(REGION, free, whole)
@@ -59,15 +59,15 @@ def test_what_hides_the_performer_is_named_and_left_alone(tiny_take: Take) -> No
 
     def hiding() -> list[str]:
         context.view_layer.update()
-        return names_in_the_way(context, take)
+        return occluding_objects(context, take)
 
     assert hiding() == ["Cube"]
     assert cube.visible_get()
     cube.display_type = "WIRE"
     assert hiding() == []
     cube.display_type = "TEXTURED"
-    for place in ((0.0, -50.0, 0.0), (30.0, 0.0, 0.0)):
-        cube.location = place
+    for location in ((0.0, -50.0, 0.0), (30.0, 0.0, 0.0)):
+        cube.location = location
         assert hiding() == []
     cube.location = (0.0, 0.0, 0.0)
     cube.hide_set(True)

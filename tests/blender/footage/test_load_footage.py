@@ -12,7 +12,7 @@ from keymark.core.take.take import Take
 from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage
 from keymark.operators.footage.take_footage import lens_is_guess
 from keymark.operators.shell.takes import active_take
-from keymark.operators.takes.drop_files import KEYMARK_FH_footage, KEYMARK_FH_take
+from keymark.operators.takes.file_handlers import KEYMARK_FH_footage, KEYMARK_FH_take
 from keymark.operators.takes.open_take import KEYMARK_OT_open_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -36,7 +36,7 @@ def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
 
 
 def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyGroup) -> None:
-    """Set by the animator, or kept, it is knowledge."""
+    """Set or confirmed by the animator, it is no guess any more."""
     assert lens_is_guess(loaded)
     loaded.camera.data.lens = 31.0
     assert not lens_is_guess(loaded)
@@ -100,7 +100,7 @@ def test_choosing_a_camera_puts_the_clip_behind_it(loaded: bpy.types.PropertyGro
 
 
 def test_a_camera_that_was_deleted_is_replaced(loaded: bpy.types.PropertyGroup) -> None:
-    """Blender keeps a deleted object as long as something points to it; nobody looks through it."""
+    """Blender keeps a deleted object while something points to it; the scene looks through another."""
     deleted = loaded.camera
     bpy.context.scene.collection.objects.unlink(deleted)
     bpy.ops.keymark.use_clip(clip=loaded.clip.name)
@@ -214,7 +214,7 @@ def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, c
 
 
 def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
-    """In a saved file the clip is noted relative to it: the folder can go to another machine."""
+    """A saved file holds the clip's relative path: the folder can go to another machine."""
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()
     shutil.copy(tiny_take.clip, here / "clip.mp4")

@@ -1,4 +1,4 @@
-"""Building, measuring and posing the actor over the footage, scripted as an animator would press it."""
+"""Posing the actor over the footage: fitting, storing and proposing keyframes, as scripted operators."""
 
 from dataclasses import replace
 
@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.body.standing_posture import hip_height_m, standing_height_m
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -15,7 +14,7 @@ from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture
 from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
 from keymark.operators.markers.marker_styles import marker_styles
-from keymark.operators.shell.keyed_frames import posed_frames, unposed
+from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -31,7 +30,7 @@ def opened(tiny_take: Take) -> bpy.types.Scene:
 
 @pytest.fixture
 def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
-    """The same without an actor."""
+    """The scene with the tiny take opened, and its actor deleted."""
     take = active_take(opened)
     bpy.data.objects.remove(take.armature)
     take.armature = take.keyframe_action = None
@@ -39,7 +38,7 @@ def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
 
 
 def posture_of(scene: bpy.types.Scene):  # noqa: ANN201
-    """What the actor shows."""
+    """The actor's posture."""
     armature_object = active_take(scene).armature
     return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
 
@@ -52,80 +51,11 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
     )
 
 
-def test_one_click_stands_the_actor_at_the_performer(
-    unposed_scene: bpy.types.Scene, wave_motion: Motion
-) -> None:
-    """The hips within decimeters along the view, and much nearer across it."""
-    unposed_scene.frame_set(1)
-    assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
-    true = wave_motion.posture.translation[0]
-    found = posture_of(unposed_scene).translation
-    assert abs(found[1] - true[1]) < 0.5
-    assert np.linalg.norm((found - true)[[0, 2]]) < 0.12
-
-
-def test_without_footage_the_actor_stands_at_the_origin() -> None:
-    """In an empty scene, with a take of its own."""
-    bpy.ops.keymark.build_actor(stature=1.6)
-    scene = bpy.context.scene
-    body = read_body(active_take(scene).armature, HUMAN)
-    np.testing.assert_allclose(posture_of(scene).translation, [0.0, 0.0, hip_height_m(body)], atol=1e-5)
-    assert active_take(scene).lengths.trunk == pytest.approx(0.285 * 1.6)
-
-
-def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.types.Scene) -> None:
-    """No second armature, no key lost, no pose moved."""
-    take = active_take(opened)
-    armature_object, action = take.armature, take.keyframe_action
-    opened.frame_set(7)
-    before, keys = posture_of(opened), keyed_frames(armature_object, action, HUMAN)
-    objects = len(bpy.data.objects)
-    bpy.ops.keymark.build_actor(stature=1.9)
-    assert (take.armature, take.keyframe_action, len(bpy.data.objects)) == (armature_object, action, objects)
-    assert keyed_frames(armature_object, action, HUMAN) == keys
-    assert read_body(armature_object, HUMAN).actor.stature_m == pytest.approx(1.9, rel=1e-4)
-    opened.frame_set(7)
-    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-4)
-
-
-def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
-    """Symmetric ones come in pairs; nonsense is refused by the property itself."""
-    take = active_take(opened)
-    take.lengths.symmetric = True
-    take.lengths.forearm_L = 0.31
-    assert take.lengths.forearm_R == pytest.approx(0.31)
-    take.lengths.symmetric = False
-    take.lengths.shin_R = 0.5
-    assert take.lengths.shin_L != pytest.approx(0.5)
-    bpy.ops.keymark.apply_lengths()
-    segments = read_body(take.armature, HUMAN).actor.segments_m
-    assert (segments["forearm.R"], segments["shin.R"]) == pytest.approx((0.31, 0.5), rel=1e-4)
-
-
-def test_a_standing_performer_is_measured_from_two_pixels(
-    unposed_scene: bpy.types.Scene, wave_motion: Motion, tiny_take: Take
-) -> None:
-    """Place to a few centimeters, height exactly."""
-    unposed_scene.frame_set(1)
-    body = wave_motion.body
-    hips = wave_motion.posture.translation[0]
-    ground = hips - [0.0, 0.0, hip_height_m(body)]
-    height = standing_height_m(body)
-    head, floor = tiny_take.camera.project(np.stack([ground + [0.0, 0.0, height], ground]))[0]
-    result = bpy.ops.keymark.measure_actor(stature=height, head_pixel=head, floor_pixel=floor)
-    assert result == {"FINISHED"}
-    found = posture_of(unposed_scene).translation
-    assert np.linalg.norm(found - hips) < 0.12
-    assert standing_height_m(read_body(active_take(unposed_scene).armature, HUMAN)) == pytest.approx(height)
-    with pytest.raises(RuntimeError, match="below the ground"):
-        bpy.ops.keymark.measure_actor(stature=height, head_pixel=floor, floor_pixel=head)
-
-
 @pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "STANDING"])
 def test_fitting_brings_the_pose_to_the_markers(
     opened: bpy.types.Scene, wave_motion: Motion, start: str
 ) -> None:
-    """Between two keyframes, from whatever start; no key is set, and a redraw keeps the pose."""
+    """Between two keyframes, from any start; no key is set, and a redraw keeps the pose."""
     take = active_take(opened)
     opened.frame_set(4)
     rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
@@ -212,7 +142,7 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     for frame in (1, 4, 7, 10, 13):
         take.proposals.add().frame = frame
     assert posed_frames(take) == (1.0, 7.0, 13.0)
-    assert unposed(take) == [4, 10]
+    assert unposed_proposals(take) == [4, 10]
     opened.frame_set(4)
     bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
     assert opened.frame_current == 10
@@ -224,7 +154,7 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     take.keyframe_action.update_tag()
     bpy.context.view_layer.update()
     assert posed_frames(take) == (1.0, 4.0, 13.0)
-    assert unposed(take) == [7, 10]
+    assert unposed_proposals(take) == [7, 10]
 
 
 def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
@@ -238,20 +168,6 @@ def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
     bpy.ops.ed.undo()
     take = active_take(bpy.context.scene)
     assert 4.0 not in posed_frames(take)
-
-
-def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.types.Scene) -> None:
-    """Applying them to another one would otherwise make it the old one's size."""
-    from keymark.core.body.actor import Actor
-    from keymark.core.body.kinematics import Body
-    from keymark.operators.bridge.armature import build_armature
-
-    take = active_take(opened)
-    other = build_armature(opened, Body(Actor.from_stature(1.2)))
-    take.armature = other
-    assert take.lengths.trunk == pytest.approx(0.285 * 1.2, rel=1e-4)
-    bpy.ops.keymark.apply_lengths()
-    assert read_body(other, HUMAN).actor.stature_m == pytest.approx(1.2, rel=1e-4)
 
 
 def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:

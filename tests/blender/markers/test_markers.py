@@ -11,11 +11,11 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take.take import Take
-from keymark.operators.footage.take_footage import note_clip
+from keymark.operators.footage.take_footage import update_clip_state
 from keymark.operators.markers.check_markers import KEYMARK_OT_check_markers
-from keymark.operators.markers.mask_previews import forget_previews, is_of_frame, look_at_frame, preview_of
+from keymark.operators.markers.mask_previews import clear_previews, is_of_frame, preview_of, update_masks
 from keymark.operators.overlays.mask import free_height, tinted
-from keymark.operators.shell.takes import active_take, add_take, take_called
+from keymark.operators.shell.takes import active_take, add_take, take_by_identifier
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -162,28 +162,28 @@ def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene
 
 def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny_take: Take) -> None:
     """Each covers what the readout says and follows its marker; of other colors there are none."""
-    forget_previews()
+    clear_previews()
     take = active_take(opened)
-    assert look_at_frame(opened) is None
+    assert update_masks(opened) is None
     bpy.ops.keymark.check_markers()
     opened.frame_set(1)
-    first = look_at_frame(opened).masks
+    first = update_masks(opened).masks
     assert [mask.label for mask in first] == USUAL and first[0].coverage.shape == (120, 160)
     for mask, marker in zip(first, take.markers, strict=True):
         assert float(mask.coverage.sum()) == pytest.approx(marker.area, rel=0.4)
     arm = first[1].outlines[0].mean(axis=0)
     assert np.linalg.norm(arm - pixel_of(tiny_take, "forearm.L")) < 6.0
     opened.frame_set(13)
-    assert np.linalg.norm(look_at_frame(opened).masks[1].outlines[0].mean(axis=0) - arm) > 10.0
+    assert np.linalg.norm(update_masks(opened).masks[1].outlines[0].mean(axis=0) - arm) > 10.0
     opened.frame_set(40)
-    assert look_at_frame(opened).masks == ()
+    assert update_masks(opened).masks == ()
     take.markers[0].color = (0.9, 0.1, 0.1)
     assert preview_of(take) is None
 
 
 def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> None:
     """A switch: the second press hides them again; nothing of it is stored in the scene."""
-    forget_previews()
+    clear_previews()
     assert bpy.ops.keymark.show_masks() == {"FINISHED"}
     assert bpy.context.window_manager.keymark_show_masks
     assert len(preview_of(active_take(opened)).masks) == 5
@@ -194,7 +194,7 @@ def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> No
 def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
     """Top row first, the marker's color where it is, darkness where nothing is."""
     bpy.ops.keymark.check_markers()
-    masks = look_at_frame(opened).masks
+    masks = update_masks(opened).masks
     picture = tinted(masks)
     trunk = masks[0].coverage == 1.0
     assert picture.shape == (120, 160, 4) and trunk.any()
@@ -219,13 +219,14 @@ def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened
     add_take(opened, "Other")
     operator.finish(job, opened, found)
     assert all(
-        marker.has_readout(take_called(opened, first)) for marker in take_called(opened, first).markers
+        marker.has_readout(take_by_identifier(opened, first))
+        for marker in take_by_identifier(opened, first).markers
     )
     assert not len(active_take(opened).markers)
-    take_called(opened, first).markers[2].color = (0.2, 0.2, 0.9)
+    take_by_identifier(opened, first).markers[2].color = (0.2, 0.2, 0.9)
     with pytest.raises(InputError, match="changed while they were looked for"):
         operator.finish(job, opened, found)
-    assert not take_called(opened, first).markers[0].has_readout(take_called(opened, first))
+    assert not take_by_identifier(opened, first).markers[0].has_readout(take_by_identifier(opened, first))
 
 
 def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
@@ -249,7 +250,7 @@ def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.S
     for _ in range(13):
         writer.write(np.full((120, 160, 3), 90, np.uint8))
     writer.release()
-    note_clip(take)
+    update_clip_state(take)
     assert not take.markers[0].has_readout(take) and preview_of(take) is None
     bpy.ops.keymark.check_markers()
     assert take.markers[0].has_readout(take) and take.markers[0].found == 0
@@ -261,11 +262,11 @@ def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> N
     take = active_take(opened)
     bpy.ops.keymark.check_markers()
     opened.frame_set(5)
-    before = look_at_frame(opened).masks
-    assert look_at_frame(opened).masks is before
+    before = update_masks(opened).masks
+    assert update_masks(opened).masks is before
     take.clip.frame_start += 4
     assert not is_of_frame(preview_of(take), opened)
-    assert look_at_frame(opened).masks is not before
+    assert update_masks(opened).masks is not before
 
 
 def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, tmp_path: Path) -> None:
@@ -288,7 +289,7 @@ def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, 
 
 def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
     """One sentence, and the switch stays as it was."""
-    forget_previews()
+    clear_previews()
     active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
     with pytest.raises(RuntimeError, match="the footage is not there") as caught:
         bpy.ops.keymark.show_masks()

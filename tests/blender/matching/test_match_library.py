@@ -100,7 +100,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
 @pytest.fixture
 def unposed(tiny_take: Take) -> Group:
     """The tiny take opened, without its keyframes."""
-    results.forget()
+    results.clear_cache()
     (tiny_take.folder / "keyframes.json").unlink()
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
     return active_take(bpy.context.scene)

@@ -267,5 +267,5 @@ def test_a_lost_review_draws_nothing(registered: None) -> None:
     assert motion.shown(scene) is None
     take = takes.add_take(scene, "Take")
     take.review_key = "review-" + 32 * "0"
-    results.forget()
+    results.clear_cache()
     assert motion.shown(scene) is None

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from keymark.core.take.take import Take
 from keymark.operators.shell import results
-from keymark.operators.shell.job_operator import time_left
+from keymark.operators.shell.job_progress import time_left
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 @pytest.fixture
 def take(tiny_take: Take, monkeypatch: pytest.MonkeyPatch) -> bpy.types.PropertyGroup:
     """The tiny take in the scene; nothing is remembered of other tests."""
-    results.forget()
+    results.clear_cache()
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     return active_take(bpy.context.scene)
 
@@ -49,7 +49,7 @@ def test_the_clip_is_read_once_for_proposals_and_every_method(
         assert results.reading_of(take).key == take.reading_key
     bpy.ops.keymark.propose_keyframes()
     assert len(passes) == 1
-    results.forget()
+    results.clear_cache()
     bpy.ops.keymark.reconstruct()
     assert len(passes) == 1
 

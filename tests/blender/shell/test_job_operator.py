@@ -119,7 +119,7 @@ def test_escape_leaves_everything_as_it_was(
 
 @pytest.mark.parametrize("modal", [True, False])
 def test_a_failing_job_is_one_sentence(context: SimpleNamespace, modal: bool) -> None:
-    """Expected errors are reported, the timer is taken away, nothing is written."""
+    """Expected errors are reported, the timer is removed, nothing is written."""
     job = Job(fail_at=3)
     if modal:
         job.invoke(context, event("LEFTMOUSE"))

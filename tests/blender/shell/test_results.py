@@ -1,4 +1,4 @@
-"""Results found by the key that a take holds: in memory, in a folder, or known to be absent."""
+"""The cache of results: by the key that a take holds, in memory, in a folder, or known to be absent."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -33,7 +33,7 @@ def loads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
 @pytest.fixture
 def reading(tiny_take: Take) -> Reading:
-    """What is read of the tiny take."""
+    """The reading of the tiny take."""
     return run(read_footage(tiny_take))
 
 
@@ -43,7 +43,7 @@ def test_a_reading_is_found_in_memory_and_then_on_disk(loads: list[str], reading
     assert results.reading_of(take) is None and loads == []
     results.keep_reading(take, reading)
     assert results.reading_of(take) is reading
-    results.forget()
+    results.clear_cache()
     again = results.reading_of(take)
     assert again is not None and again.key == reading.key and again is results.reading_of(take)
     assert loads.count(reading.key) == 1
@@ -74,7 +74,7 @@ def test_a_file_of_something_else_counts_as_absent(loads: list[str], reading: Re
     take = add_take(bpy.context.scene, "Walk")
     results.keep_reading(take, reading)
     results._store().save(reading.key, {"x": reading.tracks.time_s})
-    results.forget()
+    results.clear_cache()
     assert results.reading_of(take) is None
     folder = results._store().folder
     for file in folder.iterdir():

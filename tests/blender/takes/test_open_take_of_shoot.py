@@ -1,4 +1,4 @@
-"""Takes of a shoot in Blender: mere clips that inherit open like folders and are saved to stand alone."""
+"""Takes of a shoot in Blender: clips without a folder open like folders, and are saved to stand alone."""
 
 import json
 from pathlib import Path

@@ -8,7 +8,7 @@ import pytest
 from keymark.core.take.take import Take
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.shell.takes import VERSION, active_take, add_take
-from keymark.operators.takes.upgrade import is_newer, tell_apart
+from keymark.operators.takes.upgrade import ensure_unique_identifiers, is_newer
 
 RIG = "tiny Actor"
 
@@ -203,7 +203,7 @@ def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
     assert copied.motion_action is not None
     assert first.motion_action is None
     assert first.armature.animation_data.action == first.keyframe_action
-    tell_apart(bpy.data.scenes)  # as when the file is opened the next time
+    ensure_unique_identifiers(bpy.data.scenes)  # as when the file is opened the next time
     assert copied.identifier != first.identifier
 
 

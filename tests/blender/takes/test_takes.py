@@ -87,7 +87,7 @@ def test_takes_of_one_clip_keep_the_animators_range(tiny_take: Take) -> None:
 
 
 def test_switching_selects_the_takes_actor_but_not_from_under_the_animator(tiny_take: Take) -> None:
-    """Timelines show what is selected; whoever poses another armature goes on."""
+    """Timelines show what is selected; another armature that is being posed stays active."""
     scene = open_take(tiny_take)
     bpy.ops.keymark.add_performer()
     bpy.ops.keymark.build_actor()
@@ -178,7 +178,7 @@ def test_a_take_is_removed_with_its_data_but_not_anothers(tiny_take: Take) -> No
 
 
 def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
-    """From the clip to the export, in words that fit in a sidebar that nobody has widened."""
+    """From the clip to the export, in labels that fit in a sidebar of the usual width."""
     scene = bpy.context.scene
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     take, said = active_take(scene), []

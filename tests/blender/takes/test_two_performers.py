@@ -22,8 +22,8 @@ COLORS = (
     {"trunk": (30, 140, 60), "forearm.L": (220, 40, 40), "shin.R": (200, 50, 200)},
     {"trunk": (40, 70, 220), "forearm.L": (230, 200, 30), "shin.R": (40, 190, 200)},
 )
-"""What each wears."""
-PLACES_M = (-0.75, 0.75)
+"""The colors of each performer's markers."""
+POSITIONS_X_M = (-0.75, 0.75)
 
 
 def draw(image: np.ndarray, body: Body, posture: Posture, camera: Camera, colors: dict) -> None:
@@ -32,21 +32,21 @@ def draw(image: np.ndarray, body: Body, posture: Posture, camera: Camera, colors
     worn = {part: colors[segment] for segment in colors for part in marker_parts(segment)}
     for piece in body_pieces(body):
         ends, depth = camera.project(
-            np.stack([pose.place(piece.joint, place) for place in (piece.start, piece.end)])
+            np.stack([pose.place(piece.joint, point) for point in (piece.start, piece.end)])
         )
         width = round(2.0 * float(piece.half_widths.mean()) * camera.focal_px / float(depth.mean()))
-        start, end = (tuple(round(16.0 * float(value)) for value in place) for place in ends)
+        start, end = (tuple(round(16.0 * float(value)) for value in point) for point in ends)
         color = worn.get(piece.segment, (60, 60, 60))[::-1]
         cv2.line(image, start, end, color, max(2, width), cv2.LINE_AA, shift=4)
 
 
 @pytest.fixture
 def performances(wave_posture: Callable[[np.ndarray], Posture]) -> list[Posture]:
-    """What the two do: the same movement, the second one backwards, side by side."""
+    """The two motions: the same movement side by side, the second one backwards."""
     time = np.linspace(0.0, 1.0, FRAMES)
     return [
-        replace(posture, translation=posture.translation + [place, 0.0, 0.0])
-        for posture, place in zip((wave_posture(time), wave_posture(1.0 - time)), PLACES_M, strict=True)
+        replace(posture, translation=posture.translation + [x_m, 0.0, 0.0])
+        for posture, x_m in zip((wave_posture(time), wave_posture(1.0 - time)), POSITIONS_X_M, strict=True)
     ]
 
 

@@ -24,7 +24,7 @@ def take(tiny_take: Take) -> bpy.types.PropertyGroup:
 
 
 def counts() -> dict[str, int]:
-    """How many of each kind of data there are."""
+    """The number of data-blocks of each kind."""
     return {kind: len(getattr(bpy.data, kind)) for kind in DATA}
 
 

@@ -1,4 +1,4 @@
-"""Files dropped onto an editor: footage is loaded, a take is opened, a keyframe library imported."""
+"""Handlers of files dropped onto an editor: footage, takes and keyframe libraries."""
 
 import bpy
 
@@ -12,7 +12,7 @@ def _over_an_editor(context: bpy.types.Context) -> bool:
 
 
 class KEYMARK_FH_footage(bpy.types.FileHandler):
-    """Videos and images become footage."""
+    """Dropped videos and images are loaded as footage."""
 
     bl_idname = "KEYMARK_FH_footage"
     bl_label = "Footage for Keymark"
@@ -21,12 +21,12 @@ class KEYMARK_FH_footage(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Where footage is shown."""
+        """Over editors that show footage."""
         return _over_an_editor(context)
 
 
 class KEYMARK_FH_take(bpy.types.FileHandler):
-    """A take.json opens its take, the .json of a keyframe library brings that to hand."""
+    """A dropped take.json is opened, the .json of a keyframe library is imported."""
 
     bl_idname = "KEYMARK_FH_take"
     bl_label = "Take or Library for Keymark"
@@ -35,7 +35,7 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Where footage is shown, and where assets are."""
+        """Over editors that show footage or assets."""
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 

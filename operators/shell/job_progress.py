@@ -1,0 +1,67 @@
+"""The running job: whether there is one, its progress, and the time left."""
+
+import bpy
+
+from .messages import label
+
+OPERATOR_PREFIX = "KEYMARK_OT_"
+EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
+"""Time and share done of a job before which the time left is not estimated."""
+
+
+class KEYMARK_PG_progress(bpy.types.PropertyGroup):
+    """Progress of the running job; in the window manager, so that no file keeps it."""
+
+    stage: bpy.props.StringProperty()
+    fraction: bpy.props.FloatProperty(min=0.0, max=1.0)
+    time_left: bpy.props.StringProperty()
+
+    def show(self, stage: str, fraction: float, time_left: str = "") -> None:
+        """Set all three."""
+        self.stage = stage
+        self.fraction = fraction
+        self.time_left = time_left
+
+
+def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
+    """Whether one of Keymark's jobs runs in any window.
+
+    Args:
+        context: Its windows are searched.
+        job: Only jobs whose operator's name begins so, as `keymark.reconstruct`; any by default.
+    """
+    wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
+    return any(
+        operator.bl_idname.startswith(wanted)
+        for window in context.window_manager.windows
+        for operator in window.modal_operators
+    )
+
+
+def time_left(elapsed_s: float, fraction: float) -> str:
+    """Estimated time a job still takes, as a label; empty while it is too early to tell.
+
+    Args:
+        elapsed_s: Time it has taken so far.
+        fraction: Share of it that is done, 0 to 1.
+    """
+    if elapsed_s < EARLIEST_S or fraction < LEAST_FRACTION:
+        return ""
+    seconds = elapsed_s * (1.0 - fraction) / fraction
+    if seconds >= 90.0:
+        return label("about {minutes:.0f} min left", minutes=seconds / 60.0)
+    # Rounded more coarsely the longer it is, so that the label does not flicker.
+    step = 10.0 if seconds > 30.0 else 5.0 if seconds > 10.0 else 1.0
+    return label("about {seconds:.0f} s left", seconds=max(step * round(seconds / step), 1.0))
+
+
+def register() -> None:
+    """Add the progress to the window manager."""
+    bpy.utils.register_class(KEYMARK_PG_progress)
+    bpy.types.WindowManager.keymark_progress = bpy.props.PointerProperty(type=KEYMARK_PG_progress)
+
+
+def unregister() -> None:
+    """Remove it."""
+    del bpy.types.WindowManager.keymark_progress
+    bpy.utils.unregister_class(KEYMARK_PG_progress)

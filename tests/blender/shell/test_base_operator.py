@@ -1,0 +1,93 @@
+"""The base of operators: requirements as tooltips, failures as reports, and what counts as an undo step."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from keymark.core.errors import InputError
+from keymark.operators.shell.base_operator import BaseOperator
+from keymark.operators.shell.cancel_on_esc import cancel_click, cancel_job
+
+CONTEXT = SimpleNamespace()
+
+
+class Operator(BaseOperator):
+    """An operator outside Blender that returns or raises what it is given."""
+
+    tooltips: list[str]
+
+    def __init__(self, outcome: set[str] | Exception | None = None) -> None:
+        self.outcome = outcome
+        self.reports: list[tuple[set[str], str]] = []
+        self.cancelled = 0
+
+    @classmethod
+    def poll_message_set(cls, sentence: str) -> None:
+        """Keep the tooltip."""
+        cls.tooltips.append(sentence)
+
+    def report(self, kind: set[str], text: str) -> None:
+        """Keep the report."""
+        self.reports.append((kind, text))
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Return or raise the outcome."""
+        if isinstance(self.outcome, Exception):
+            raise self.outcome
+        return self.outcome
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Count the calls."""
+        self.cancelled += 1
+
+
+def test_the_first_unmet_requirement_is_the_tooltip() -> None:
+    """Those after it are not asked."""
+
+    class Demanding(Operator):
+        tooltips = []
+        requirements = (lambda context: None, lambda context: "Load it", lambda context: "Save it")
+
+    assert not Demanding.poll(CONTEXT)
+    assert Demanding.tooltips == ["Load it"]
+    assert Operator.poll(CONTEXT)
+
+
+@pytest.mark.parametrize(("outcome", "result"), [(None, {"FINISHED"}), ({"CANCELLED"}, {"CANCELLED"})])
+def test_an_operator_that_did_nothing_is_cancelled(outcome: set[str] | None, result: set[str]) -> None:
+    """Blender adds an undo step only for one that has finished."""
+    operator = Operator(outcome)
+    assert operator.execute(CONTEXT) == result
+    assert operator.reports == []
+
+
+def test_an_expected_failure_is_a_report_and_any_other_passes_through() -> None:
+    """The sentence is the error's own; a missing library is named."""
+    operator = Operator(InputError("the clip is upside down"))
+    assert operator.execute(CONTEXT) == {"CANCELLED"}
+    assert operator.reports == [({"ERROR"}, "the clip is upside down")]
+    missing = Operator(ModuleNotFoundError("No module named 'scipy.linalg'", name="scipy.linalg"))
+    assert missing.execute(CONTEXT) == {"CANCELLED"}
+    assert "needs the Python library scipy, " in missing.reports[0][1]
+    with pytest.raises(ZeroDivisionError):
+        Operator(ZeroDivisionError()).execute(CONTEXT)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "job", "click"),
+    [
+        ("ESC", "PRESS", True, True),
+        ("ESC", "RELEASE", False, False),
+        ("RIGHTMOUSE", "PRESS", False, True),
+        ("LEFTMOUSE", "PRESS", False, False),
+    ],
+)
+def test_esc_cancels_and_a_right_click_cancels_a_click(kind: str, value: str, job: bool, click: bool) -> None:
+    """A job, which goes on behind the animator's clicks, says that it was cancelled."""
+    event = SimpleNamespace(type=kind, value=value)
+    working, waiting = Operator(), Operator()
+    assert cancel_job(working, CONTEXT, event) is job
+    assert cancel_click(waiting, CONTEXT, event) is click
+    assert (working.cancelled, waiting.cancelled) == (job, click)
+    assert working.reports == ([({"INFO"}, "Cancelled")] if job else [])
+    assert waiting.reports == []
