@@ -12,7 +12,6 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ...core.errors import ConversionError
 from ...core.take.motion import Motion
 from ...core.take.take import Take
 from .armature import build_armature

@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, actor_of, take_called
 
 if TYPE_CHECKING:
@@ -32,11 +32,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.bake_motion"
     bl_label = "Bake Final Action"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a motion."""
-        return all_met(cls, context, actor, motion, idle)
+    requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the motion and finish it; the settings are those of the moment it begins."""

@@ -13,7 +13,7 @@ from ..matching.matches import known_matches
 from ..review.review_results import show_review
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
+from ..shell.requirements import actor, all_colors, footage, idle, markers, two_keyframes
 from ..shell.results import keep_reading, keep_review, keep_solved, reading_of, solved_before
 from ..shell.takes import active_take, actor_of, footage_of, take_called
 from .live_preview import LivePreview
@@ -46,12 +46,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, actor, markers, all_colors, two_keyframes, idle)
     preview: LivePreview | None = None
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, all_colors, two_keyframes, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
