@@ -1,7 +1,7 @@
 """Match the footage with keyframe libraries: keyframes that nobody has to pose."""
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -12,34 +12,17 @@ from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, all_colors, camera, footage, idle, markers
-from ..shell.results import keep_reading, reading_of
-from ..shell.takes import active_take, footage_of, take_called
-from .matches import keep_choice, known_matches
+from ..shell.results import reading_of
+from ..shell.takes import active_take, footage_of
+from .matches import known_matches
 from .properties import FLOORS
 
 if TYPE_CHECKING:
-    from ...core.footage.reading import Reading
-    from ...core.matching.match_take import LibraryChoice
-    from ...core.prior.keyframes import Keyframe
     from ...core.progress import Job
+    from .match_result import MatchResult
 
 TIMES, READ = 0.05, 0.5
 """Shares of the job at which the clip's times are read, and its pictures."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What the job hands over to the scene."""
-
-    take: str
-    """The take's identifier."""
-    frames: Any
-    """(F,) scene frames."""
-    reading: "Reading"
-    choice: "LibraryChoice"
-    keyframes: "tuple[Keyframe, ...]"
-    """Those that are matched."""
-    notes: tuple[str, ...]
 
 
 class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
@@ -73,12 +56,13 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         self.floor_height = matching.floor_height
         return super().invoke(context, event)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+    def start(self, scene: bpy.types.Scene) -> "Job[MatchResult]":
         """Read the scene's take and match it; what earlier matching gave is left out of account."""
         from ...core.matching.match_take import match_take, with_matches
         from ...core.take.read_footage import read_footage
         from ..bridge.take_from_scene import read_scene_take
         from ..library.registry_files import libraries_to_match
+        from .match_result import MatchResult
 
         settings = active_take(scene)
         identifier, kept, count = settings.identifier, reading_of(settings), settings.keyframe_count or None
@@ -99,13 +83,11 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
         matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
         # The match may have found that another thing of its color had been taken for a marker.
-        return Outcome(identifier, frames, choice.reading or reading, choice, matched, notes)
+        return MatchResult(identifier, frames, choice.reading or reading, choice, matched, notes)
 
-    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+    def finish(self, scene: bpy.types.Scene, result: "MatchResult") -> None:
         """Key what was found beside what is posed; what earlier matching gave goes."""
-        take = take_called(scene, result.take)
-        keep_choice(take, result.choice, result.keyframes, result.frames)
-        keep_reading(take, result.reading)
+        take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])

@@ -6,7 +6,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
-from .matches import chosen_match, key_matches
+from .matches import chosen_match
 
 
 class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
@@ -26,7 +26,7 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key it, and go there."""
-        import numpy as np
+        from .match_edits import key_candidate
 
         take = active_take(context.scene)
         match = chosen_match(take)
@@ -41,7 +41,7 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
             )
             return {"CANCELLED"}
         match.chosen, match.by_hand = self.candidate, True
-        key_matches(take, np.array([round(match.frame, 3)]), [match.candidate.posture])
+        key_candidate(take, match)
         match.go_to(context.scene)
         say(
             self,

@@ -14,7 +14,7 @@ from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.frame_times import scene_frames
 from ..bridge.keyframes import write_keyframes
 from ..markers.marker_styles import set_marker_color
-from ..matching.matches import add_candidate, add_match
+from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
 from ..shell.takes import add_take
 
