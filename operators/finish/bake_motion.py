@@ -14,7 +14,7 @@ from ..shell.takes import active_take, actor_of, take_called
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from ..bridge.finishing import Finished
+    from ..bridge.finish_motion import Finished
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
         """Read the motion and finish it; the settings are those of the moment it begins."""
-        from ..bridge.finishing import Wanted, finish_motion
+        from ..bridge.finish_motion import Wanted, finish_motion
 
         take = active_take(scene)
         settings, identifier = take.finish, take.identifier

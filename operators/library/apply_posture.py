@@ -51,7 +51,7 @@ class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Fit the posture to the actor and show it, over the keyframes."""
         from ..bridge.actor_lengths import read_body
-        from ..bridge.library.poses import named_posture, on_actor, standing_as
+        from ..bridge.library.posture_transfer import named_posture, on_actor, standing_as
         from ..bridge.pose import read_posture, write_posture
 
         take = active_take(context.scene)

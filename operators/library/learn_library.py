@@ -72,7 +72,7 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Learn the library, add it to the scene as pose assets, and publish it where that is wanted."""
         from ...core.library.learning import About
-        from ..bridge.library.learning import library_from_action
+        from ..bridge.library.library_from_action import library_from_action
         from .editing.library_to_scene import add_library
         from .registry_files import registered_identifiers, replace_in_registry
 

@@ -135,7 +135,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
         """Read the pixel from the footage's file, free of the viewport's colors; look for its color."""
-        from ..bridge.pixel_color import footage_color
+        from ..bridge.footage_color import footage_color
 
         take = active_take(scene)
         source, identifier, index = footage_of(scene, take), take.identifier, self._index(take)

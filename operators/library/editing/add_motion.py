@@ -61,7 +61,7 @@ class KEYMARK_OT_add_motion(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Add the motion, and postures for it where they are made of keyframes."""
-        from .scene_postures import add_keyframes, add_motion
+        from .library_edits import add_keyframes, add_motion
 
         group = library_here(context.scene)
         if self.source == "KEYFRAMES":

@@ -44,7 +44,7 @@ class KEYMARK_OT_add_posture(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the pose, level it, and make it a pose asset."""
-        from .scene_postures import add_pose
+        from .library_edits import add_pose
 
         take, group = active_take(context.scene), library_here(context.scene)
         tags = tuple(tag.strip() for tag in self.tags.split(",") if tag.strip())

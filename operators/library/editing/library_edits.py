@@ -19,7 +19,7 @@ from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
 from ...bridge.actor_lengths import read_body
 from ...bridge.keyframes import NOTICEABLE_M, keyed_frames, read_keyframes
 from ...bridge.library.pose_assets import add_asset
-from ...bridge.library.poses import as_kept
+from ...bridge.library.posture_transfer import as_kept
 from ...bridge.pose import read_posture
 from ...bridge.posture_curves import rewrite_posture_curves
 from .asset_updates import update_assets
