@@ -113,7 +113,7 @@ class KEYMARK_OT_measure_actor(bpy.types.Operator):
         """Measure, give the actor what was measured, and stand it there unless it has keyframes."""
         with reported(self):
             from ..bridge.pose import write_posture
-            from ..bridge.posing import frame_in_footage, measured_in_frame
+            from ..bridge.single_frame_fit import frame_in_footage, measured_in_frame
             from .place_actor import is_posed, size_actor
 
             take = active_take(context.scene)

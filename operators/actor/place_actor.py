@@ -46,7 +46,7 @@ def performers_place(
 
     None without footage and camera, or where the current frame is none of the footage's.
     """
-    from ..bridge.posing import frame_in_footage, posed_standing
+    from ..bridge.single_frame_fit import frame_in_footage, posed_standing
 
     if take.clip is None or take.camera is None:
         return None

@@ -54,7 +54,7 @@ class KEYMARK_OT_fit_pose(bpy.types.Operator):
         """Fit it, show it, and say how well it explains the markers."""
         with reported(self):
             from ..bridge.pose import write_posture
-            from ..bridge.posing import fit_to_frame, frame_in_footage
+            from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
 
             take = active_take(context.scene)
             frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
