@@ -14,15 +14,15 @@ import numpy as np
 
 from ...core.take.motion import Motion
 from ...core.take.take import Take
+from .actions import curve_digest
 from .armature import build_armature
 from .blend_writer import write_blend
 from .body_mesh import build_body_mesh
-from .curve_digest import curve_digest
 from .export_formats import write_bvh
 from .fcurves import write_motion
 from .footage import clip_rate
 from .footage_to_scene import load_footage, show_footage
-from .frame_times import scene_frames
+from .scene_frames import scene_frames
 
 VIEW_TRANSFORM = "Standard"
 """Shows colors as they are given, so that markers look as in the footage; the default, AgX, does not."""

@@ -7,7 +7,7 @@ import bpy
 
 from ...core.library.texts import EVERY_LIBRARY
 from ...core.progress import stretch
-from ..bridge.frame_times import scene_frames
+from ..bridge.scene_frames import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say

@@ -6,7 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
-from ..bridge.frame_times import scene_frames
+from ..bridge.scene_frames import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
 from ..shell.job_operator import JobOperator

@@ -31,9 +31,9 @@ class KEYMARK_OT_mirror_library(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Add them at the end of the list."""
         from ....core.library.mirroring import mirrored_library
+        from .library_edits import add_mirrored
         from .library_from_scene import library_from_scene
         from .library_to_scene import add_library
-        from .library_edits import add_mirrored
 
         group = library_here(context.scene)
         library = library_from_scene(group)
