@@ -108,7 +108,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
         from ..bridge.pose import write_posture
-        from ..bridge.posing import frame_in_footage, measured_in_frame
+        from ..bridge.single_frame_fit import frame_in_footage, measured_in_frame
         from .take_actor import has_keyframes, size_actor
 
         take = active_take(context.scene)

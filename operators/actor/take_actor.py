@@ -75,7 +75,7 @@ def performers_stance(
 
     None without footage and camera, or if the current frame is not one of the footage's.
     """
-    from ..bridge.posing import frame_in_footage, posed_standing
+    from ..bridge.single_frame_fit import frame_in_footage, posed_standing
 
     if take.clip is None or take.camera is None:
         return None

@@ -1,9 +1,12 @@
-"""Slotted Actions by the part of Blender's interface that 4.5 and 5.x share."""
+"""Slotted Actions, by the API that Blender 4.5 and 5.x share."""
+
+import hashlib
 
 import bpy
+import numpy as np
 
 SLOT = "Actor"
-"""Of an Action that was made for no armature in particular."""
+"""Name of the slot of an Action that is made for no armature in particular."""
 
 
 def new_channelbag(action: bpy.types.Action) -> bpy.types.ActionChannelbag:
@@ -51,3 +54,25 @@ def assign_action(datablock: bpy.types.ID, action: bpy.types.Action) -> None:
     data.action = action
     if slot is not None:
         data.action_slot = slot
+
+
+def curve_digest(animated: bpy.types.Object) -> str:
+    """SHA-256 of the curves that animate an object, to the last digit.
+
+    It is the same in every run, unlike a .blend, which holds memory addresses.
+    """
+    hashed = hashlib.sha256()
+    for curve in sorted(_curves(animated), key=lambda curve: (curve.data_path, curve.array_index)):
+        points = np.empty(2 * len(curve.keyframe_points), dtype="<f4")
+        curve.keyframe_points.foreach_get("co", points)
+        hashed.update(f"{curve.data_path} {curve.array_index} {len(points)}:".encode())
+        hashed.update(points.tobytes())
+    return hashed.hexdigest()
+
+
+def _curves(animated: bpy.types.Object) -> list[bpy.types.FCurve]:
+    animation = animated.animation_data
+    if animation is None or animation.action is None:
+        return []
+    bag = existing_channelbag(animation.action, animated)
+    return [] if bag is None else list(bag.fcurves)

@@ -12,23 +12,20 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ...core.errors import ConversionError
 from ...core.take.motion import Motion
 from ...core.take.take import Take
+from .actions import curve_digest
 from .armature import build_armature
 from .blend_writer import write_blend
 from .body_mesh import build_body_mesh
-from .curve_digest import curve_digest
+from .export_formats import write_bvh
 from .fcurves import write_motion
 from .footage import clip_rate
 from .footage_to_scene import load_footage, show_footage
-from .frame_times import scene_frames
+from .scene_frames import scene_frames
 
 VIEW_TRANSFORM = "Standard"
 """Shows colors as they are given, so that markers look as in the footage; the default, AgX, does not."""
-
-BVH_ORDER = "ZXY"
-"""One order of rotation channels for all joints: some readers take the first joint's for all."""
 
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
@@ -84,30 +81,6 @@ def _set_look(scene: bpy.types.Scene) -> None:
     scene.view_settings.view_transform = VIEW_TRANSFORM
     scene.world = bpy.data.worlds.new("Soft Light")
     scene.world.color = (0.8, 0.8, 0.8)
-
-
-def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
-    """Export an armature's motion over its scene's frames with Blender's own BVH exporter.
-
-    Raises:
-        ConversionError: The exporter failed.
-    """
-    scene = armature_object.users_scene[0]
-    layer = scene.view_layers[0]
-    layer.objects.active = armature_object
-    with bpy.context.temp_override(
-        scene=scene, view_layer=layer, object=armature_object, active_object=armature_object
-    ):
-        try:
-            bpy.ops.export_anim.bvh(
-                filepath=str(path),
-                frame_start=scene.frame_start,
-                frame_end=scene.frame_end,
-                rotate_mode=BVH_ORDER,
-                root_transform_only=True,
-            )
-        except (RuntimeError, AttributeError) as error:
-            raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
 @contextmanager

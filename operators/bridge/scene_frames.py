@@ -1,6 +1,6 @@
-"""Going through a scene's frames, or an armature's Actions, and coming back with everything as it was.
+"""Frames of a scene: those that show a clip's frames, and other frames or Actions evaluated for a while.
 
-Blender forgets what is posed and not keyed as soon as it evaluates a frame: both give it back.
+Blender discards poses without keys as soon as it evaluates a frame: the context managers here restore them.
 """
 
 from collections.abc import Callable, Iterator
@@ -8,13 +8,35 @@ from contextlib import contextmanager
 from math import floor
 
 import bpy
+import numpy as np
 
+from ...core.arrays import Array
+from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from .actions import assign_action
 from .object_space import evaluated
 
 Pose = dict[str, list[tuple[float, ...]]]
 """Values of all channels, by bone."""
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+
+
+def scene_frames(time_s: Array, first: float, rate: float) -> Array:
+    """Scene frames that show the frames of a clip.
+
+    Whole steps for a constant rate, however the container rounds its times; by their times, and so
+    fractional, for a variable rate, as Blender shows them.
+
+    Args:
+        time_s: (F,) time of each frame from the first [s].
+        first: Scene frame of the first frame.
+        rate: Frames per second of the clip in Blender.
+
+    Returns:
+        (F,) scene frames.
+    """
+    if is_variable_frame_rate(time_s):
+        return np.asarray(first + time_s * rate)
+    return np.asarray(first + np.arange(len(time_s), dtype=np.float64))
 
 
 @contextmanager

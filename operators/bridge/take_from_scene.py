@@ -15,8 +15,8 @@ from ...core.take.take import Take
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
 from .footage import Footage
-from .frame_times import scene_frames
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
+from .scene_frames import scene_frames
 
 READING = "Reading the footage's times"
 

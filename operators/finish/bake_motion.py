@@ -9,17 +9,17 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, actor_of, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from ..bridge.finishing import Finished
+    from ..bridge.finish_motion import Finished
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
-    """What the job hands over to the scene."""
+class FinishedTake:
+    """A finished motion of a take."""
 
     take: str
     """The take's identifier."""
@@ -32,15 +32,11 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.bake_motion"
     bl_label = "Bake Final Action"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a motion."""
-        return all_met(cls, context, actor, motion, idle)
-
-    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+    def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
         """Read the motion and finish it; the settings are those of the moment it begins."""
-        from ..bridge.finishing import Wanted, finish_motion
+        from ..bridge.finish_motion import Wanted, finish_motion
 
         take = active_take(scene)
         settings, identifier = take.finish, take.identifier
@@ -52,12 +48,10 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         frame_s = scene.render.fps_base / scene.render.fps
         job = finish_motion(take.armature, take.motion_action, take.keyframe_action, wanted, frame_s)
         del take, settings  # Blender may move them while the job runs
-        return Outcome(identifier, (yield from job))
+        return FinishedTake(identifier, (yield from job))
 
-    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+    def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
         """Write the final Action and let it animate the actor."""
-        from ..bridge.final_motion import write_final
-
         take, finished = take_by_identifier(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:
@@ -65,15 +59,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         if settings.action is None:
             settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
         settings.action.use_fake_user = True
-        settings.keys_after = write_final(
-            armature_object,
-            take.motion_action,
-            settings.action,
-            finished.body,
-            finished.rig,
-            finished.frames,
-            finished.motion,
-        )
+        settings.keys_after = finished.write(armature_object, take.motion_action, settings.action)
         settings.keys_before, settings.outdated = finished.keys_before, False
         settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
         assign_action(armature_object, settings.action)

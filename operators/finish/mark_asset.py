@@ -3,42 +3,35 @@
 import bpy
 
 from ..bridge.assets.catalogs import catalog_file, ensure_catalog
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say, warn_if_outdated
 from ..shell.redraw import refresh_asset_browsers
-from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_mark_asset(bpy.types.Operator):
+class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     """Offer the motion, finished if it is, in the asset browser: with catalog, tags and a picture"""
 
     bl_idname = "keymark.mark_asset"
     bl_label = "Mark Asset"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a motion."""
-        return all_met(cls, context, actor, motion, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Add the catalog to its file, then mark the Action."""
-        with reported(self):
-            from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
+        from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
 
-            take = active_take(context.scene)
-            settings, action = take.finish, take.finish.action or take.motion_action
-            picture = action_picture(context.scene, take.armature, action)
-            catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
-            tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
-            details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
-            mark_asset(action, details, picture)
-            refresh_asset_browsers(context)
-            warn_if_outdated(self, take)
-            say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        settings, action = take.finish, take.finish.action or take.motion_action
+        picture = action_picture(context.scene, take.armature, action)
+        catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
+        tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
+        details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
+        mark_asset(action, details, picture)
+        refresh_asset_browsers(context)
+        warn_if_outdated(self, take)
+        say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mark_asset,))

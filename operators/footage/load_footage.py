@@ -9,10 +9,16 @@ from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .occluding_objects import occluding_objects
-from .take_footage import give_footage, lens_is_guess, look_through_camera, show_range, take_name
+from .take_footage import (
+    IMAGES,
+    VIDEOS,
+    give_footage,
+    lens_is_guess,
+    look_through_camera,
+    show_range,
+    take_name,
+)
 
-VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
-IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 MOST_NAMED = 3
 """Most objects in front of the footage that are named."""
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)

@@ -18,6 +18,9 @@ GENERIC_STEM = "clip"
 """File name, without its extension, of the clip in every saved take's folder."""
 SAMPLED_FRAMES = 90
 """Frames whose times are checked for a variable rate; a phone's rate varies from the start."""
+VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
+IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+"""Extensions of the files that footage is loaded from."""
 
 
 def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> None:

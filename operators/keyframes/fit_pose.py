@@ -49,7 +49,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Fit the pose, set it, and report its distance from the markers."""
         from ..bridge.pose import write_posture
-        from ..bridge.posing import fit_to_frame, frame_in_footage
+        from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
 
         take = active_take(context.scene)
         frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))

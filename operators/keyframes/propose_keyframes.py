@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.progress import within
-from ..bridge.frame_times import scene_frames
+from ..bridge.scene_frames import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say

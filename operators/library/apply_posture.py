@@ -6,10 +6,10 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 from .editing.scene_libraries import active_posture, library_here
 from .library_choice import chosen_library
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from ...core.library.library import Library
 
 
-class KEYMARK_OT_apply_posture(bpy.types.Operator):
+class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
     """Pose the actor as in a library, whatever its proportions; nothing is keyed before you do"""
 
     bl_idname = "keymark.apply_posture"
     bl_label = "Apply Posture"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
 
     library: bpy.props.StringProperty(
         name="Library",
@@ -47,35 +48,27 @@ class KEYMARK_OT_apply_posture(bpy.types.Operator):
         ],
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor."""
-        return all_met(cls, context, actor, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Fit the posture to the actor and show it, over the keyframes."""
-        with reported(self):
-            from ..bridge.actor_lengths import read_body
-            from ..bridge.library.poses import named_posture, on_actor, standing_as
-            from ..bridge.pose import read_posture, write_posture
+        from ..bridge.actor_lengths import read_body
+        from ..bridge.library.posture_transfer import named_posture, on_actor, standing_as
+        from ..bridge.pose import read_posture, write_posture
 
-            take = active_take(context.scene)
-            body = read_body(take.armature, HUMAN)
-            library, name = self._chosen(context)
-            found = named_posture(library, name)
-            posture = on_actor(found, library.actor, body, mirror=self.mirrored)
-            if self.place == "ACTOR":
-                posture = standing_as(posture, body, read_posture(take.armature, body).posture)
-            show_keyframes(take)
-            write_posture(take.armature, posture)
-            say(
-                self,
-                "INFO",
-                "Posed as '{name}'; Fit from Current Pose brings it to the markers, Store Keyframe keys it",
-                name=name,
-            )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        body = read_body(take.armature, HUMAN)
+        library, name = self._chosen(context)
+        found = named_posture(library, name)
+        posture = on_actor(found, library.actor, body, mirror=self.mirrored)
+        if self.place == "ACTOR":
+            posture = standing_as(posture, body, read_posture(take.armature, body).posture)
+        show_keyframes(take)
+        write_posture(take.armature, posture)
+        say(
+            self,
+            "INFO",
+            "Posed as '{name}'; Fit from Current Pose brings it to the markers, Store Keyframe keys it",
+            name=name,
+        )
 
     def _chosen(self, context: bpy.types.Context) -> "tuple[Library, str]":
         """The library and the name of its posture."""

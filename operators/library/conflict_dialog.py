@@ -1,18 +1,52 @@
 """The question what to do with a library whose identifier is taken, in an operator's dialog."""
 
+from dataclasses import dataclass
 from textwrap import wrap
+from typing import TYPE_CHECKING
 
 import bpy
 
-from .conflicts import Conflict
+if TYPE_CHECKING:
+    from ...core.library.library import Library
 
+CHOICES = [
+    ("ASK", "Ask", "Change nothing where another library of the same identifier is there"),
+    ("KEEP", "Keep Mine", "Leave the existing library as it is, and the new one out"),
+    ("REPLACE", "Replace", "Replace the existing library by the new one"),
+    ("MERGE", "Add What Is New", "Add postures and motions that mine lacks; what both have stays mine"),
+    ("BOTH", "Keep Both", "Give the new one an identifier of its own, and keep it beside the other"),
+]
+"""Items of an operator's property: what to do with a library whose identifier is taken."""
 LETTERS = 56
 """In a line of the dialog."""
 WIDTH = 420
 
 
+@dataclass(frozen=True, eq=False)
+class Conflict:
+    """A library that arrives, and a different one that is there under its identifier."""
+
+    new: "Library"
+    there: "Library"
+
+    @property
+    def sentence(self) -> str:
+        """Titles, versions and authors of both, to decide by."""
+        new, there = self.new, self.there
+        if new.version > there.version:
+            age = "which is newer"
+        elif new.version < there.version:
+            age = "which is older"
+        else:
+            age = "which is of the same version, but not the same"
+        return (
+            f"'{there.title}' ({there.identifier}) is there in version {there.version} by {there.author}; "
+            f"this is version {new.version} by {new.author}, {age}"
+        )
+
+
 def draw_question(layout: bpy.types.UILayout, operator: bpy.types.Operator, found: list[Conflict]) -> None:
-    """Draw what is there and what comes, and the choice."""
+    """Draw up to three conflicts, and the choice."""
     for conflict in found[:3]:
         column = layout.column(align=True)
         for number, line in enumerate(wrap(conflict.sentence, LETTERS)):

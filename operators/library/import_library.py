@@ -6,23 +6,25 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle
-from .conflict_dialog import WIDTH, draw_question
-from .conflicts import CHOICES, Conflict, conflicts, keep_on_shelf, on_shelf, settled
-from .registry import fill
+from ..shell.requirements import idle
+from .conflict_dialog import CHOICES, WIDTH, Conflict, draw_question
+from .publication import publish, registry_conflicts
+from .registry import refresh
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
 
 
-class KEYMARK_OT_import_library(bpy.types.Operator):
+class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     """Import a keyframe library from a file, to match footage with it and to pose with it"""
 
     bl_idname = "keymark.import_library"
     bl_label = "Import Library"
     bl_options = {"REGISTER"}
+    requirements = (idle,)
 
     filepath: bpy.props.StringProperty(
         name="File Path",
@@ -41,18 +43,13 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
 
     _found: list[Conflict] = []
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Not while a job runs."""
-        return all_met(cls, context, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped; then, where its library is there, what to do."""
+        """Ask for the file, unless one was dropped; then what to do where its identifier is taken."""
         if not self.filepath:
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
         with reported(self):
-            self._found = conflicts(self._read(), on_shelf)
+            self._found = registry_conflicts(self._read())
             if not self._found:
                 return self.execute(context)
             self.existing = "KEEP"
@@ -64,23 +61,20 @@ class KEYMARK_OT_import_library(bpy.types.Operator):
         if self._found:
             draw_question(self.layout, self, self._found)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read all of it first, then keep it in the user's folder."""
-        with reported(self):
-            libraries = self._read()
-            if self.existing == "ASK" and self.options.is_invoke and conflicts(libraries, on_shelf):
-                # The file was chosen in a file browser: ask now.
-                return bpy.ops.keymark.import_library("INVOKE_DEFAULT", filepath=self.filepath)
-            kept = settled(libraries, on_shelf, self.existing)
-            keep_on_shelf(kept)
-            titles = ", ".join(f"'{library.title}'" for library in kept)
-            if kept:
-                say(self, "INFO", "Imported {titles}", titles=titles)
-            else:
-                fill(libraries[0].identifier)  # the list points to it
-                say(self, "INFO", "Nothing to import: the library is at hand already")
-            return {"FINISHED"}
-        return {"CANCELLED"}
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Read the whole file first, then write its libraries into the user's folder."""
+        libraries = self._read()
+        if self.existing == "ASK" and self.options.is_invoke and registry_conflicts(libraries):
+            # The file was chosen in a file browser: ask now.
+            return bpy.ops.keymark.import_library("INVOKE_DEFAULT", filepath=self.filepath)
+        published = publish(libraries, self.existing)
+        titles = ", ".join(f"'{library.title}'" for library in published)
+        if published:
+            say(self, "INFO", "Imported {titles}", titles=titles)
+        else:
+            refresh(libraries[0].identifier)  # the list points to it
+            say(self, "INFO", "Nothing to import: the library is at hand already")
+        return None
 
     def _read(self) -> "tuple[Library, ...]":
         from ..bridge.library.library_file import read_libraries

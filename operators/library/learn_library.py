@@ -1,14 +1,12 @@
-"""Turn a take's motion into a keyframe library."""
+"""Learn a keyframe library from a take's motion."""
 
 import bpy
 
 from ...core.library.texts import identifier_from
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say, warn_if_outdated
-from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
-from . import registry
-from .editing.scene_libraries import add_library
 from .licenses import suggest
 
 DIALOG_WIDTH = 360
@@ -16,12 +14,13 @@ ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
 A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
 
 
-class KEYMARK_OT_learn_library(bpy.types.Operator):
+class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
     bl_idname = "keymark.learn_library"
     bl_label = "Library from Motion"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
 
     title: bpy.props.StringProperty(name="Title", description="What people read; by default the take's name")
     author: bpy.props.StringProperty(name="Author", description="Who made the library")
@@ -52,11 +51,6 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a motion."""
-        return all_met(cls, context, actor, motion, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for title and author."""
         take = active_take(context.scene)
@@ -75,43 +69,35 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
         layout.prop(self, "count", text="Postures (0: Automatic)")
         layout.prop(self, "for_matching")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Learn it, keep it in the scene as pose assets, and on the shelf where that is wanted."""
-        with reported(self):
-            from ...core.library.learning import About
-            from ...core.library.library_file import library_from_json, library_to_json, write_library
-            from ...core.library.registry import library_path, shelved
-            from ..bridge.library.learning import library_from_action
+    def run(self, context: bpy.types.Context) -> None:
+        """Learn the library, add it to the scene as pose assets, and publish it where that is wanted."""
+        from ...core.library.learning import About
+        from ..bridge.library.library_from_action import library_from_action
+        from .editing.library_to_scene import add_library
+        from .registry_files import registered_identifiers, replace_in_registry
 
-            take, render = active_take(context.scene), context.scene.render
-            title = self.title.strip() or take.name
-            taken = {found.identifier for found in shelved(registry.folders())}
-            taken |= {library.identifier for library in context.scene.keymark.libraries}
-            library = library_from_action(
-                take.armature,
-                take.finish.action or take.motion_action,
-                render.fps_base / render.fps,
-                About(
-                    title=title,
-                    author=self.author.strip() or "Unknown",
-                    license=self.license.strip(),
-                    identifier=self.learned_as or identifier_from(title, taken),
-                ),
-                self.count or None,
-            )
-            library_from_json(library_to_json(library), f"library '{title}'")  # checks what was typed
-            self.learned_as = library.identifier
-            if self.for_matching:
-                write_library(library_path(registry.own_folder(), library.identifier), library)
-                registry.fill(library.identifier)
-            add_library(context.scene, library)
-            warn_if_outdated(self, take)
-            (learned,) = library.motions
-            template = A_CYCLE if learned.cyclic else ONCE
-            count, seconds = len(library.postures), learned.duration_s
-            say(self, "INFO", template, title=title, count=count, seconds=seconds)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take, render = active_take(context.scene), context.scene.render
+        title = self.title.strip() or take.name
+        taken = registered_identifiers()
+        taken |= {library.identifier for library in context.scene.keymark.libraries}
+        about = About(
+            title=title,
+            author=self.author.strip() or "Unknown",
+            license=self.license.strip(),
+            identifier=self.learned_as or identifier_from(title, taken),
+        )
+        action = take.finish.action or take.motion_action
+        frame_s = render.fps_base / render.fps
+        library = library_from_action(take.armature, action, frame_s, about, self.count or None)
+        self.learned_as = library.identifier
+        if self.for_matching:
+            replace_in_registry(library)
+        add_library(context.scene, library)
+        warn_if_outdated(self, take)
+        (learned,) = library.motions
+        template = A_CYCLE if learned.cyclic else ONCE
+        count, seconds = len(library.postures), learned.duration_s
+        say(self, "INFO", template, title=title, count=count, seconds=seconds)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_learn_library,))

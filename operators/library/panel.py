@@ -6,7 +6,7 @@ from ..shell.messages import counted, label
 from ..shell.panel import SubPanel, draw_progress, draw_sentence
 from ..shell.takes import find_take
 from .editing.scene_libraries import active_motion, active_posture, find_library_here, library_here
-from .registry import chosen
+from .registry import chosen_entry
 
 MOST_LINES = 4
 """Of what a library says of itself, or what is wrong with it."""
@@ -110,7 +110,7 @@ class KEYMARK_MT_shelf(bpy.types.Menu):
     def draw(self, context: bpy.types.Context) -> None:
         """Installing, exporting, refreshing."""
         layout = self.layout
-        item = chosen(context)
+        item = chosen_entry(context)
         if item is not None and not item.problem:
             layout.operator("keymark.export_library", icon="EXPORT").library = item.name
         layout.operator("keymark.install_shipped_libraries", icon="PACKAGE")
@@ -149,14 +149,16 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the list, what is known of the chosen one, and what is done with it."""
-        shelf, layout = context.window_manager.keymark_shelf, self.layout
+        registry, layout = context.window_manager.keymark_shelf, self.layout
         row = layout.row()
-        row.template_list("KEYMARK_UL_shelf", "", shelf, "libraries", shelf, "active", rows=4, maxrows=6)
+        row.template_list(
+            "KEYMARK_UL_shelf", "", registry, "libraries", registry, "active", rows=4, maxrows=6
+        )
         buttons = row.column(align=True)
         buttons.operator("keymark.import_library", text="", icon="IMPORT")
         buttons.operator("keymark.discard_library", text="", icon="REMOVE")
         buttons.menu("KEYMARK_MT_shelf", text="", icon="DOWNARROW_HLT")
-        item = chosen(context)
+        item = chosen_entry(context)
         if item is None:
             return
         if item.problem:
@@ -166,10 +168,10 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        column.prop_search(shelf, "posture", item, "postures", icon="ARMATURE_DATA")
-        column.prop(shelf, "mirrored")
+        column.prop_search(registry, "posture", item, "postures", icon="ARMATURE_DATA")
+        column.prop(registry, "mirrored")
         apply = column.operator("keymark.apply_posture", icon="POSE_HLT")
-        apply.library, apply.posture, apply.mirrored = item.name, shelf.posture, shelf.mirrored
+        apply.library, apply.posture, apply.mirrored = item.name, registry.posture, registry.mirrored
         if not draw_progress(column, context, "keymark.install_"):
             column.operator("keymark.install_library", icon="ASSET_MANAGER").library = item.name
         column.operator("keymark.edit_library", icon="GREASEPENCIL").library = item.name

@@ -1,21 +1,23 @@
-"""Keep the library that is made in this file among the user's own, so that footage is matched with it."""
+"""Publish the library that is made in this file to the registry, so that footage is matched with it."""
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle, scene_library
-from .conflict_dialog import WIDTH, draw_question
-from .conflicts import CHOICES, Conflict, conflicts, keep_on_shelf, on_shelf, settled
+from ..shell.requirements import idle, scene_library
+from .conflict_dialog import CHOICES, WIDTH, Conflict, draw_question
 from .library_choice import chosen_library
+from .publication import publish, registry_conflicts
 
 
-class KEYMARK_OT_keep_library(bpy.types.Operator):
+class KEYMARK_OT_keep_library(BaseOperator, bpy.types.Operator):
     """Put the library among your own as it is now, so that footage can be matched with it"""
 
     bl_idname = "keymark.keep_library"
     bl_label = "Use for Matching"
     bl_options = {"REGISTER"}
+    requirements = (scene_library, idle)
 
     existing: bpy.props.EnumProperty(
         name="Existing",
@@ -25,15 +27,10 @@ class KEYMARK_OT_keep_library(bpy.types.Operator):
     )
     _found: list[Conflict] = []
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be one."""
-        return all_met(cls, context, scene_library, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask where another one is at hand."""
+        """Ask where another library of this identifier is registered."""
         with reported(self):
-            self._found = conflicts([chosen_library(context, "")], on_shelf)
+            self._found = registry_conflicts([chosen_library(context, "")])
             if not self._found:
                 return self.execute(context)
             self.existing = "REPLACE"
@@ -44,17 +41,13 @@ class KEYMARK_OT_keep_library(bpy.types.Operator):
         """Draw the question."""
         draw_question(self.layout, self, self._found)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write it into the user's folder."""
-        with reported(self):
-            kept = settled([chosen_library(context, "")], on_shelf, self.existing)
-            keep_on_shelf(kept)
-            if kept:
-                say(self, "INFO", "'{title}' is at hand for matching now", title=kept[0].title)
-            else:
-                say(self, "INFO", "The library is at hand already; nothing was changed")
-            return {"FINISHED"}
-        return {"CANCELLED"}
+    def run(self, context: bpy.types.Context) -> None:
+        """Write the library into the user's folder."""
+        published = publish([chosen_library(context, "")], self.existing)
+        if published:
+            say(self, "INFO", "'{title}' is at hand for matching now", title=published[0].title)
+        else:
+            say(self, "INFO", "The library is at hand already; nothing was changed")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_keep_library,))

@@ -1,33 +1,26 @@
-"""Look again at which keyframe libraries there are."""
+"""Refresh the registry of keyframe libraries."""
 
 import bpy
 
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, idle
-from .registry import fill
+from ..shell.requirements import idle
+from .registry import refresh
 
 
-class KEYMARK_OT_refresh_shelf(bpy.types.Operator):
+class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     """Look again at the folder of your libraries, after files were put there by other programs"""
 
     bl_idname = "keymark.refresh_shelf"
     bl_label = "Refresh Libraries"
     bl_options = {"REGISTER"}
+    requirements = (idle,)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Not while a job runs."""
-        return all_met(cls, context, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read the folder."""
-        with reported(self):
-            fill()
-            count = len(context.window_manager.keymark_shelf.libraries)
-            say(self, "INFO", "{count} keyframe libraries are at hand", count=count)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the folders."""
+        refresh()
+        count = len(context.window_manager.keymark_shelf.libraries)
+        say(self, "INFO", "{count} keyframe libraries are at hand", count=count)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_refresh_shelf,))

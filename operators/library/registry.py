@@ -1,7 +1,7 @@
-"""The libraries at hand: those that come with Keymark, and the user's own.
+"""Registry of keyframe libraries: those that come with Keymark, and the user's own, as lists show them.
 
-The disk is read once the sidebar is looked at, and by operators that change what lies there; drawing only
-sees what was found then.
+Folders are read when the sidebar is first drawn, and by operators that change files; drawing only shows what
+was found then.
 """
 
 from contextlib import suppress
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 OWN = "libraries"
 """Name of the user's folder."""
 SOON_S = 0.1
-"""Before the shelf is read, so that what asks for it is drawn first."""
+"""Delay before the folders are read, so that the panel is drawn first."""
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
-"""Blender keeps no copy of a menu's words: they must stay as long as it is shown."""
+"""Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
 
 
 def own_folder() -> Path:
-    """Where the user's libraries lie; made where it is missing."""
+    """Folder of the user's libraries; created if missing."""
     try:
         return Path(bpy.utils.extension_path_user(EXTENSION, path=OWN, create=True))
     except ValueError:  # not installed as an extension
@@ -38,35 +38,17 @@ def own_folder() -> Path:
         return folder
 
 
-def folders() -> list[Path]:
-    """Where libraries are looked for; of two with the same identifier the first counts, the user's own."""
-    from ...core.library.registry import SHIPPED
-
-    return [own_folder(), SHIPPED]
-
-
-def library_called(identifier: str) -> "Library":
-    """A library on the shelf, read from its file.
-
-    Raises:
-        InputError: There is none, or its file is unusable.
-    """
-    from ...core.library.registry import find_library
-
-    return find_library(identifier, folders())
-
-
-def chosen(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-    """The library that is chosen in the list."""
-    shelf = context.window_manager.keymark_shelf
-    return shelf.libraries[shelf.active] if shelf.active < len(shelf.libraries) else None
+def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
+    """The entry that is chosen in the list."""
+    listed = context.window_manager.keymark_shelf
+    return listed.libraries[listed.active] if listed.active < len(listed.libraries) else None
 
 
 def library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
-    """What a menu of libraries shows: all that can be used, and first the choice by itself."""
+    """Items of a menu of libraries: the automatic choice, then all that can be used."""
     manager = (context or bpy.context).window_manager
     if bpy.app.background and not len(manager.keymark_shelf.libraries):
-        fill()  # no timer runs, and nothing is drawn
+        refresh()  # no timer runs, and nothing is drawn
     automatic = "Choose the library that fits the footage best, and say how sure that is"
     found: list[Item] = [(EVERY_LIBRARY, "Automatic", automatic, "VIEWZOOM", 0)]
     found += [
@@ -80,31 +62,32 @@ def library_items(_properties: object, context: bpy.types.Context | None) -> lis
 
 
 def _number(identifier: str) -> int:
-    """What a file keeps of a choice among menu entries: the same for a library, whatever others there are."""
+    """Number of a library's menu item, which files store: the same whichever other libraries there are."""
     return 1 + crc32(identifier.encode()) % (2**31 - 2)
 
 
-def fill(choose: str = "") -> None:
-    """Read what lies on the shelf.
+def refresh(choose: str = "") -> None:
+    """Read the folders, and fill the list.
 
     Args:
-        choose: Identifier of the library that the list shall point to; by default the same as before.
+        choose: Identifier of the library to choose in the list; by default the same as before.
     """
     from ...core.library.registry import shelved
+    from .registry_files import folders
 
     manager = bpy.context.window_manager
-    shelf, own = manager.keymark_shelf, own_folder()
-    before = chosen(bpy.context)
+    listed, own = manager.keymark_shelf, own_folder()
+    before = chosen_entry(bpy.context)
     wanted = choose or (before.name if before is not None else "")
-    shelf.libraries.clear()
+    listed.libraries.clear()
     for found in shelved(folders()):
-        item = shelf.libraries.add()
+        item = listed.libraries.add()
         item.name, item.title, item.problem = found.identifier, found.title, found.problem
         item.version, item.is_own, item.path = found.version, found.path.parent == own, str(found.path)
         if found.library is not None:
             _describe(item, found.library)
-    names = [item.name for item in shelf.libraries]
-    shelf.active = names.index(wanted) if wanted in names else 0
+    names = [item.name for item in listed.libraries]
+    listed.active = names.index(wanted) if wanted in names else 0
 
 
 def _describe(item: bpy.types.PropertyGroup, library: "Library") -> None:
@@ -114,21 +97,21 @@ def _describe(item: bpy.types.PropertyGroup, library: "Library") -> None:
         item.postures.add().name = posture.name
 
 
-def need() -> None:
-    """Read the shelf soon if that was not done since Blender started or opened a file; drawing may ask."""
+def refresh_if_empty() -> None:
+    """Read the folders soon if the list is empty, as after Blender's start or a new file; for drawing."""
     empty = not len(bpy.context.window_manager.keymark_shelf.libraries)
-    if empty and not bpy.app.background and not timers.is_registered(_fill_now):
-        timers.register(_fill_now, first_interval=SOON_S)
+    if empty and not bpy.app.background and not timers.is_registered(_refresh_now):
+        timers.register(_refresh_now, first_interval=SOON_S)
 
 
-def forget() -> None:
-    """No longer read the shelf by itself."""
-    if timers.is_registered(_fill_now):
-        timers.unregister(_fill_now)
+def cancel_refresh() -> None:
+    """Cancel a reading of the folders that was asked for."""
+    if timers.is_registered(_refresh_now):
+        timers.unregister(_refresh_now)
     _items.clear()
 
 
-def _fill_now() -> None:
-    with suppress(ModuleNotFoundError):  # without the libraries that Keymark brings; operators say so
-        fill()
+def _refresh_now() -> None:
+    with suppress(ModuleNotFoundError):  # SciPy or OpenCV is missing, which operators report
+        refresh()
         redraw_sidebars(bpy.context)

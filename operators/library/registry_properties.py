@@ -1,4 +1,4 @@
-"""The libraries that are at hand, as lists and menus show them; no file keeps it."""
+"""Properties of the registry of libraries, as lists and menus show them; no file stores them."""
 
 import bpy
 
@@ -6,11 +6,11 @@ from . import registry
 
 
 class KEYMARK_PG_shelved_posture(bpy.types.PropertyGroup):
-    """A posture of a library on the shelf, by its name."""
+    """A posture of a registered library, by its name."""
 
 
 class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
-    """A library on the shelf; `name` is its identifier."""
+    """A registered library; `name` is its identifier."""
 
     title: bpy.props.StringProperty(name="Title")
     version: bpy.props.IntProperty(name="Version")
@@ -24,15 +24,15 @@ class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
 
 
-def _chosen(shelf: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Let the posture to apply be one of the chosen library's."""
-    postures = shelf.libraries[shelf.active].postures if shelf.active < len(shelf.libraries) else ()
-    if shelf.posture not in [posture.name for posture in postures]:
-        shelf.posture = postures[0].name if len(postures) else ""
+def _chosen(listed: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Keep the posture to apply one of the chosen library's."""
+    postures = listed.libraries[listed.active].postures if listed.active < len(listed.libraries) else ()
+    if listed.posture not in [posture.name for posture in postures]:
+        listed.posture = postures[0].name if len(postures) else ""
 
 
 class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
-    """The shelf."""
+    """The registry."""
 
     libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
     active: bpy.props.IntProperty(
@@ -54,7 +54,7 @@ CLASSES = (KEYMARK_PG_shelved_posture, KEYMARK_PG_shelved, KEYMARK_PG_shelf)
 
 
 def register() -> None:
-    """Add the shelf to the window manager."""
+    """Add the registry to the window manager."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
@@ -63,8 +63,8 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take it away."""
-    registry.forget()
+    """Remove it."""
+    registry.cancel_refresh()
     del bpy.types.WindowManager.keymark_shelf
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -133,7 +133,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
         The viewport's own pixel has gone through color management.
         """
-        from ..bridge.pixel_color import footage_color
+        from ..bridge.footage_color import footage_color
 
         take = active_take(scene)
         source, identifier, index = footage_of(scene, take), take.identifier, self._index(take)

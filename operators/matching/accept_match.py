@@ -3,42 +3,36 @@
 import bpy
 
 from ...core.body.human import HUMAN
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle, matches
+from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
 from .matches import chosen_match, state_of
 
 
-class KEYMARK_OT_accept_match(bpy.types.Operator):
+class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     """Count the chosen match as posed by you: it is believed as much, and matching again leaves it alone"""
 
     bl_idname = "keymark.accept_match"
     bl_label = "Accept"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, matches, idle)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a match."""
-        return all_met(cls, context, actor, matches, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Give its keys to the animator."""
-        with reported(self):
-            from ..bridge.matched_keyframes import take_over
+        from ..bridge.matched_keyframes import take_over
 
-            take = active_take(context.scene)
-            match = chosen_match(take)
-            invalidate_keyed_frames()
-            if state_of(take, match) != "MATCHED":
-                say(self, "INFO", "Nothing is matched at frame {frame:g} any more", frame=match.frame)
-                return {"CANCELLED"}
-            take_over(take.armature, take.keyframe_action, HUMAN, (round(match.frame, 3),))
-            invalidate_keyed_frames()
-            say(self, "INFO", "Frame {frame:g} counts as posed now", frame=match.frame)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        take = active_take(context.scene)
+        match = chosen_match(take)
+        invalidate_keyed_frames()
+        if state_of(take, match) != "MATCHED":
+            say(self, "INFO", "Nothing is matched at frame {frame:g} any more", frame=match.frame)
+            return {"CANCELLED"}
+        take_over(take.armature, take.keyframe_action, HUMAN, (round(match.frame, 3),))
+        invalidate_keyed_frames()
+        say(self, "INFO", "Frame {frame:g} counts as posed now", frame=match.frame)
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_accept_match,))

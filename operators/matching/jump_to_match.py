@@ -2,19 +2,21 @@
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
-from ..shell.requirements import all_met, matches
+from ..shell.requirements import matches
 from ..shell.takes import active_take
 from .matches import state_of
 
 
-class KEYMARK_OT_jump_to_match(bpy.types.Operator):
+class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     """Go to a frame that was matched with a library"""
 
     bl_idname = "keymark.jump_to_match"
     bl_label = "Jump to Match"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (matches,)
 
     direction: bpy.props.EnumProperty(
         name="Direction",
@@ -35,12 +37,7 @@ class KEYMARK_OT_jump_to_match(bpy.types.Operator):
             return "Go to the next match that is in doubt: replace it, or pose the actor there"
         return "Go to the next match" if properties.direction == "NEXT" else "Go to the previous match"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be matches."""
-        return all_met(cls, context, matches)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Choose it in the list, which goes there."""
         scene, take = context.scene, active_take(context.scene)
         matching = take.matching
@@ -61,7 +58,7 @@ class KEYMARK_OT_jump_to_match(bpy.types.Operator):
             behind = [each for each in wanted if each[0] < now - 1e-3]
             chosen = max(behind or wanted)
         matching.active_match = chosen[1]
-        return {"FINISHED"}
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_match,))

@@ -9,7 +9,6 @@ from ...core.library.texts import EVERY_LIBRARY
 from ..library.registry import library_items
 
 if TYPE_CHECKING:
-    from ...core.body.posture import Posture
     from ...core.prior.keyframes import Matched
 
 PLACE_VALUES = 6
@@ -78,20 +77,6 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
     turns: bpy.props.FloatVectorProperty(
         name="Turns", description="How the joints are turned", size=HUMAN.dof_count - PLACE_VALUES
     )
-
-    @property
-    def posture(self) -> "Posture":
-        """The posture itself, in the world."""
-        import numpy as np
-
-        from ...core.body.posture import Posture
-
-        return Posture.from_vector(HUMAN, np.array([*self.place, *self.turns]))
-
-    def take_posture(self, posture: "Posture") -> None:
-        """Hold a single posture in the world."""
-        vector = posture.to_vector()
-        self.place, self.turns = vector[:PLACE_VALUES], vector[PLACE_VALUES:]
 
 
 class KEYMARK_PG_match(bpy.types.PropertyGroup):

@@ -2,19 +2,20 @@
 
 import bpy
 
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle, matches
+from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
-from .matches import chosen_match, key_matches
+from .matches import chosen_match
 
 
-class KEYMARK_OT_replace_match(bpy.types.Operator):
+class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
     """Key this posture at the chosen match's frame instead; what is keyed there is replaced"""
 
     bl_idname = "keymark.replace_match"
     bl_label = "Replace Match"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, matches, idle)
 
     candidate: bpy.props.IntProperty(
         name="Candidate",
@@ -23,40 +24,33 @@ class KEYMARK_OT_replace_match(bpy.types.Operator):
         min=0,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be something to replace."""
-        return all_met(cls, context, actor, matches, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key it, and go there."""
-        with reported(self):
-            import numpy as np
+        from .match_edits import key_candidate
 
-            take = active_take(context.scene)
-            match = chosen_match(take)
-            if self.candidate >= len(match.candidates):
-                say(
-                    self,
-                    "ERROR",
-                    "Frame {frame:g} has {count} candidates; candidate must be 0 to {last}",
-                    frame=match.frame,
-                    count=len(match.candidates),
-                    last=len(match.candidates) - 1,
-                )
-                return {"CANCELLED"}
-            match.chosen, match.by_hand = self.candidate, True
-            key_matches(take, np.array([round(match.frame, 3)]), [match.candidate.posture])
-            match.go_to(context.scene)
+        take = active_take(context.scene)
+        match = chosen_match(take)
+        if self.candidate >= len(match.candidates):
             say(
                 self,
-                "INFO",
-                "Frame {frame:g} shows {posture} now",
+                "ERROR",
+                "Frame {frame:g} has {count} candidates; candidate must be 0 to {last}",
                 frame=match.frame,
-                posture=match.candidate.name,
+                count=len(match.candidates),
+                last=len(match.candidates) - 1,
             )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+            return {"CANCELLED"}
+        match.chosen, match.by_hand = self.candidate, True
+        key_candidate(take, match)
+        match.go_to(context.scene)
+        say(
+            self,
+            "INFO",
+            "Frame {frame:g} shows {posture} now",
+            frame=match.frame,
+            posture=match.candidate.name,
+        )
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_replace_match,))

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array, BoolArray
-from ..bridge.frame_times import scene_frames
+from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
 from ..shell.lru_cache import LruCache
 from ..shell.messages import label

@@ -1,32 +1,32 @@
-"""The actor follows a job while it runs: posed as far as the motion is known, and afterwards as before."""
+"""Live preview: the actor shows what a running job has found, and is restored afterwards."""
 
 from contextlib import ExitStack, suppress
 from math import floor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.app import handlers
 
+from ...core.arrays import Array
 from ...core.errors import InputError
+from ...core.progress import Preview
+from ..bridge.pose import write_posture
 from ..bridge.scene_frames import at_scene_frame, showing_action
 
-if TYPE_CHECKING:
-    from ...core.progress import Preview
-
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
-"""Before these the preview is taken back: no file holds it, and they move what it refers to in memory."""
+"""Handlers before which the preview is undone: files must not hold it, and these events move data blocks."""
 SWEEPS = 9
-"""Pictures in which the actor goes through the frames of a preview."""
+"""Steps in which the actor goes through the frames of a preview."""
 
 
 class LivePreview:
     """Shows previews on an armature in its scene; `end` leaves both as they were."""
 
-    def __init__(self, scene: bpy.types.Scene, armature_object: bpy.types.Object, frames: Any) -> None:
-        """Prepare; nothing is changed before the first preview.
+    def __init__(self, scene: bpy.types.Scene, armature_object: bpy.types.Object, frames: Array) -> None:
+        """Change nothing before the first preview.
 
         Args:
-            scene: Where the clip's frames are gone to.
+            scene: The scene that holds the armature.
             armature_object: The actor.
             frames: (F,) scene frame of every frame of the clip.
         """
@@ -35,41 +35,39 @@ class LivePreview:
         self._changes: ExitStack | None = None
         self._shown = -1
 
-    def show(self, preview: "Preview") -> None:
-        """Show the next of a preview's frames: from one preview to the next the actor moves on."""
-        from ..bridge.pose import write_posture
-
+    def show(self, preview: Preview) -> None:
+        """Show one frame of a preview; from one preview to the next the actor moves on."""
         count = preview.posture.batch[0]
         step = max(1, count // SWEEPS)
         inside = preview.first <= self._shown < preview.first + count
-        place = (self._shown - preview.first + step) % count if inside else 0
-        self._shown = preview.first + place
+        row = (self._shown - preview.first + step) % count if inside else 0
+        self._shown = preview.first + row
         frame = float(self._frames[min(self._shown, len(self._frames) - 1)])
         if self._changes is None:
             self._begin()
         self._scene.frame_set(floor(frame), subframe=frame - floor(frame))
-        write_posture(self._armature, preview.posture[place])
+        write_posture(self._armature, preview.posture[row])
 
     def end(self) -> None:
         """Give the scene its frame and the armature its Action and its pose back."""
         for name in ENDS:
-            if self._take_back in getattr(handlers, name):
-                getattr(handlers, name).remove(self._take_back)
-        self._take_back()
+            if self._restore in getattr(handlers, name):
+                getattr(handlers, name).remove(self._restore)
+        self._restore()
 
-    def _take_back(self, *_: object) -> None:
-        """Leave nothing of the preview; the next one begins anew.
+    def _restore(self, *_: object) -> None:
+        """Undo the preview; the next one begins anew.
 
-        Called by Blender it must not remove itself, or Blender would pass over the handler that comes next.
+        As a handler it must not remove itself, or Blender would skip the next handler.
         """
         changes, self._changes = self._changes, None
         if changes is not None:
-            # Undo, or another file, has brought back what was before already.
+            # Undo, or another file, has restored the scene already.
             with suppress(ReferenceError):
                 changes.close()
 
     def _begin(self) -> None:
-        # Undo may have put others in their place.
+        # Undo may have replaced both in memory.
         self._scene, self._armature = (
             _of_uid(items, uid)
             for items, uid in zip((bpy.data.scenes, bpy.data.objects), self._uids, strict=True)
@@ -79,12 +77,12 @@ class LivePreview:
         self._changes.enter_context(showing_action(self._armature, None))
         self._changes.enter_context(at_scene_frame(self._scene))
         for name in ENDS:
-            if self._take_back not in getattr(handlers, name):
-                getattr(handlers, name).append(self._take_back)
+            if self._restore not in getattr(handlers, name):
+                getattr(handlers, name).append(self._restore)
 
 
 def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
-    """What had this number when the job began, whatever it is called by now.
+    """The data block of a session UID, which outlives renaming and undo.
 
     Raises:
         InputError: It is gone.

@@ -1,43 +1,27 @@
 """Reconstruct the motion between the keyframes from the footage."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
-from ..bridge.frame_times import scene_frames
+from ..bridge.scene_frames import scene_frames
 from ..markers.marker_styles import marker_styles
 from ..matching.matches import known_matches
-from ..review.review_results import show_review
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_colors, all_met, footage, idle, markers, two_keyframes
-from ..shell.results import keep_reading, keep_reconstruction, keep_review, last_reconstruction, reading_of
-from ..shell.takes import active_take, actor_of, footage_of, take_by_identifier
-from .live_preview import LivePreview
+from ..shell.requirements import actor, all_colors, footage, idle, markers, two_keyframes
+from ..shell.results import last_reconstruction, reading_of
+from ..shell.takes import active_take, footage_of
 
 if TYPE_CHECKING:
-    from ...core.estimate.reconstruct import Reconstruction
     from ...core.progress import Job, Progress
-    from ...core.review.review import Review
+    from .live_preview import LivePreview
+    from .reconstruction_result import ReconstructionResult
 
 TIMES, READ, SOLVED = 0.05, 0.4, 0.97
 """Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What the job hands over to the scene."""
-
-    take: str
-    """The take's identifier."""
-    frames: Any
-    """(F,) scene frames."""
-    reconstruction: "Reconstruction"
-    review: "Review"
-    notes: tuple[str, ...]
 
 
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
@@ -46,19 +30,17 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
     bl_options = {"REGISTER", "UNDO"}
-    preview: LivePreview | None = None
+    requirements = (footage, actor, markers, all_colors, two_keyframes, idle)
+    preview: "LivePreview | None" = None
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Everything a take holds must be there."""
-        return all_met(cls, context, footage, actor, markers, all_colors, two_keyframes, idle)
-
-    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+    def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
         """Read the scene's take and reconstruct it, beginning with what is known of it already."""
         from ...core.estimate.reconstruct import check_reconstructible, reconstruct
         from ...core.review.review import review
         from ...core.take.read_footage import read_footage
         from ..bridge.take_from_scene import read_scene_take
+        from .live_preview import LivePreview
+        from .reconstruction_result import ReconstructionResult
 
         settings = active_take(scene)
         identifier, method, armature = settings.identifier, settings.method, settings.armature
@@ -78,7 +60,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         self.preview = LivePreview(scene, armature, frames) if watched else None
         result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
         judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
-        return Outcome(identifier, frames, result, judged, (*notes, *result.notes))
+        return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
         """Let the actor follow."""
@@ -91,20 +73,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             self.preview.end()
             self.preview = None
 
-    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
-        """Write the motion's Action and let it animate the actor; the keyframes stay in theirs."""
-        from ..bridge.fcurves import write_motion
-
-        take, motion = take_by_identifier(scene, result.take), result.reconstruction.motion
-        take.motion_action = write_motion(
-            actor_of(take), motion, take.motion_action, take.keyframe_action, result.frames
-        )
-        take.motion_action.use_fake_user = True
-        take.finish.outdated = take.finish.action is not None
-        keep_reading(take, result.reconstruction.reading)
-        keep_reconstruction(take, result.reconstruction)
-        keep_review(take, result.review)
-        show_review(take, result.review)
+    def finish(self, scene: bpy.types.Scene, result: "ReconstructionResult") -> None:
+        """Write the result; the keyframes stay in their own Action."""
+        take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
@@ -116,12 +87,12 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             "INFO",
             "Reconstructed {frames} frames from {keyframes} keyframes",
             frames=len(result.frames),
-            keyframes=len(motion.keyframe_indices),
+            keyframes=len(result.reconstruction.motion.keyframe_indices),
         )
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:
-    """Refuse a take with too few keyframes, with what the animator should know of those that do not count.
+    """Refuse a take with too few keyframes, with the notes on those that do not count.
 
     Raises:
         InputError: There are fewer than two in the footage.

@@ -3,9 +3,9 @@
 import bpy
 
 from ..bridge.actions import assign_action
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 
 NOT_THERE = {
@@ -15,12 +15,13 @@ NOT_THERE = {
 }
 
 
-class KEYMARK_OT_show_action(bpy.types.Operator):
+class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     """Let the keyframes or the reconstructed motion animate the actor"""
 
     bl_idname = "keymark.show_action"
     bl_label = "Show on Actor"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
 
     which: bpy.props.EnumProperty(
         name="Show",
@@ -32,12 +33,7 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
         ],
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be an actor, and no job that shows it what is found."""
-        return all_met(cls, context, actor, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Assign the Action."""
         settings = active_take(context.scene)
         action = {
@@ -48,10 +44,8 @@ class KEYMARK_OT_show_action(bpy.types.Operator):
         if action is None:
             say(self, "ERROR", NOT_THERE[self.which])
             return {"CANCELLED"}
-        with reported(self):
-            assign_action(settings.armature, action)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        assign_action(settings.armature, action)
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_action,))

@@ -2,17 +2,19 @@
 
 import bpy
 
+from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import all_met, weak_frames
+from ..shell.requirements import weak_frames
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
+class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
     """Go to a frame that is worth another keyframe"""
 
     bl_idname = "keymark.jump_to_weak_frame"
     bl_label = "Jump to Weak Frame"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (weak_frames,)
 
     direction: bpy.props.EnumProperty(
         name="Direction",
@@ -33,12 +35,7 @@ class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
             "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
         }[properties.direction]
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be weak frames."""
-        return all_met(cls, context, weak_frames)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Go there; at the end of the list, stay and say so."""
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
@@ -54,7 +51,7 @@ class KEYMARK_OT_jump_to_weak_frame(bpy.types.Operator):
             say(self, "INFO", "This is the last frame of the list")
             return {"CANCELLED"}
         review.active_weak_frame = wanted  # which goes there
-        return {"FINISHED"}
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_jump_to_weak_frame,))

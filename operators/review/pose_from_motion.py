@@ -5,20 +5,21 @@ import bpy
 from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, showing_action
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action
 from ..shell.messages import say
-from ..shell.requirements import actor, all_met, idle, motion
+from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 
 
-class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
+class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
     """Store the reconstructed pose as a keyframe and show the keyframes, so that it only needs correcting"""
 
     bl_idname = "keymark.pose_from_motion"
     bl_label = "Add Keyframe Here"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
 
     where: bpy.props.EnumProperty(
         name="Where",
@@ -29,41 +30,34 @@ class KEYMARK_OT_pose_from_motion(bpy.types.Operator):
         ],
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a motion to take the pose from."""
-        return all_met(cls, context, actor, motion, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
-        with reported(self):
-            from ..bridge.keyframes import store_pose
+        from ..bridge.keyframes import store_pose
 
-            scene = context.scene
-            take = active_take(scene)
-            review, frame = take.review, float(scene.frame_current_final)
-            if self.where == "WEAK":
-                if not 0 <= review.active_weak_frame < len(review.weak_frames):
-                    say(self, "ERROR", "No weak frame is chosen; reconstruct the motion first")
-                    return {"CANCELLED"}
-                frame = float(review.weak_frames[review.active_weak_frame].frame)
-            action = take.keyframe_action or new_keyframe_action(take.armature)
-            with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
-                go_to(frame)
-                store_pose(take.armature, action, HUMAN, frame)
-            take.keyframe_action = action
-            assign_action(take.armature, action)
-            whole = int(frame // 1.0)
-            scene.frame_set(whole, subframe=frame - whole)
-            invalidate_keyed_frames()
-            say(
-                self,
-                "INFO",
-                "Stored the reconstructed pose at frame {frame:g}; now correct it",
-                frame=frame,
-            )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        scene = context.scene
+        take = active_take(scene)
+        review, frame = take.review, float(scene.frame_current_final)
+        if self.where == "WEAK":
+            if not 0 <= review.active_weak_frame < len(review.weak_frames):
+                say(self, "ERROR", "No weak frame is chosen; reconstruct the motion first")
+                return {"CANCELLED"}
+            frame = float(review.weak_frames[review.active_weak_frame].frame)
+        action = take.keyframe_action or new_keyframe_action(take.armature)
+        with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
+            go_to(frame)
+            store_pose(take.armature, action, HUMAN, frame)
+        take.keyframe_action = action
+        assign_action(take.armature, action)
+        whole = int(frame // 1.0)
+        scene.frame_set(whole, subframe=frame - whole)
+        invalidate_keyed_frames()
+        say(
+            self,
+            "INFO",
+            "Stored the reconstructed pose at frame {frame:g}; now correct it",
+            frame=frame,
+        )
+        return None
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pose_from_motion,))

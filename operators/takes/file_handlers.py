@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..footage.load_footage import IMAGES, VIDEOS
+from ..footage.take_footage import IMAGES, VIDEOS
 
 EDITORS = {"VIEW_3D", "CLIP_EDITOR"}
 

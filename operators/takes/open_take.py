@@ -4,8 +4,7 @@ from pathlib import Path
 
 import bpy
 
-from ..footage.load_footage import VIDEOS
-from ..footage.take_footage import look_through_camera, show_range
+from ..footage.take_footage import VIDEOS, look_through_camera, show_range
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle, object_mode_possible

@@ -93,7 +93,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the takes, and the running job or the next step."""
-        registry.need()
+        registry.refresh_if_empty()
         layout, take = self.layout, find_take(context.scene)
         if is_newer(context.scene):
             box = layout.box().column(align=True)

@@ -1,11 +1,19 @@
-"""A keyframe library from whatever file a person names, and into it: .json, or .blend with pose assets."""
+"""Keyframe libraries in files, by their suffix: .json, or .blend with pose assets."""
 
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.library.library import Library
-from ....core.library.library_file import read_library, write_library
+from ....core.library.library_file import (
+    library_from_json,
+    library_to_json,
+    read_library,
+    write_library,
+)
 from .library_blend import read_library_blend, write_library_blend
+from .pose_assets import present_motions
 
 JSON, BLEND = ".json", ".blend"
 
@@ -24,8 +32,8 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
     raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
 
 
-def write_to(path: Path, library: Library) -> None:
-    """Write a library as the file's name says.
+def write_library_file(path: Path, library: Library) -> None:
+    """Write a library in the format of the file's suffix.
 
     Raises:
         InputError: The file is of another kind, or the library is incomplete.
@@ -38,3 +46,19 @@ def write_to(path: Path, library: Library) -> None:
         write_library(path, library)
     else:
         raise InputError(f"{path}: ends in {suffix or 'nothing'}; libraries are written as .json or .blend")
+
+
+def with_postures(library: Library, names: Iterable[str]) -> Library:
+    """A library reduced to some of its postures; motions keep the steps to these.
+
+    Raises:
+        InputError: None of its postures is named.
+    """
+    wanted = {name: name for name in names}
+    kept = tuple(posture for posture in library.postures if posture.name in wanted)
+    if not kept:
+        raise InputError(f"no posture of '{library.title}' is selected; select some, or take all")
+    document = library_to_json(replace(library, postures=kept))
+    document["motions"] = present_motions(document.get("motions", []), wanted)
+    motions = library_from_json(document, f"library '{library.title}'").motions
+    return replace(library, postures=kept, motions=motions)

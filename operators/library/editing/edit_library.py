@@ -3,20 +3,20 @@
 import bpy
 
 from ....core.errors import InputError
-from ...shell.error_reports import reported
+from ...shell.base_operator import BaseOperator
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import all_met, idle, registered_library
-from ..registry import chosen, library_called
-from .scene_libraries import add_library
+from ...shell.requirements import idle, registered_library
+from ..registry import chosen_entry
 
 
-class KEYMARK_OT_edit_library(bpy.types.Operator):
+class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     """Bring a library into this file as pose assets: to apply, to blend, to change, and to share again"""
 
     bl_idname = "keymark.edit_library"
     bl_label = "Edit in This File"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (registered_library, idle)
 
     library: bpy.props.StringProperty(
         name="Library",
@@ -24,30 +24,25 @@ class KEYMARK_OT_edit_library(bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Not while a job runs."""
-        return all_met(cls, context, registered_library, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Make its postures pose assets of this file."""
-        with reported(self):
-            item = chosen(context)
-            library = library_called(self.library or (item.name if item is not None else ""))
-            if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):
-                raise InputError(f"library '{library.title}' is in this file already; remove it there first")
-            add_library(context.scene, library)
-            refresh_asset_browsers(context)
-            count = len(library.postures)
-            say(
-                self,
-                "INFO",
-                "'{title}' is in this file now: {count} pose assets",
-                title=library.title,
-                count=count,
-            )
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        from ..registry_files import registered_library
+        from .library_to_scene import add_library
+
+        item = chosen_entry(context)
+        library = registered_library(self.library or (item.name if item is not None else ""))
+        if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):
+            raise InputError(f"library '{library.title}' is in this file already; remove it there first")
+        add_library(context.scene, library)
+        refresh_asset_browsers(context)
+        count = len(library.postures)
+        say(
+            self,
+            "INFO",
+            "'{title}' is in this file now: {count} pose assets",
+            title=library.title,
+            count=count,
+        )
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_edit_library,))

@@ -3,19 +3,20 @@
 import bpy
 
 from ....core.errors import InputError
-from ...shell.error_reports import reported
+from ...shell.base_operator import BaseOperator
 from ...shell.messages import say
 from ...shell.redraw import refresh_asset_browsers
-from ...shell.requirements import all_met, idle, scene_library
-from .scene_libraries import add_library, library_here, library_of
+from ...shell.requirements import idle, scene_library
+from .scene_libraries import library_here
 
 
-class KEYMARK_OT_mirror_library(bpy.types.Operator):
+class KEYMARK_OT_mirror_library(BaseOperator, bpy.types.Operator):
     """Add postures with left and right exchanged; those of both sides need to be posed only once"""
 
     bl_idname = "keymark.mirror_library"
     bl_label = "Add Mirrored"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (scene_library, idle)
 
     what: bpy.props.EnumProperty(
         name="What",
@@ -27,32 +28,26 @@ class KEYMARK_OT_mirror_library(bpy.types.Operator):
         ],
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a library."""
-        return all_met(cls, context, scene_library, idle)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Add them at the end of the list."""
-        with reported(self):
-            from ....core.library.mirroring import mirrored_library
-            from .scene_postures import add_mirrored
+        from ....core.library.mirroring import mirrored_library
+        from .library_edits import add_mirrored
+        from .library_from_scene import library_from_scene
+        from .library_to_scene import add_library
 
-            group = library_here(context.scene)
-            library = library_of(group)
-            if self.what == "LIBRARY":
-                made = mirrored_library(library)
-                taken = [other.identifier for other in context.scene.keymark.libraries]
-                if made.identifier in taken:
-                    raise InputError(f"library '{made.title}' is in this file already; remove it first")
-                add_library(context.scene, made)
-                say(self, "INFO", "'{title}' is in this file now", title=made.title)
-            else:
-                count = add_mirrored(group, only_chosen=self.what == "POSTURE")
-                say(self, "INFO", "Added {count} mirrored postures", count=count)
-            refresh_asset_browsers(context)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        group = library_here(context.scene)
+        library = library_from_scene(group)
+        if self.what == "LIBRARY":
+            made = mirrored_library(library)
+            taken = [other.identifier for other in context.scene.keymark.libraries]
+            if made.identifier in taken:
+                raise InputError(f"library '{made.title}' is in this file already; remove it first")
+            add_library(context.scene, made)
+            say(self, "INFO", "'{title}' is in this file now", title=made.title)
+        else:
+            count = add_mirrored(group, only_chosen=self.what == "POSTURE")
+            say(self, "INFO", "Added {count} mirrored postures", count=count)
+        refresh_asset_browsers(context)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mirror_library,))

@@ -4,18 +4,19 @@ import bpy
 
 from ....core.errors import InputError
 from ....core.library.texts import LONGEST_NAME, identifier_from, text_fault
-from ...shell.error_reports import reported
+from ...shell.base_operator import BaseOperator
 from ...shell.messages import say
-from ...shell.requirements import all_met, idle
+from ...shell.requirements import idle
 from ..licenses import suggest
 
 
-class KEYMARK_OT_new_library(bpy.types.Operator):
+class KEYMARK_OT_new_library(BaseOperator, bpy.types.Operator):
     """Begin a keyframe library: pose the actor, add posture after posture, then share it as a file"""
 
     bl_idname = "keymark.new_library"
     bl_label = "New Library"
     bl_options = {"REGISTER", "UNDO"}
+    requirements = (idle,)
 
     title: bpy.props.StringProperty(
         name="Title", description="What people call the library", default="My Library"
@@ -30,36 +31,28 @@ class KEYMARK_OT_new_library(bpy.types.Operator):
         search_options={"SUGGESTION"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Not while a job runs."""
-        return all_met(cls, context, idle)
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the title."""
         return context.window_manager.invoke_props_dialog(self, confirm_text="Begin")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> None:
         """Add it, without postures yet."""
-        with reported(self):
-            from ....core.library.library_fields import LONGEST_LINE
+        from ....core.library.library_fields import LONGEST_LINE
 
-            settings = context.scene.keymark
-            fault = text_fault(self.title.strip(), LONGEST_NAME)
-            if fault:
-                raise InputError(f"the library's title is '{self.title}'; it {fault}")
-            fault = text_fault(self.author.strip(), LONGEST_LINE) if self.author.strip() else ""
-            if fault:
-                raise InputError(f"the library's author is '{self.author}'; it {fault}")
-            group = settings.libraries.add()
-            group.name, group.author = self.title.strip(), self.author.strip()
-            others = [other.identifier for other in settings.libraries]
-            group.license = self.license.strip()
-            group.identifier = identifier_from(group.name, others)
-            settings.active_library = len(settings.libraries) - 1
-            say(self, "INFO", "Began the library '{title}'; now add postures", title=group.name)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        settings = context.scene.keymark
+        fault = text_fault(self.title.strip(), LONGEST_NAME)
+        if fault:
+            raise InputError(f"the library's title is '{self.title}'; it {fault}")
+        fault = text_fault(self.author.strip(), LONGEST_LINE) if self.author.strip() else ""
+        if fault:
+            raise InputError(f"the library's author is '{self.author}'; it {fault}")
+        group = settings.libraries.add()
+        group.name, group.author = self.title.strip(), self.author.strip()
+        others = [other.identifier for other in settings.libraries]
+        group.license = self.license.strip()
+        group.identifier = identifier_from(group.name, others)
+        settings.active_library = len(settings.libraries) - 1
+        say(self, "INFO", "Began the library '{title}'; now add postures", title=group.name)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_new_library,))

@@ -11,7 +11,6 @@ import bpy
 
 from ....core.errors import InputError
 from ..licenses import suggest
-from .scene_libraries import details_changed, posture_changed
 
 KEPT_DIGITS = 6
 """Of a number that was typed in: single precision has no more."""
@@ -37,13 +36,17 @@ def _exact() -> "bpy.types.AnyType":
 
 
 def _details_changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Let the pose assets say what the library says now."""
-    with suppress(InputError, ModuleNotFoundError):  # half typed; whatever writes a library checks it
+    """Write the library's details into its pose assets."""
+    with suppress(InputError, ModuleNotFoundError):  # half typed; an export or a publication checks it
+        from .asset_updates import details_changed
+
         details_changed(group)
 
 
 def _posture_changed(posture: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     with suppress(InputError, ModuleNotFoundError):
+        from .asset_updates import posture_changed
+
         posture_changed(posture)
 
 

@@ -12,7 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.take import Take, read_take, write_take
-from keymark.operators.bridge import posing
+from keymark.operators.bridge import single_frame_fit
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose
@@ -213,13 +213,13 @@ def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
 ) -> None:
     """A matched keyframe says where the body is about, yet nothing of where its sleeves sit."""
     asked: list[int] = []
-    original = posing.calibrated
+    original = single_frame_fit.calibrated
 
     def calibrated(model, seen, posture, frames):  # noqa: ANN001, ANN202
         asked.append(len(frames))
         return original(model, seen, posture, frames)
 
-    monkeypatch.setattr(posing, "calibrated", calibrated)
+    monkeypatch.setattr(single_frame_fit, "calibrated", calibrated)
     bpy.ops.keymark.propose_keyframes()  # reads the clip
     bpy.context.scene.frame_set(4)
     assert bpy.ops.keymark.fit_pose() == {"FINISHED"}

@@ -1,6 +1,7 @@
 """What leaves the scene: assets with their catalogs, and files for other programs."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +15,7 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog
-from keymark.operators.bridge.export_formats import FORMATS, Format
+from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.shell.messages import warn_if_outdated
 from keymark.operators.shell.takes import active_take, add_take
@@ -205,7 +206,7 @@ def test_a_format_that_blender_lacks_is_refused(
     take: bpy.types.PropertyGroup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With the reason."""
-    gone = Format("USD", ".usdc", "", "KEYMARK_OT_of_no_addon", "USD Exporter")
+    gone = replace(FORMATS["USD"], operator_type="KEYMARK_OT_of_no_addon", addon="USD Exporter")
     monkeypatch.setitem(FORMATS, "USD", gone)
     with pytest.raises(RuntimeError, match="USD cannot be written: Enable the add-on USD Exporter"):
         bpy.ops.keymark.export_motion(format="USD", filepath=str(tmp_path / "wave.usdc"))
@@ -228,6 +229,15 @@ def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup
     with pytest.raises(RuntimeError, match="is hidden with its collection"):
         bpy.ops.keymark.export_motion(format="BVH", filepath=str(tmp_path / "wave.bvh"))
     assert other.mode == "POSE" and actor.hide_get() and not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("registered")
+def test_the_operator_is_made_from_the_registry_of_formats() -> None:
+    """Its menu and the filter of its file browser name every format."""
+    properties = bpy.ops.keymark.export_motion.get_rna_type().properties
+    menu = [(item.identifier, item.name, item.description) for item in properties["format"].enum_items]
+    assert menu == [(kind, each.name, each.description) for kind, each in FORMATS.items()]
+    assert properties["filter_glob"].default == "*.bvh;*.fbx;*.glb;*.usdc"
 
 
 @pytest.mark.usefixtures("registered")

@@ -12,7 +12,7 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture
-from keymark.operators.bridge.posing import fit_to_frame, frame_in_footage
+from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
 from keymark.operators.markers.marker_styles import marker_styles
 from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of

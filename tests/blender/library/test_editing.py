@@ -18,7 +18,8 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.object_space import evaluated
 from keymark.operators.bridge.pose import read_posture, write_posture
-from keymark.operators.library.editing.scene_libraries import add_library, library_of
+from keymark.operators.library.editing.library_from_scene import library_from_scene
+from keymark.operators.library.editing.library_to_scene import add_library
 from keymark.operators.shell.takes import active_take, add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -100,7 +101,7 @@ def test_the_place_of_the_actor_is_kept(
     write_posture(take.armature, pose(4, random_posture))
     bpy.ops.keymark.apply_posture(posture="Here")
     assert np.abs(matrices(take.armature) - before).max() < 3e-6
-    kept = library_of(group()).postures[0].posture
+    kept = library_from_scene(group()).postures[0].posture
     assert kept.translation[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
     assert sole_heights_m(body, body.pose(kept)).min() == pytest.approx(0.0, abs=1e-5)
 
@@ -111,7 +112,7 @@ def test_a_posture_fits_a_rig_of_other_rolls_modes_and_size(
     """Bones rolled, in other rotation modes, on another performer and object: the same angles."""
     pose(5, random_posture)
     bpy.ops.keymark.add_posture(posture="P")
-    wanted = library_of(group()).postures[0].posture
+    wanted = library_from_scene(group()).postures[0].posture
     tall = Body(Actor.from_stature(1.95))
     other = take.armature = build_armature(bpy.context.scene, tall, "Tall")
     bpy.context.view_layer.objects.active = other
@@ -172,13 +173,16 @@ def test_names_stay_unique_and_motions_follow(
     assert group().motions[0].steps[1].posture == "same 2"
     assert group().postures[1].action.name == "same 2"
     group().postures[2].action.name = "In the Browser"
-    library = library_of(group())
+    library = library_from_scene(group())
     assert [step.posture for step in library.motions[0].steps] == ["Same", "same 2", "In the Browser"]
     group().active_posture = 0
     bpy.ops.keymark.move_posture(direction="DOWN")
     assert [entry.name for entry in group().postures] == ["same 2", "Same", "In the Browser"]
     bpy.ops.keymark.remove_posture()
-    assert [step.posture for step in library_of(group()).motions[0].steps] == ["same 2", "In the Browser"]
+    assert [step.posture for step in library_from_scene(group()).motions[0].steps] == [
+        "same 2",
+        "In the Browser",
+    ]
     assert len(bpy.data.actions) == 2
 
 
@@ -190,7 +194,7 @@ def test_keyframes_become_a_motion(take: bpy.types.PropertyGroup, wave_motion: M
         write_posture(take.armature, wave_motion.posture[index])
         bpy.ops.keymark.store_keyframe()
     bpy.ops.keymark.add_motion(source="KEYFRAMES", motion="Wave")
-    library = library_of(group())
+    library = library_from_scene(group())
     assert [posture.name for posture in library.postures] == ["Wave 1", "Wave 2", "Wave 3"]
     assert [step.time_s for step in library.motions[0].steps] == pytest.approx([0.0, 0.24, 0.48])
     postures = Posture.stack([posture.posture for posture in library.postures])
@@ -204,7 +208,7 @@ def test_mirrored_postures_are_added(take: bpy.types.PropertyGroup, random_postu
     pose(2, random_posture)
     bpy.ops.keymark.add_posture(posture="Kick")
     bpy.ops.keymark.mirror_library(what="POSTURE")
-    kick, other = library_of(group()).postures
+    kick, other = library_from_scene(group()).postures
     assert other.name == "Kick (mirrored)"
     assert np.abs(other.posture.minus(mirrored(kick.posture))).max() < 1e-6
 

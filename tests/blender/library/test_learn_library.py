@@ -15,7 +15,7 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.library import registry
-from keymark.operators.library.editing.scene_libraries import library_of
+from keymark.operators.library.editing.library_from_scene import library_from_scene
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50
@@ -74,7 +74,7 @@ def test_a_motion_becomes_a_library_of_pose_assets_and_a_file(
     apart -= apart.mean(axis=(0, 1)) * [0.0, 0.0, 1.0]  # the floor is found from the feet
     assert np.abs(apart).max() < 2e-3
     (group,) = bpy.context.scene.keymark.libraries
-    here = library_of(group)
+    here = library_from_scene(group)
     assert here.motions == library.motions
     assert all(entry.action.asset_data is not None for entry in group.postures)
 

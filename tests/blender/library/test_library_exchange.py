@@ -12,9 +12,10 @@ from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import write_library
 from keymark.core.library.registry import shelved
 from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
-from keymark.operators.library import registry
-from keymark.operators.library.conflicts import on_shelf, settled
-from keymark.operators.library.editing.scene_libraries import add_library
+from keymark.operators.library import registry, registry_files
+from keymark.operators.library.conflicts import resolve_conflicts
+from keymark.operators.library.editing.library_to_scene import add_library
+from keymark.operators.library.registry_files import find_registered, registered_library
 from keymark.operators.shell.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -26,7 +27,7 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     folder = tmp_path / "own"
     folder.mkdir()
     monkeypatch.setattr(registry, "own_folder", lambda: folder)
-    monkeypatch.setattr(registry, "folders", lambda: [folder])
+    monkeypatch.setattr(registry_files, "folders", lambda: [folder])
     return folder
 
 
@@ -194,7 +195,7 @@ def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
     assert (at_hand.libraries[at_hand.active].name, at_hand.posture) == ("other", "B")
 
 
-def test_a_library_of_this_file_is_kept_for_matching(own: Path, library: Library) -> None:
+def test_a_library_of_this_file_is_published_for_matching(own: Path, library: Library) -> None:
     """As it is now; after a change, the older one is not replaced unasked."""
     add_library(bpy.context.scene, library)
     bpy.ops.keymark.keep_library()
@@ -216,7 +217,7 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
     assert take.matching.library == "small"
 
 
-def test_a_file_on_the_shelf_that_is_damaged_is_listed_as_such(own: Path) -> None:
+def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
     """With the reason, and it can be deleted."""
     (own / "broken.json").write_text("{")
     bpy.ops.keymark.refresh_shelf()
@@ -247,7 +248,7 @@ def test_two_that_come_at_once_do_not_get_one_name(own: Path, library: Library, 
     imported(library, tmp_path)
     first = replace(library, version=3)
     second = replace(library, identifier="small_2", title="Quite different")
-    kept = settled([first, second], on_shelf, "BOTH")
+    kept = resolve_conflicts([first, second], find_registered, "BOTH")
     assert [(one.identifier, one.title) for one in kept] == [
         ("small_3", "Small 2"),
         ("small_2", "Quite different"),
@@ -281,7 +282,7 @@ def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Li
     """The list points to libraries by identifier: a stranger's title must not take their place."""
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
-    assert registry.library_called("small").title == "Zoo"
+    assert registered_library("small").title == "Zoo"
 
 
 def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library, tmp_path: Path) -> None:

@@ -22,7 +22,8 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import read_posture
-from keymark.operators.matching import match_library
+from keymark.operators.library import registry_files
+from keymark.operators.matching.match_edits import candidate_posture
 from keymark.operators.matching.matches import known_matches
 from keymark.operators.overlays.picture import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
@@ -93,7 +94,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         return asked.choice
 
     monkeypatch.setattr(matching, "match_take", match)
-    monkeypatch.setattr(match_library, "_libraries", lambda name: [waves, other])
+    monkeypatch.setattr(registry_files, "libraries_to_match", lambda name: [waves, other])
     return asked
 
 
@@ -133,7 +134,7 @@ def test_matched_postures_are_keyed_and_kept(matched: Group, wave_motion: Motion
     assert (match.frame, match.library, match.candidate.name) == (7.0, "waves", "Wave 6")
     assert [each.is_doubtful for each in state.matches] == [False, True, False]
     assert [(each.name, each.mirrored) for each in match.candidates] == [("Wave 6", False), ("Back", True)]
-    again = match.candidates[1].posture
+    again = candidate_posture(match.candidates[1])
     assert again.minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-6)
 
 
@@ -304,7 +305,7 @@ def test_without_an_actor_nothing_can_be_matched(tiny_take: Take) -> None:
         bpy.ops.keymark.match_library()
 
 
-def test_the_menu_holds_what_is_on_the_shelf_and_what_was_chosen(unposed: Group) -> None:
+def test_the_menu_holds_the_registry_and_what_was_chosen(unposed: Group) -> None:
     """A file may come from a machine that had another library; then it says which one is missing."""
     state = unposed.matching
     assert state.library == "auto"

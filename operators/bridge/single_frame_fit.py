@@ -28,9 +28,9 @@ from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
 from .footage import Footage
-from .frame_times import scene_frames
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
+from .scene_frames import scene_frames
 
 STANDS_HERE = 1.5
 """A body whose markers lie farther off than this many times those of one placed anew stands elsewhere."""

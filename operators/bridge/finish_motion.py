@@ -23,6 +23,7 @@ from .final_motion import (
     read_values,
     shown_postures,
     with_planted_legs,
+    write_final,
 )
 from .rig import read_rig
 
@@ -73,6 +74,20 @@ class Finished:
         """Keys of a motion with all of them."""
         channels = sum((held.values if isinstance(held, Spline) else held).shape[1] for held in self.motion)
         return int(channels * len(self.frames))
+
+    def write(
+        self, armature_object: bpy.types.Object, motion_action: bpy.types.Action, action: bpy.types.Action
+    ) -> int:
+        """Write the motion into an Action; returns how many keys it has now.
+
+        Args:
+            armature_object: The actor.
+            motion_action: The reconstructed motion.
+            action: The final Action.
+        """
+        return write_final(
+            armature_object, motion_action, action, self.body, self.rig, self.frames, self.motion
+        )
 
 
 def finish_motion(

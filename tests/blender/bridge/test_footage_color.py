@@ -5,8 +5,8 @@ import numpy as np
 from keymark.core.footage.camera import Camera
 from keymark.core.take.take import Take
 from keymark.operators.bridge.footage import Footage
+from keymark.operators.bridge.footage_color import footage_color
 from keymark.operators.bridge.footage_to_scene import show_footage
-from keymark.operators.bridge.pixel_color import footage_color
 
 
 def test_another_frame_has_another_color_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:

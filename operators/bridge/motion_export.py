@@ -1,6 +1,6 @@
-"""An actor's motion as a file for other programs, written by Blender's own exporters."""
+"""Export of an actor's motion by Blender's own exporters; formats are listed in `export_formats`."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -8,57 +8,8 @@ import bpy
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_whole
-from .result_files import write_bvh
+from .export_formats import ExportFormat
 from .scene_frames import showing_action
-
-
-def _write_fbx(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.fbx(
-        filepath=str(path),
-        use_selection=True,
-        object_types={"ARMATURE"},
-        add_leaf_bones=False,
-        bake_anim=True,
-        bake_anim_use_nla_strips=False,
-        bake_anim_use_all_actions=False,
-        bake_anim_simplify_factor=0.0,
-        check_existing=False,
-    )
-
-
-def _write_gltf(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.gltf(
-        filepath=str(path),
-        export_format="GLB",
-        use_selection=True,
-        export_animations=True,
-        export_animation_mode="ACTIVE_ACTIONS",
-        export_frame_range=True,
-        export_force_sampling=True,
-        export_anim_slide_to_zero=True,
-        export_def_bones=False,
-        check_existing=False,
-    )
-
-
-def _write_usd(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.wm.usd_export(
-        filepath=str(path),
-        selected_objects_only=True,
-        export_animation=True,
-        export_armatures=True,
-        only_deform_bones=False,
-        export_materials=False,
-        check_existing=False,
-    )
-
-
-WRITERS: dict[str, Callable[[bpy.types.Object, Path], None]] = {
-    "BVH": write_bvh,
-    "FBX": _write_fbx,
-    "GLTF": _write_gltf,
-    "USD": _write_usd,
-}
 
 
 def export_motion(
@@ -66,7 +17,7 @@ def export_motion(
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
     frames: tuple[int, int],
-    kind: str,
+    export_format: ExportFormat,
     path: Path,
 ) -> None:
     """Write an actor's motion; the scene, its selection and its frame are as before afterwards.
@@ -76,7 +27,7 @@ def export_motion(
         armature_object: The actor; nothing else is written.
         action: The motion.
         frames: First and last scene frame.
-        kind: A key of `WRITERS`.
+        export_format: The format to write.
         path: The file; it appears complete or not at all.
 
     Raises:
@@ -87,7 +38,7 @@ def export_motion(
 
         def write(beside: Path) -> None:
             try:
-                WRITERS[kind](armature_object, beside)
+                export_format.write(armature_object, beside)
             except RuntimeError as error:
                 raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
             if not beside.exists():

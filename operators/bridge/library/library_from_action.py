@@ -1,10 +1,11 @@
-"""A keyframe library from the motion that an Action holds, as the animator left it."""
+"""A keyframe library learned from the motion in an Action, the animator's changes included."""
 
 import bpy
 
 from ....core.body.human import HUMAN
 from ....core.library.learning import About, learn_library
 from ....core.library.library import Library
+from ....core.library.library_file import library_from_json, library_to_json
 from ....core.progress import run
 from ..actor_lengths import read_body
 from ..final_motion import motion_frames, read_values, shown_postures
@@ -18,22 +19,24 @@ def library_from_action(
     about: About,
     count: int | None = None,
 ) -> Library:
-    """Turn the motion that an Action holds for an actor into a library.
+    """Learn a library from the motion that an Action holds for an actor.
 
     Args:
         armature_object: The actor.
-        action: The motion, with whatever the animator has changed in it.
+        action: The motion, with the animator's changes.
         frame_s: Time from one scene frame to the next [s].
         about: Title, author and license.
         count: How many postures; by default 10 to 40, as many as differ.
 
     Raises:
         InputError: The Action has no motion of the actor, the armature is not an actor's, or the motion
-            is too short or stands still.
+            is too short or stands still, or title, author or license is invalid.
     """
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
     values = run(read_values(armature_object, action, rig, frames))
     posture = shown_postures(armature_object, rig, rig.show(values), body)
-    return learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
+    library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
+    library_from_json(library_to_json(library), f"library '{about.title}'")  # checks what was typed
+    return library

@@ -1,0 +1,96 @@
+"""Files of the registry: the user's folder and the libraries that come with Keymark, read and written."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from ...core.errors import InputError
+from ...core.library.library import Library
+from ...core.library.library_file import write_library
+from ...core.library.registry import SHIPPED, find_library, library_path, shelved
+from ...core.library.texts import EVERY_LIBRARY
+from . import registry
+
+
+def folders() -> list[Path]:
+    """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
+    return [registry.own_folder(), SHIPPED]
+
+
+def registered_library(identifier: str) -> Library:
+    """The registered library of an identifier, read from its file.
+
+    Raises:
+        InputError: There is none, or its file is unusable.
+    """
+    return find_library(identifier, folders())
+
+
+def find_registered(identifier: str) -> Library | None:
+    """The registered library of exactly this identifier; None where there is no usable one."""
+    found = (entry.library for entry in shelved(folders()) if entry.identifier == identifier)
+    return next((library for library in found if library is not None), None)
+
+
+def registered_identifiers() -> set[str]:
+    """Identifiers of all registered libraries, those of unusable files included."""
+    return {entry.identifier for entry in shelved(folders())}
+
+
+def shipped_libraries() -> list[Library]:
+    """All libraries that come with Keymark."""
+    return [entry.library for entry in shelved([SHIPPED]) if entry.library is not None]
+
+
+def libraries_to_match(name: str) -> Sequence[Library]:
+    """The library of an identifier, title or file; all registered ones for `EVERY_LIBRARY`.
+
+    Raises:
+        InputError: There is none.
+    """
+    if name != EVERY_LIBRARY:
+        return [find_library(name, folders())]
+    usable = [entry.library for entry in shelved(folders()) if entry.library is not None]
+    if not usable:
+        raise InputError("there is no library to match with; import one, or install Keymark as a whole")
+    return usable
+
+
+def write_to_registry(libraries: Iterable[Library]) -> None:
+    """Write libraries into the user's folder, and choose the last one in the list.
+
+    Raises:
+        InputError: The file of that name holds another library, or no library.
+        ConversionError: A file cannot be written.
+    """
+    identifier = ""
+    files = [(_own_file(registry.own_folder(), library.identifier), library) for library in libraries]
+    for file, library in files:
+        write_library(file, library)
+        identifier = library.identifier
+    registry.refresh(identifier)
+
+
+def replace_in_registry(library: Library) -> None:
+    """Write a library into the user's folder under its own file name, and choose it in the list.
+
+    Raises:
+        ConversionError: The file cannot be written.
+    """
+    write_library(library_path(registry.own_folder(), library.identifier), library)
+    registry.refresh(library.identifier)
+
+
+def _own_file(folder: Path, identifier: str) -> Path:
+    """The file of a library in a folder, new or existing: people may have put files there under any name.
+
+    Raises:
+        InputError: The file of that name holds something else.
+    """
+    path, there = library_path(folder, identifier), shelved([folder])
+    found = next((each.path for each in there if each.library and each.identifier == identifier), path)
+    other = next((each for each in there if each.path == found and each.identifier != identifier), None)
+    damaged = next((each for each in there if each.path == found and each.library is None), None)
+    if other is not None or damaged is not None:
+        holds = f"the library '{other.title}'" if other is not None else "something that is no library"
+        raise InputError(f"{found}: holds {holds}, which would be lost; give that file another name first")
+    return found
