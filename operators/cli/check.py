@@ -12,7 +12,7 @@ from ...core.shoot.check.take_check import TakeCheck, check_take
 from ...core.shoot.finding.open_shoot import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.take.conversion_settings import ConversionSettings
-from ...core.text import counted
+from ...core.text import pluralize
 from .check_text import check_summary, check_text
 from .console import arguments_console
 from .conversion.matched_keyframes import chosen_libraries
@@ -40,7 +40,7 @@ def check_command(arguments: argparse.Namespace) -> None:
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
-        raise ConversionError(f"{failing} of {counted(len(checks), 'take')} would not convert")
+        raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
 
 
 def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:

@@ -19,7 +19,7 @@ from ....core.shoot.outcomes.outcome import Outcome, Status
 from ....core.shoot.outcomes.take_outcomes import gather_outcomes, gathered
 from ....core.shoot.shoot import Shoot
 from ....core.take.conversion_record import ConversionRecord, record_if_any
-from ....core.text import counted
+from ....core.text import pluralize
 from ..console import Console
 from ..line_wrapping import broken, terminal_columns
 from .batch_progress import Share
@@ -148,7 +148,7 @@ class Tally:
         """What has become of the takes, in lines for a person, failures with their reasons."""
         counts = ", ".join(f"{count} {name}" for name, count in self.counts.items() if count)
         failed = [outcome for outcome in self.outcomes if outcome.status is Status.FAILED]
-        lines = [f"{counted(len(self._names), 'take')}: {counts}."]
+        lines = [f"{pluralize(len(self._names), 'take')}: {counts}."]
         if failed:
             lines.append("Failed:")
             for outcome in failed:
@@ -169,7 +169,7 @@ class Tally:
 
     def _show(self) -> None:
         count, failed = len(self._names), self._counts[Status.FAILED]
-        words = f"{count - self._counts[Status.WAITING]} of {counted(count, 'take')}"
+        words = f"{count - self._counts[Status.WAITING]} of {pluralize(count, 'take')}"
         self.console.overall(self._share.value, f"{words}, {failed} failed" if failed else words)
 
     def _keep(self, failure: Failure) -> None:
