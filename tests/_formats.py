@@ -18,7 +18,7 @@ from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import read_motion, write_motion
-from keymark.core.take.take import check_in_front, read_described, read_take
+from keymark.core.take.take_file import check_in_front, read_described, read_take
 
 FRAMES = 8
 SHARED = ("fps", "frame_start", "camera", "markers", "actor")

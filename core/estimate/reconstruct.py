@@ -21,7 +21,7 @@ from ..progress import Job, Progress, stretch, within
 from ..take.methods import METHODS
 from ..take.motion import Motion
 from ..take.read_footage import average_model, read_footage
-from ..take.take import Take, check_frame_count, check_in_front
+from ..take.take_file import Take, check_frame_count, check_in_front
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import worthwhile

@@ -5,7 +5,7 @@ import numpy as np
 from ..footage.clips.clip import Clip
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from .take import Take, rate_note
+from .take_file import Take, rate_note
 
 PAUSE = 2.5
 """Longest time between two frames, in usual ones, that is nothing to speak of."""

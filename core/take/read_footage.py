@@ -12,7 +12,7 @@ from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.interpolation import interpolate
 from ..progress import Job, Progress, within
 from .clip_notes import clip_notes
-from .take import Take, check_frame_count, check_in_front, open_clip
+from .take_file import Take, check_frame_count, check_in_front, open_clip
 
 FOLLOWING = "Following the markers"
 EXPECTED_RADIUS_M = 0.45

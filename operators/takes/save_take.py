@@ -42,7 +42,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
         """Read the scene and write the folder."""
         with reported(self):
             from ...core.shoot.finding.take_location import check_free
-            from ...core.take.take import write_take
+            from ...core.take.take_file import write_take
             from ..bridge.take_from_scene import read_scene_take
 
             if not self.directory:

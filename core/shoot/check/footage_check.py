@@ -12,7 +12,7 @@ from ...footage.clips.video_file import VideoFile
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
 from ...take.read_footage import expected_regions
-from ...take.take import Take, check_size, rate_note
+from ...take.take_file import Take, check_size, rate_note
 from .findings import Findings
 
 ENOUGH = SAMPLED_FRAMES // 2

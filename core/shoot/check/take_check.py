@@ -9,7 +9,7 @@ from ...matching.match_take import take_to_match
 from ...take.conversion_settings import NOTHING_CHOSEN, ConversionSettings
 from ...take.description import Description
 from ...take.methods import METHODS
-from ...take.take import Take, opened, read_described
+from ...take.take_file import Take, opened, read_described
 from ..shoot import ShootTake
 from .effort import Effort, effort
 from .findings import Findings

@@ -8,7 +8,7 @@ import pytest
 from _shoot import write_shoot
 from keymark.core.errors import InputError
 from keymark.core.shoot.finding.take_location import take_place
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -8,7 +8,7 @@ import pytest
 from _shoot import write_video
 from _synthetic_take import BODY, true_postures, write_images, write_keyframes
 from keymark.core.take.description import describe
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
 
 FRAMES = 12

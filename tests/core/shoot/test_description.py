@@ -11,7 +11,7 @@ from keymark.core.errors import InputError
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import Description, chosen_settings, describe
 from keymark.core.take.shoot_file import shoot_fields, shoot_files
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 5
 
