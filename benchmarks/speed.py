@@ -118,8 +118,9 @@ def processor_times(folder: Path) -> dict[str, float]:
     from keymark.core.estimate.reconstruct import reconstruct
     from keymark.core.footage.markers import track_markers
     from keymark.core.progress import run
+    from keymark.core.take.clip_check import open_clip
     from keymark.core.take.read_footage import expected_regions
-    from keymark.core.take.take_file import open_clip, read_take
+    from keymark.core.take.take_file import read_take
 
     cv2.setNumThreads(1)
     take = read_take(folder)

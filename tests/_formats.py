@@ -14,11 +14,12 @@ from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.finding.take_list import read_take_list
+from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import read_motion, write_motion
-from keymark.core.take.take_file import check_in_front, read_described, read_take
+from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8
 SHARED = ("fps", "frame_start", "camera", "markers", "actor")

@@ -2,7 +2,7 @@
 
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
-from ..take.take_file import Take
+from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
 DOUBTED_LENS = 0.03

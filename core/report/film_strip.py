@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..take.motion import Motion
-from ..take.take_file import Take
+from ..take.take import Take
 from .canvas import Canvas
 from .overlay_sheet import paler
 from .stick_figure import draw_figure, stick_figure

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array, Image
 from ..body.posture import Posture
 from ..prior.keyframes import Keyframe, Matched
-from ..take.take_file import Take
+from ..take.take import Take
 from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .overlay_sheet import paler

@@ -9,7 +9,7 @@ from ..arrays import Array, Image
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.ellipse import ellipse_outline
 from ..take.motion import Motion
-from ..take.take_file import Take
+from ..take.take import Take
 from .canvas import INK, WHITE, Canvas, Color
 from .contact_sheet import MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
 from ..take.motion import Motion
-from ..take.take_file import Take
+from ..take.take import Take
 from .canvas import SCALE, write_jpg, write_png
 from .contact_sheet import chosen_frames
 from .film_strip import PICTURES as STRIP_FRAMES

@@ -14,7 +14,7 @@ from ..estimate.terms.regions import RegionNoise, limb_widths
 from ..footage.segmentation.ellipse import CORNERS, ellipse_outline
 from ..observation.regions import RegionModel
 from ..progress import Job, Part, within
-from ..take.take_file import Take
+from ..take.take import Take
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
 

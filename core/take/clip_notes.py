@@ -5,8 +5,10 @@ import numpy as np
 from ..footage.clips.clip import Clip
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from .take_file import Take, rate_note
+from .take import Take
 
+NOTICEABLE_RATE = 0.02
+"""Difference of two frame rates that is worth a note, as a share of the take's."""
 PAUSE = 2.5
 """Longest time between two frames, in usual ones, that is nothing to speak of."""
 
@@ -23,6 +25,13 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
             "decoded; it may be cut off or damaged"
         )
     return (*notes, *reading.noticed.notes(take.frame_start), *_pause_notes(take, tracks))
+
+
+def rate_note(take: Take, clip: Clip) -> str | None:
+    """A sentence where the clip's own frame rate is not the take's; None where they agree."""
+    if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
+        return None
+    return f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
 
 
 def _pause_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:

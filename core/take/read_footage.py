@@ -11,8 +11,9 @@ from ..footage.region_tracks import ExpectedRegions
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.interpolation import interpolate
 from ..progress import Job, Progress, within
+from .clip_check import check_frame_count, check_in_front, open_clip
 from .clip_notes import clip_notes
-from .take_file import Take, check_frame_count, check_in_front, open_clip
+from .take import Take
 
 FOLLOWING = "Following the markers"
 EXPECTED_RADIUS_M = 0.45

@@ -1,94 +1,33 @@
-"""A take: one recorded performance on disk, read with every field checked, and written."""
+"""`take.json`: reading a take with every field checked, and writing one."""
 
 import os
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from ..body.actor import Actor
 from ..body.human import HUMAN
 from ..body.kinematics import Body
+from ..body.shapes import TRUNK
 from ..errors import InputError
 from ..files.control_characters import is_hidden
 from ..files.fields import Fields, listed
 from ..files.inherited_fields import Inherited
 from ..files.json_file import shown, write_json, write_whole
 from ..footage.camera import Camera
-from ..footage.clips.clip import Clip
 from ..footage.marker_style import MarkerStyle
-from ..prior.keyframes import Keyframe
-from .description import OWN, Description, describe
+from .clip_check import open_footage
+from .description import Description, describe
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
+from .take import Take
 
-TRUNK = "trunk"
-"""Not one segment of the skeleton but all between hips and shoulders: a marker may be bound to it."""
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
+"""What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
-LONGEST_FRAMES = 40_000
-"""Of one take: twenty minutes at 30 a second, for which an estimate needs about two and a half gigabytes."""
 MOST_MARKERS = 64
 LONGEST_MARKER = 200
 """Characters of a marker's name."""
-POORLY_FITTED_M = 0.06
-"""Hand-posed points fit an actor of the right size within two or three centimeters."""
-NOTICEABLE_RATE = 0.02
-
-
-@dataclass(frozen=True, eq=False)
-class Take:
-    """One recorded performance, validated."""
-
-    folder: Path
-    clip: Path
-    """The footage: a video, a folder of images, or a pattern of numbered images."""
-    fps: float
-    frame_start: int
-    """Scene frame of the clip's first decoded frame."""
-    frame_count: int | None
-    """Frames of the clip; None where only the clip itself tells."""
-    camera: Camera
-    body: Body
-    markers: tuple[MarkerStyle, ...]
-    keyframes: tuple[Keyframe, ...]
-    described_in: Path | None = None
-    """The file that sentences name; None for a folder's own `take.json`."""
-    title: str = ""
-    """What people call it; empty for the folder's name."""
-
-    @property
-    def file(self) -> Path:
-        """The file that describes it."""
-        return self.described_in or self.folder / OWN
-
-    @property
-    def name(self) -> str:
-        """What people call it."""
-        return self.title or self.folder.absolute().name
-
-    @property
-    def marker_segments(self) -> tuple[str, ...]:
-        """The segment each marker is bound to."""
-        return tuple(style.segment for style in self.markers)
-
-    @property
-    def keyframe_indices(self) -> tuple[int, ...]:
-        """Positions of the keyframes in the clip."""
-        return tuple(keyframe.index for keyframe in self.keyframes)
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What is usable but looks wrong, one sentence each."""
-        return tuple(
-            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
-            "cm on average from any posture of this actor; check them and the actor's segment lengths"
-            for keyframe in self.keyframes
-            if keyframe.residual_m > POORLY_FITTED_M
-        )
 
 
 def read_take(
@@ -152,138 +91,6 @@ def read_described(
     )
 
 
-def open_clip(take: Take) -> Clip:
-    """Open a take's clip and check what `take.json` says of it.
-
-    Raises:
-        InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
-            poses or a keyframe do not fit.
-    """
-    clip = opened(take.clip, take.fps)
-    check_size(take, clip)
-    count = clip.frame_count
-    if count > LONGEST_FRAMES or take.frame_count not in (None, count):
-        # Containers may claim a wrong number; decoding tells.
-        count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
-    check_frame_count(take, count)
-    return clip
-
-
-def check_size(take: Take, clip: Clip) -> None:
-    """Hold the size of a clip's frames against the take.
-
-    Raises:
-        InputError: The camera's resolution is another.
-    """
-    if clip.size != take.camera.resolution:
-        raise InputError(
-            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
-            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-            f"{_turned(take, clip)}"
-        )
-
-
-def opened(path: Path, fps: float | None) -> Clip:
-    """Open a clip, of whatever take; `fps` is the rate of images.
-
-    Raises:
-        InputError: It is missing or unreadable.
-    """
-    try:
-        return Clip.open(path, fps=fps)
-    except OSError as error:
-        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
-
-
-def _turned(take: Take, clip: Clip) -> str:
-    """What to do where width and height are swapped."""
-    if clip.size != take.camera.resolution[::-1]:
-        return ""
-    return (
-        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
-        "give sensor_width_mm and the pose of the camera as it was held"
-    )
-
-
-def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
-    """Hold the number of frames that a clip really has against the take.
-
-    Args:
-        take: The take.
-        count: The frames that there are.
-        claimed: Those that the clip's file says there are.
-
-    Raises:
-        InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
-            the clip.
-    """
-    path = take.file
-    if count > LONGEST_FRAMES:
-        raise InputError(
-            f"{take.clip}: has more than {LONGEST_FRAMES} frames, {LONGEST_FRAMES / take.fps / 60.0:.0f} "
-            "minutes; a take must be shorter: cut it, as with ffmpeg -ss 0 -t 600 -i CLIP part1.mp4"
-        )
-    if take.frame_count not in (None, count):
-        raise InputError(
-            f"{path}: frame_count is {take.frame_count}; "
-            f"{take.clip.name} holds {count} frames that can be decoded{_cut_off(count, claimed)}"
-        )
-    if take.camera.is_moving and len(take.camera.matrix_world) < count:
-        poses = len(take.camera.matrix_world)
-        raise InputError(
-            f"{path}: camera.matrix_world_frames has {poses} poses; {take.clip.name} has {count} frames, "
-            "and each needs one"
-        )
-    for keyframe in take.keyframes:
-        if keyframe.index >= count:
-            raise InputError(
-                f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
-                f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
-                f"{_cut_off(count, claimed)}"
-            )
-
-
-def _cut_off(count: int, claimed: int) -> str:
-    """What may be the matter where a file claims more frames than there are."""
-    if count >= claimed:
-        return ""
-    return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
-
-
-def check_in_front(take: Take) -> None:
-    """Hold the keyframes against the camera: what lies behind it can leave nothing in its picture.
-
-    Raises:
-        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
-    """
-    size = np.asarray(take.camera.resolution, dtype=np.float64)
-    in_picture = not take.keyframes
-    for keyframe in take.keyframes:
-        points = take.body.points(take.body.pose(keyframe.posture))
-        depth = take.camera.depth(points, keyframe.index)
-        if depth.min() <= 0.0:
-            name = take.body.skeleton.point_names[int(depth.argmin())]
-            raise InputError(
-                f"{take.file}: keyframe {keyframe.index + take.frame_start} has the point {name} "
-                f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
-                "(along its local -Z) at the performer"
-            )
-        pixels, _ = take.camera.project(points, keyframe.index)
-        in_picture = in_picture or bool(((pixels >= 0.0) & (pixels <= size)).all(axis=-1).any())
-    if not in_picture:
-        raise InputError(
-            f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
-            "its lens and the keyframes, all in meters in one world, must fit each other"
-        )
-
-
-def rate_note(take: Take, clip: Clip) -> str | None:
-    """A sentence where the clip's own frame rate is not the take's; None where they agree."""
-    if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
-        return None
-    return f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
-
-
 def write_take(take: Take, folder: Path) -> None:
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json` and the clip.
 
@@ -329,7 +136,7 @@ def _with_the_clip(fields: Fields, path: Path) -> Fields:
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
     if fields.has("fps") and sized:
         return fields
-    clip = opened(path, None)
+    clip = open_footage(path, None)
     told: dict[str, Any] = {}
     if not fields.has("fps") and clip.knows_its_rate:
         told["fps"] = clip.fps

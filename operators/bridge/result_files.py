@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.errors import ConversionError
 from ...core.take.motion import Motion
-from ...core.take.take_file import Take
+from ...core.take.take import Take
 from .armature import build_armature
 from .blend_writer import write_blend
 from .body_mesh import build_body_mesh

@@ -11,7 +11,7 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.marker_style import MarkerStyle
 from ...core.progress import Job, Progress
-from ...core.take.take_file import Take
+from ...core.take.take import Take
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
 from .footage import Footage

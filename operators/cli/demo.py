@@ -10,7 +10,7 @@ from ...core.review.score import Score, read_truth, score_points
 from ...core.take.conversion_settings import ConversionSettings
 from ...core.take.description import describe
 from ...core.take.motion import Motion
-from ...core.take.take_file import Take
+from ...core.take.take import Take
 from .console import arguments_console
 from .conversion.convert_take import BLEND, REPORT, convert
 from .convert import summary

@@ -10,7 +10,9 @@ from ...core.prior.marker_speed import marker_speed, propose_keyframes
 from ...core.progress import Job, run, within
 from ...core.report.canvas import write_png
 from ...core.report.speed_plot import speed_plot
-from ...core.take.take_file import Take, open_clip, read_take
+from ...core.take.clip_check import open_clip
+from ...core.take.take import Take
+from ...core.take.take_file import read_take
 from .console import arguments_console
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.shell.takes import active_take
 

@@ -11,8 +11,10 @@ from ...footage.clips.spread_frames import glance
 from ...footage.clips.video_file import VideoFile
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
+from ...take.clip_check import check_size
+from ...take.clip_notes import rate_note
 from ...take.read_footage import expected_regions
-from ...take.take_file import Take, check_size, rate_note
+from ...take.take import Take
 from .findings import Findings
 
 ENOUGH = SAMPLED_FRAMES // 2

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...take.take_file import Take, check_frame_count, check_in_front
+from ...take.clip_check import check_frame_count, check_in_front
+from ...take.take import Take
 from .findings import Findings
 
 LONGEST_GAP_S = 1.0

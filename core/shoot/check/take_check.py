@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...matching.match_take import take_to_match
+from ...take.clip_check import open_footage
 from ...take.conversion_settings import NOTHING_CHOSEN, ConversionSettings
 from ...take.description import Description
 from ...take.methods import METHODS
-from ...take.take_file import Take, opened, read_described
+from ...take.take import Take
+from ...take.take_file import read_described
 from ..shoot import ShootTake
 from .effort import Effort, effort
 from .findings import Findings
@@ -69,7 +71,7 @@ def check_take(
             find_libraries(settings.library)
     clip = None
     with said.noting():
-        clip = opened(description.clip, None)
+        clip = open_footage(description.clip, None)
     missing = unfilled(description.fields)
     said.problem(*missing)
     frames = None if clip is None else count_frames(clip, said)

@@ -23,7 +23,8 @@ from ....core.take.keyframe_file import write_keyframes
 from ....core.take.methods import METHODS
 from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
-from ....core.take.take_file import Take, read_described
+from ....core.take.take import Take
+from ....core.take.take_file import read_described
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..version import version

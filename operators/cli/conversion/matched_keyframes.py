@@ -13,7 +13,7 @@ from ....core.matching.match_take import LibraryChoice, match_take, with_matches
 from ....core.progress import Job, stretch
 from ....core.take.keyframe_file import FEWEST_KEYFRAMES
 from ....core.take.read_footage import read_footage
-from ....core.take.take_file import Take
+from ....core.take.take import Take
 from ..library.folders import library_folders
 
 NAMED = 3

@@ -12,7 +12,7 @@ from ....core.matching.match_take import LibraryChoice
 from ....core.progress import run
 from ....core.review.review import review
 from ....core.take.conversion_record import ConversionRecord
-from ....core.take.take_file import Take
+from ....core.take.take import Take
 from ..version import version
 
 WEAKEST = 5.0

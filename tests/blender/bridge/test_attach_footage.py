@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.attach_footage import attach_footage
 from keymark.operators.bridge.camera_from_scene import read_camera
 from keymark.operators.bridge.footage import Footage

@@ -8,7 +8,7 @@ import pytest
 from bpy_extras.object_utils import world_to_camera_view
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_from_scene import read_camera
 from keymark.operators.bridge.footage import Footage
 from keymark.operators.bridge.footage_to_scene import load_footage, show_footage

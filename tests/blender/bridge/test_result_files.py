@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from keymark.core.errors import ConversionError
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge import result_files
 from keymark.operators.bridge.result_files import write_scene
 

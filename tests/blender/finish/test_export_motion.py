@@ -10,7 +10,7 @@ import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.footage.camera_view import camera_view, free_box, picture_at_factor_one
 from keymark.operators.footage.occluding_objects import names_in_the_way
 from keymark.operators.shell.takes import active_take

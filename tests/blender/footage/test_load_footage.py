@@ -8,7 +8,7 @@ import bpy
 import cv2
 import numpy as np
 import pytest
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage
 from keymark.operators.footage.take_footage import lens_is_guess
 from keymark.operators.shell.takes import active_take

@@ -9,7 +9,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.standing_posture import hip_height_m, standing_height_m
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import read_posture, write_posture

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import run
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.footage.take_footage import note_clip
 from keymark.operators.markers.check_markers import KEYMARK_OT_check_markers
 from keymark.operators.markers.mask_previews import forget_previews, is_of_frame, look_at_frame, preview_of

@@ -19,7 +19,7 @@ from keymark.core.matching.candidate import Candidate, MatchedFrame
 from keymark.core.matching.match_take import LibraryChoice
 from keymark.core.progress import Progress
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.matching import match_library

@@ -8,7 +8,7 @@ import pytest
 from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.overlays.picture import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
 from keymark.operators.overlays.timeline_figures import believed_color, graph, in_view, joined, strip

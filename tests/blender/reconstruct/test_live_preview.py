@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.progress import Preview, Progress
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.reconstruct.live_preview import LivePreview
 from keymark.operators.reconstruct.reconstruct import KEYMARK_OT_reconstruct
 from keymark.operators.shell.takes import active_take

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.shell import results
 from keymark.operators.shell.job_operator import time_left
 from keymark.operators.shell.takes import active_take

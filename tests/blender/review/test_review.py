@@ -9,7 +9,7 @@ import pytest
 from _review import made_up_review
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames

@@ -10,7 +10,7 @@ from keymark.core.files.store import Store
 from keymark.core.footage.reading import Reading
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.shell import results
 from keymark.operators.shell.takes import add_take
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 import keymark
 import pytest
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.shell.takes import VERSION, active_take, add_take
 from keymark.operators.takes.upgrade import is_newer, tell_apart

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 from keymark.operators.footage.camera_view import viewports
 from keymark.operators.shell.takes import active_take, add_take
 

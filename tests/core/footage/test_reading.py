@@ -15,7 +15,8 @@ from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arr
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
-from keymark.core.take.take_file import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 24
 

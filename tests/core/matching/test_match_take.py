@@ -22,7 +22,7 @@ from keymark.core.matching.match_take import LibraryChoice, match_take, with_mat
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
-from keymark.core.take.take_file import Take
+from keymark.core.take.take import Take
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 BODY = Body(Actor.from_stature(1.62))

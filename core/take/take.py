@@ -1,0 +1,65 @@
+"""A take: one recorded performance, validated, and what looks wrong with it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..body.kinematics import Body
+from ..footage.camera import Camera
+from ..footage.marker_style import MarkerStyle
+from ..prior.keyframes import Keyframe
+from .description import OWN
+
+POORLY_FITTED_M = 0.06
+"""Hand-posed points fit an actor of the right size within two or three centimeters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """One recorded performance, validated."""
+
+    folder: Path
+    clip: Path
+    """The footage: a video, a folder of images, or a pattern of numbered images."""
+    fps: float
+    frame_start: int
+    """Scene frame of the clip's first decoded frame."""
+    frame_count: int | None
+    """Frames of the clip; None where only the clip itself tells."""
+    camera: Camera
+    body: Body
+    markers: tuple[MarkerStyle, ...]
+    keyframes: tuple[Keyframe, ...]
+    described_in: Path | None = None
+    """The file that sentences name; None for a folder's own `take.json`."""
+    title: str = ""
+    """What people call it; empty for the folder's name."""
+
+    @property
+    def file(self) -> Path:
+        """The file that describes it."""
+        return self.described_in or self.folder / OWN
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return self.title or self.folder.absolute().name
+
+    @property
+    def marker_segments(self) -> tuple[str, ...]:
+        """The segment each marker is bound to."""
+        return tuple(style.segment for style in self.markers)
+
+    @property
+    def keyframe_indices(self) -> tuple[int, ...]:
+        """Positions of the keyframes in the clip."""
+        return tuple(keyframe.index for keyframe in self.keyframes)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is usable but looks wrong, one sentence each."""
+        return tuple(
+            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
+            "cm on average from any posture of this actor; check them and the actor's segment lengths"
+            for keyframe in self.keyframes
+            if keyframe.residual_m > POORLY_FITTED_M
+        )
