@@ -17,7 +17,7 @@ class BusyError(KeymarkError):
     """Another process is at work on the same results; what it leaves may be what was wanted."""
 
 
-def unexpected(error: BaseException) -> str:
+def describe_unexpected(error: BaseException) -> str:
     """An error that nobody has thought of, in one line for a sentence."""
     said = " ".join(str(error).split())
     return f"{type(error).__name__}: {said}" if said else type(error).__name__

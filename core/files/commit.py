@@ -15,7 +15,7 @@ from pathlib import Path, PureWindowsPath
 from typing import Any
 
 from ..errors import InputError
-from .fsync import to_disk
+from .fsync import fsync_path
 from .json_file import read_json
 
 NEW, OLD, PAPER, DRAFT = "-new", "-old", ".json", ".json.new"
@@ -25,7 +25,7 @@ Moves = list[tuple[Path, Path]]
 
 
 @dataclass(frozen=True)
-class Arrival:
+class Commit:
     """Where a set of files comes from and goes to."""
 
     target: Path
@@ -62,7 +62,7 @@ class Arrival:
         return self.stem.with_name(self.stem.name + DRAFT)
 
 
-def found_arrival(empty: Arrival) -> Arrival | None:
+def read_journal(empty: Commit) -> Commit | None:
     """The arrival that another process has begun and not ended; None where there is none, or not all."""
     try:
         said = read_json(empty.paper, LARGEST_BYTES)
@@ -72,7 +72,7 @@ def found_arrival(empty: Arrival) -> Arrival | None:
             return None
     except (InputError, LookupError, TypeError, AttributeError):
         return None
-    found = Arrival(empty.target, empty.stem, seal, tuple(made), tuple(gone), dict(aside))
+    found = Commit(empty.target, empty.stem, seal, tuple(made), tuple(gone), dict(aside))
     return (
         found
         if all(any((at / name).is_file() for at in (found.new, found.target)) for name in made)
@@ -80,7 +80,7 @@ def found_arrival(empty: Arrival) -> Arrival | None:
     )
 
 
-def announce(arrival: Arrival) -> None:
+def write_journal(arrival: Commit) -> None:
     """Bring a complete set to the disk and write down what has to be done with it.
 
     Raises:
@@ -88,8 +88,8 @@ def announce(arrival: Arrival) -> None:
     """
     for folder, _, names in os.walk(arrival.new):
         for name in names:
-            to_disk(Path(folder) / name)
-        to_disk(Path(folder))
+            fsync_path(Path(folder) / name)
+        fsync_path(Path(folder))
     said = {
         "target": arrival.target.name,
         "seal": arrival.seal,
@@ -98,12 +98,12 @@ def announce(arrival: Arrival) -> None:
         "aside": dict(arrival.aside),
     }
     arrival.draft.write_text(json.dumps(said), encoding="utf-8")
-    to_disk(arrival.draft)
+    fsync_path(arrival.draft)
     os.replace(arrival.draft, arrival.paper)
-    to_disk(arrival.paper.parent)
+    fsync_path(arrival.paper.parent)
 
 
-def move_in(arrival: Arrival, done: Moves) -> None:
+def roll_forward(arrival: Commit, done: Moves) -> None:
     """Move an announced set into its folder; files moved already by another process are left where they are.
 
     Args:
@@ -117,14 +117,14 @@ def move_in(arrival: Arrival, done: Moves) -> None:
     waiting = [name for name in arrival.made if (new / name).is_file()]
     if waiting == list(arrival.made) and not target.exists():
         _move(new, target, done)
-        to_disk(target.parent)
+        fsync_path(target.parent)
         return
     waiting.sort(key=lambda name: name == arrival.seal)
     replaced = sorted([*waiting, *arrival.gone], key=lambda name: name != arrival.seal)
     for name in replaced:
         _move_away(arrival, name, done)
         if name == arrival.seal:
-            to_disk(target)
+            fsync_path(target)
     folders = {(target / name).parent for name in (*arrival.made, *arrival.gone)}
     for name in waiting:
         if name == arrival.seal:
@@ -141,7 +141,7 @@ def files_below(folder: Path) -> tuple[str, ...]:
     return tuple(sorted(file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()))
 
 
-def free_name(file: Path) -> Path:
+def backup_name(file: Path) -> Path:
     """The name beside a file under which it is kept where it is not to be replaced."""
     for number in itertools.count(1):
         other = file.with_stem(f"{file.stem} (changed{'' if number == 1 else f' {number}'})")
@@ -150,7 +150,7 @@ def free_name(file: Path) -> Path:
     raise AssertionError("numbers have no end")
 
 
-def undo(arrival: Arrival, done: Moves) -> None:
+def roll_back(arrival: Commit, done: Moves) -> None:
     """Take moves back, the last first, also one that was interrupted.
 
     Raises:
@@ -167,7 +167,7 @@ def undo(arrival: Arrival, done: Moves) -> None:
         done.pop()
 
 
-def clear(arrival: Arrival) -> None:
+def clean_up(arrival: Commit) -> None:
     """Remove all that is hidden of a set, the paper first: what is left then is nothing but rubbish."""
     for file in (arrival.paper, arrival.draft):
         file.unlink(missing_ok=True)
@@ -175,14 +175,14 @@ def clear(arrival: Arrival) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _move_away(arrival: Arrival, name: str, done: Moves) -> None:
+def _move_away(arrival: Commit, name: str, done: Moves) -> None:
     """Make room for a file of the set, or remove one that it lacks."""
     there = arrival.target / name
     if not there.is_file() and not there.is_symlink():
         return
     if name in arrival.aside:
         kept = arrival.target / arrival.aside[name]
-        _move(there, free_name(there) if os.path.lexists(kept) else kept, done)
+        _move(there, backup_name(there) if os.path.lexists(kept) else kept, done)
     else:
         _move(there, arrival.old / name, done)
 
@@ -201,4 +201,4 @@ def _is_inside(name: Any) -> bool:
 def _all_to_disk(folders: Iterable[Path]) -> None:
     for folder in folders:
         if folder.is_dir():
-            to_disk(folder)
+            fsync_path(folder)

@@ -8,9 +8,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .commit import Arrival, announce, clear, files_below, found_arrival, move_in, undo
-from .folder_lock import LOCK, folder_lock, hidden_name
-from .fsync import LOSSES
+from .commit import Commit, clean_up, files_below, read_journal, roll_back, roll_forward, write_journal
+from .file_lock import LOCK, file_lock, hidden_prefix
+from .fsync import DISK_ERRORS
 
 NOTHING_ASIDE: Mapping[str, str] = {}
 
@@ -48,14 +48,14 @@ def output_folder(
     try:
         target = _target(path)
         above = [folder for folder in target.parents if not folder.exists()]
-        stem = _level(target) / hidden_name(target.name)
+        stem = _level(target) / hidden_prefix(target.name)
     except (OSError, ValueError) as error:
         raise _refused(path, error) from error
     busy = f"{path}: another process is writing there; try again when it has finished"
     entered = False
     try:
-        with folder_lock(stem.with_name(stem.name + LOCK), busy):
-            empty = Arrival(target, stem, seal)
+        with file_lock(stem.with_name(stem.name + LOCK), busy):
+            empty = Commit(target, stem, seal)
             _tidy(empty)
             _make(empty.new)
             entered = True
@@ -68,7 +68,7 @@ def output_folder(
         _remove_empty(above)
 
 
-def _filled(empty: Arrival, belongings: Collection[str], aside: Mapping[str, str]) -> Iterator[Path]:
+def _filled(empty: Commit, belongings: Collection[str], aside: Mapping[str, str]) -> Iterator[Path]:
     """Let the set be made, then move it in."""
     done: list[tuple[Path, Path]] = []
     try:
@@ -76,17 +76,17 @@ def _filled(empty: Arrival, belongings: Collection[str], aside: Mapping[str, str
         made = files_below(empty.new)
         if made:
             gone = tuple(sorted(set(belongings) - set(made)))
-            arrival = Arrival(empty.target, empty.stem, empty.seal, made, gone, dict(aside))
-            announce(arrival)
-            move_in(arrival, done)
+            arrival = Commit(empty.target, empty.stem, empty.seal, made, gone, dict(aside))
+            write_journal(arrival)
+            roll_forward(arrival, done)
     except BaseException:
-        undo(empty, done)  # where this fails, the next to come ends what was begun
-        clear(empty)
+        roll_back(empty, done)  # where this fails, the next to come ends what was begun
+        clean_up(empty)
         raise
     try:
-        clear(empty)
+        clean_up(empty)
     except KeyboardInterrupt:
-        clear(empty)
+        clean_up(empty)
         raise
 
 
@@ -100,12 +100,12 @@ def _make(folder: Path) -> None:
         raise
 
 
-def _tidy(empty: Arrival) -> None:
+def _tidy(empty: Commit) -> None:
     """End or remove what a killed process has left."""
-    found = found_arrival(empty)
+    found = read_journal(empty)
     if found is not None:
-        move_in(found, [])
-    clear(empty)
+        roll_forward(found, [])
+    clean_up(empty)
     if empty.stem.parent == empty.target:
         for rest in empty.target.glob(f"{empty.stem.name}-*"):  # Blender's files, see `blend_place`
             rest.unlink(missing_ok=True)
@@ -146,7 +146,7 @@ def _level(target: Path) -> Path:
 
 def _refused(path: Path, error: Exception) -> KeymarkError:
     """The sentence on a place where nothing can be begun."""
-    if isinstance(error, OSError) and error.errno in LOSSES:
+    if isinstance(error, OSError) and error.errno in DISK_ERRORS:
         return _failed(path, error)
     if isinstance(error, FileExistsError) and error.filename is None:
         return InputError(f"{path}: {error.strerror}")

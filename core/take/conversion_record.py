@@ -13,7 +13,7 @@ from typing import Any
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
-from ..files.safe_path import inside_path
+from ..files.safe_path import safe_path
 
 NAME = "conversion.json"
 SCHEMA_VERSION = 1
@@ -82,8 +82,8 @@ def read_record(folder: Path) -> ConversionRecord:
         take=_line(fields, "take"),
         method=_line(fields, "method"),
         library=_line(fields, "library") if fields.has("library") else None,
-        frames=fields.whole("frames", 1, MOST_LISTED),
-        frame_start=fields.whole("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
+        frames=fields.integer("frames", 1, MOST_LISTED),
+        frame_start=fields.integer("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
         fps=fields.number("fps", 1e-3, 1e4),
         keyframes=_frames(fields, "keyframes"),
         matched=_frames(fields, "matched"),
@@ -119,14 +119,14 @@ def _line(fields: Fields, name: str) -> str:
     valid = f"a text of at most {LONGEST_LINE} characters"
     text = fields.text(name, valid)
     if len(text) > LONGEST_LINE:
-        raise InputError(f"{fields.at(name)}: {name} is {shown(text)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(text)}; it must be {valid}")
     return text
 
 
 def _list(fields: Fields, name: str, kind: type, most: int, valid: str) -> list[Any]:
     value = fields.required(name, valid)
     if not isinstance(value, list) or len(value) > most or not all(type(item) is kind for item in value):
-        raise InputError(f"{fields.at(name)}: {name} is {shown(value)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
     return value
 
 
@@ -134,7 +134,7 @@ def _frames(fields: Fields, name: str) -> tuple[int, ...]:
     valid = f"a list of at most {MOST_LISTED} frames"
     frames = _list(fields, name, int, MOST_LISTED, valid)
     if any(abs(frame) > FARTHEST_FRAME + MOST_LISTED for frame in frames):
-        raise InputError(f"{fields.at(name)}: {name} is {shown(frames)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(frames)}; it must be {valid}")
     return tuple(frames)
 
 
@@ -142,7 +142,7 @@ def _notes(fields: Fields) -> tuple[str, ...]:
     valid = f"a list of at most {MOST_NOTES} sentences of {LONGEST_NOTE} characters"
     notes = _list(fields, "notes", str, MOST_NOTES, valid)
     if any(len(note) > LONGEST_NOTE for note in notes):
-        raise InputError(f"{fields.at('notes')}: notes is {shown(notes)}; it must be {valid}")
+        raise InputError(f"{fields.source_of('notes')}: notes is {shown(notes)}; it must be {valid}")
     return tuple(notes)
 
 
@@ -151,7 +151,7 @@ def _files(fields: Fields) -> Mapping[str, str]:
     if len(files.values) > MOST_FILES:
         raise InputError(f"{files.where} names {len(files.values)} files; at most {MOST_FILES} are read")
     for name, digest in files.values.items():
-        inside_path(Fields({"name": name}, files.where), "name", Path(), "a file of this folder")
+        safe_path(Fields({"name": name}, files.where), "name", Path(), "a file of this folder")
         if not isinstance(digest, str) or _SHA256.fullmatch(digest) is None:
             raise InputError(
                 f"{files.where}: {shown(name)} is {shown(digest)}; it must be a SHA-256 of 64 digits"

@@ -4,10 +4,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..errors import InputError
-from ..files.control_characters import is_hidden
+from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
-from ..files.safe_path import inside_path
+from ..files.safe_path import safe_path
 from .methods import METHODS
 
 HIGHEST_FLOOR_M = 1000.0
@@ -56,20 +56,21 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
     method = description.text("method", listed(METHODS)) if description.has("method") else None
     if method not in (None, *METHODS):
         raise InputError(
-            f"{description.at('method')}: method is {shown(method)}; it must be one of {listed(METHODS)}"
+            f"{description.source_of('method')}: method is {shown(method)}; "
+            f"it must be one of {listed(METHODS)}"
         )
     pictures = description.values.get("pictures")
     if pictures is not None and not isinstance(pictures, bool):
         raise InputError(
-            f"{description.at('pictures')}: pictures is {shown(pictures)}; it must be true or false"
+            f"{description.source_of('pictures')}: pictures is {shown(pictures)}; it must be true or false"
         )
     floor_m = None
     if description.has("floor_m"):
         floor_m = description.number("floor_m", -HIGHEST_FLOOR_M, HIGHEST_FLOOR_M, "m")
     keyframes = None
     if description.has("keyframes"):
-        keyframes = inside_path(
-            description, "keyframes", folders[description.at("keyframes")], KEYFRAMES_VALID
+        keyframes = safe_path(
+            description, "keyframes", folders[description.source_of("keyframes")], KEYFRAMES_VALID
         )
     return ConversionSettings(keyframes, _library(description, folders), floor_m, method, pictures)
 
@@ -79,9 +80,11 @@ def _library(description: Fields, folders: dict[str, Path]) -> str | None:
         return None
     name = description.text("library", LIBRARY_VALID)
     if not name.lower().endswith(".json"):  # a name; whatever holds a slash would be taken for a file
-        if len(name) > LONGEST_NAME or any(letter in "/\\" or is_hidden(letter) for letter in name):
+        if len(name) > LONGEST_NAME or any(
+            letter in "/\\" or is_control_character(letter) for letter in name
+        ):
             raise InputError(
-                f"{description.at('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
+                f"{description.source_of('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
             )
         return name
-    return str(inside_path(description, "library", folders[description.at("library")], LIBRARY_VALID))
+    return str(safe_path(description, "library", folders[description.source_of("library")], LIBRARY_VALID))

@@ -13,9 +13,9 @@ from typing import Any
 
 from ..errors import InputError
 from ..files.fields import Fields
-from ..files.inherited_fields import Inherited
+from ..files.inherited_fields import InheritedFields
 from ..files.json_file import read_json
-from ..files.safe_path import check_links, inside_path
+from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
 from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
 from .shoot_file import NAME, shoot_fields, shoot_files, whole_way
@@ -68,33 +68,31 @@ def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str
             f"{place}: nothing describes this clip; {own.name} beside it, or {NAME} there or in a folder "
             "above, must say what camera, actor and markers it shows"
         )
-    fields = Inherited()
+    fields = InheritedFields()
     folders: dict[str, Path] = {}
     for file, values in shared.items():
-        fields = fields.patched(shoot_fields(file, values), str(file))
+        fields = fields.overridden_by(shoot_fields(file, values), str(file))
         folders[str(file)] = file.parent
     files = [*shared]
     if os.path.isfile(own) or whole:
-        fields = fields.patched(read_json(own), str(own))
+        fields = fields.overridden_by(read_json(own), str(own))
         folders[str(own)] = folder
         files.append(own)
     if nearest:
-        fields = fields.patched(nearest, said_in)
+        fields = fields.overridden_by(nearest, said_in)
         folders[said_in] = folder
     described = Fields(fields, str(files[-1]))
     clip = place
     if whole:
         clip = (
-            inside_path(described, "clip", folder, CLIP_VALID)
-            if described.has("clip")
-            else folder / "clip.mp4"
+            safe_path(described, "clip", folder, CLIP_VALID) if described.has("clip") else folder / "clip.mp4"
         )
     settings = read_settings(described, folders)
     keyframes = settings.keyframes or (folder / KEYFRAMES if whole else beside(place, KEYFRAMES))
     used = [*files, clip, keyframes, *_linked_images(clip)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
-    check_links(used, [files[0].parent if shared else folder, folder])
+    check_symlinks(used, [files[0].parent if shared else folder, folder])
     return Description(
         place=place,
         name=whole_way(place).name if whole else clip_name(place),

@@ -85,7 +85,7 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
 
 def _index(row: Fields, frame_start: int, frame_count: int | None) -> int:
     last = frame_start + (frame_count or 10**6) - 1
-    frame = row.whole("frame", -(10**7), 10**7)
+    frame = row.integer("frame", -(10**7), 10**7)
     if not frame_start <= frame <= last:
         clip = (
             f"the clip's frames are {frame_start} to {last}"

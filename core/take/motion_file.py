@@ -69,14 +69,14 @@ def read_motion(path: Path) -> Motion:
     """
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
     fields.check_version(SCHEMA_VERSION)
-    count = fields.whole("frame_count", 1, 10**6)
+    count = fields.integer("frame_count", 1, 10**6)
     lengths = fields.child("actor", "an object with segments_m").child("segments_m", "an object of lengths")
     try:
         body = Body(Actor(lengths.values))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     skeleton = body.skeleton
-    frame_start = fields.whole("frame_start", -(10**7), 10**7)
+    frame_start = fields.integer("frame_start", -(10**7), 10**7)
     if fields.has("sigma_m"):
         _rows(fields, "sigma_m", skeleton.point_names, (count,))  # the covariance says it too
     return Motion(

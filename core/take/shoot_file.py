@@ -6,7 +6,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files.fields import Fields
-from ..files.inherited_fields import COMMENT
+from ..files.inherited_fields import COMMENT_PREFIX
 from ..files.json_file import read_json, shown
 
 NAME = "shoot.json"
@@ -32,7 +32,7 @@ def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
         InputError: It is of a newer Keymark, or has a field that is not known.
     """
     fields = Fields(values, str(path))
-    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
+    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT_PREFIX))])
     if fields.has("schema_version"):
         fields.check_version(SCHEMA_VERSION)
     if not isinstance(values.get("root", False), bool):

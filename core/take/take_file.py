@@ -11,10 +11,10 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.shapes import TRUNK
 from ..errors import InputError
-from ..files.control_characters import is_hidden
+from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
-from ..files.inherited_fields import Inherited
-from ..files.json_file import shown, write_json, write_whole
+from ..files.inherited_fields import InheritedFields
+from ..files.json_file import shown, write_atomically, write_json
 from ..footage.camera import Camera
 from ..footage.marker_style import MarkerStyle
 from .clip_check import open_footage
@@ -64,8 +64,8 @@ def read_described(
     if description.inherits:
         fields = _with_the_clip(fields, description.clip)
     from_clip = description.inherits and not fields.has("frame_start")
-    frame_start = 1 if from_clip else fields.whole("frame_start", -(10**6), 10**6)
-    frame_count = fields.whole("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
+    frame_start = 1 if from_clip else fields.integer("frame_start", -(10**6), 10**6)
+    frame_count = fields.integer("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
     body = _body(fields)
     camera = _camera(fields, frame_count)
     posed = keyframes or description.keyframes
@@ -125,13 +125,13 @@ def _clip_inside(take: Take, folder: Path) -> str:
             f"{take.clip}: no such file or folder; only a video or a folder of images can be copied"
         )
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
-    write_whole(folder / source.name, lambda beside: copy(source, beside))
+    write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name
 
 
 def _with_the_clip(fields: Fields, path: Path) -> Fields:
     """The fields with rate and size from the clip itself, where the shoot leaves them out."""
-    assert isinstance(fields.values, Inherited)
+    assert isinstance(fields.values, InheritedFields)
     camera = fields.values.get("camera")
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
     if fields.has("fps") and sized:
@@ -142,7 +142,7 @@ def _with_the_clip(fields: Fields, path: Path) -> Fields:
         told["fps"] = clip.fps
     if not sized:
         told["camera"] = {"resolution": list(clip.size)}
-    return Fields(fields.values.patched(told, str(path)), fields.where)
+    return Fields(fields.values.overridden_by(told, str(path)), fields.where)
 
 
 def _camera(fields: Fields, frame_count: int | None) -> Camera:
@@ -165,7 +165,7 @@ def _body(fields: Fields) -> Body:
     try:
         return Body(Actor(lengths))
     except InputError as error:
-        raise InputError(f"{fields.at('actor')}: {error}") from error
+        raise InputError(f"{fields.source_of('actor')}: {error}") from error
 
 
 def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
@@ -189,7 +189,7 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
 
 
 def _marker(markers: Fields, name: str) -> MarkerStyle:
-    if not name.strip() or len(name) > LONGEST_MARKER or any(map(is_hidden, name)):
+    if not name.strip() or len(name) > LONGEST_MARKER or any(map(is_control_character, name)):
         raise InputError(
             f"{markers.where}: a marker is called {shown(name)}; its name must be one line of at most "
             f"{LONGEST_MARKER} characters that can be seen"

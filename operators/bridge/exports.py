@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import ConversionError, InputError
-from ...core.files.json_file import write_whole
+from ...core.files.json_file import write_atomically
 from .result_files import write_bvh
 from .scene_frames import showing_action
 
@@ -93,7 +93,7 @@ def export_motion(
             if not beside.exists():
                 raise ConversionError(f"{path}: the exporter wrote nothing")
 
-        write_whole(path, write)
+        write_atomically(path, write)
 
 
 @contextmanager

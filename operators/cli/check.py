@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
 
-from ...core.errors import ConversionError, unexpected
+from ...core.errors import ConversionError, describe_unexpected
 from ...core.progress import Job, Progress, run
 from ...core.shoot.check.odd_takes import with_odd_ones
 from ...core.shoot.check.take_check import TakeCheck, check_take
@@ -64,7 +64,7 @@ def _look(
     except Exception as error:
         if debug:
             raise
-        what = unexpected(error)
+        what = describe_unexpected(error)
         said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
         return TakeCheck(take.name, (said,), ())
 

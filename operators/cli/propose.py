@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ...core.arrays import Array, IndexArray
-from ...core.files.json_file import write_whole
+from ...core.files.json_file import write_atomically
 from ...core.footage.markers import track_markers
 from ...core.prior.marker_speed import marker_speed, propose_keyframes
 from ...core.progress import Job, run, within
@@ -38,4 +38,4 @@ def _speed(take: Take) -> Job[Array]:
 
 def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
     picture = speed_plot(speed, [int(index) for index in indices], start)
-    write_whole(path, lambda beside: write_png(str(beside), picture))
+    write_atomically(path, lambda beside: write_png(str(beside), picture))

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import bpy
 
 from ...core.errors import ConversionError
+from ...core.files.array_cache import ArrayCache
 from ...core.files.digest import digest
-from ...core.files.store import Store
 
 if TYPE_CHECKING:
     from ...core.estimate.reconstruct import Reconstruction
-    from ...core.files.store import Arrays, Store
+    from ...core.files.array_cache import Arrays
     from ...core.footage.reading import Reading
     from ...core.review.review import Review
 
@@ -148,12 +148,12 @@ def _save(key: str, arrays: "Arrays") -> None:
         _store().save(key, arrays)
 
 
-def _store() -> "Store":
+def _store() -> "ArrayCache":
     try:
         folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
     except ValueError:  # not installed as an extension
         folder = Path(bpy.app.tempdir) / FOLDER
-    return Store(folder)
+    return ArrayCache(folder)
 
 
 def register() -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...files.fields import Fields
-from ...files.inherited_fields import child_place
+from ...files.inherited_fields import child_location
 
 _CAMERA = {
     "lens_mm": "the focal length in millimeters",
@@ -40,8 +40,8 @@ def unfilled(fields: Fields) -> tuple[str, ...]:
 def _child(fields: Fields, name: str) -> Fields:
     value: Any = fields.values.get(name)
     values: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
-    return Fields(values, child_place(fields.at(name), name))
+    return Fields(values, child_location(fields.source_of(name), name))
 
 
 def _sentence(fields: Fields, name: str, valid: str) -> str:
-    return f"{fields.at(name)}: {name} is still to be filled in: {valid}"
+    return f"{fields.source_of(name)}: {name} is still to be filled in: {valid}"

@@ -6,10 +6,10 @@ from typing import Any
 
 from ...errors import InputError
 from ...files.fields import Fields
-from ...files.inherited_fields import COMMENT
+from ...files.inherited_fields import COMMENT_PREFIX
 from ...files.json_file import parse_json, shown
-from ...files.regular_file import ordinary_size
-from ...files.safe_path import check_links, inside_path
+from ...files.regular_file import regular_file_size
+from ...files.safe_path import check_symlinks, safe_path
 from ...take.description import clip_name
 from ...take.shoot_file import SETTINGS, SHARED
 from ..shoot import Shoot, ShootTake
@@ -49,7 +49,7 @@ def read_take_list(path: Path) -> Shoot:
 
 def _lines(path: Path) -> list[str]:
     valid = "it must be a list of takes in UTF-8, one JSON object a line"
-    ordinary_size(path, "a list of takes in UTF-8, one JSON object a line")
+    regular_file_size(path, "a list of takes in UTF-8, one JSON object a line")
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_BYTES + 1)
@@ -68,9 +68,9 @@ def _take(path: Path, where: str, line: str) -> ShootTake:
         raise InputError(f"{where}: has {len(line)} characters; at most {LONGEST_LINE_BYTES} are read")
     values: dict[str, Any] = parse_json(line, where)
     fields = Fields(values, where)
-    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
-    place = inside_path(fields, TAKE, path.parent, TAKE_VALID)
-    check_links([place], [path.parent])
+    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT_PREFIX))])
+    place = safe_path(fields, TAKE, path.parent, TAKE_VALID)
+    check_symlinks([place], [path.parent])
     way = place.relative_to(path.parent)
     if not way.parts:
         raise InputError(f"{where}: {TAKE} is {shown(values[TAKE])}; it must be {TAKE_VALID}")

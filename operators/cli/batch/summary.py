@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ....core.files.json_file import write_whole
+from ....core.files.json_file import write_atomically
 from ....core.report.summary.html_text import way_to
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.verdict import result
@@ -36,7 +36,7 @@ def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tu
     lines = "".join(f"{json.dumps(line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
     page = summary_page(whole_way(shoot.path).name, ordered, output)
     for name, text in ((LINES, lines), (PAGE, page)):
-        write_whole(output / name, lambda beside, text=text: _write(beside, text))
+        write_atomically(output / name, lambda beside, text=text: _write(beside, text))
     return (output / LINES, output / PAGE)
 
 

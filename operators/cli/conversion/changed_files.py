@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.commit import free_name
+from ....core.files.commit import backup_name
 from ....core.files.digest import content_digest
 from ....core.files.json_file import read_json, write_json
 from ....core.take.conversion_record import NAME, read_record
@@ -45,7 +45,7 @@ def changed_files(
             continue
         digest = content_digest(there)
         if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
-            kept[name] = free_name(there).relative_to(output).as_posix()
+            kept[name] = backup_name(there).relative_to(output).as_posix()
     return kept
 
 

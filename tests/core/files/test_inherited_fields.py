@@ -7,16 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
-from keymark.core.files.inherited_fields import ALTERNATIVES, Inherited, child_place
+from keymark.core.files.inherited_fields import ALTERNATIVES, InheritedFields, child_location
 
 FAR, NEAR = "/shoot/shoot.json", "/shoot/take/take.json"
 
 
-def merged(*patches: dict[str, Any]) -> Inherited:
+def merged(*patches: dict[str, Any]) -> InheritedFields:
     """Objects over each other, the farthest first; their places are `0.json`, `1.json` and so on."""
-    fields = Inherited()
+    fields = InheritedFields()
     for index, patch in enumerate(patches):
-        fields = fields.patched(patch, f"{index}.json")
+        fields = fields.overridden_by(patch, f"{index}.json")
     return fields
 
 
@@ -25,14 +25,14 @@ def test_the_nearer_field_counts_and_objects_are_merged() -> None:
     far = {"fps": 24, "camera": {"lens_mm": 35.0, "resolution": [640, 480]}}
     fields = merged(far, {"fps": 30, "camera": {"resolution": [320, 240]}})
     assert fields == {"fps": 30, "camera": {"lens_mm": 35.0, "resolution": [320, 240]}}
-    assert fields.places == {"fps": "1.json", "camera": "1.json"}
-    assert fields["camera"].places == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
+    assert fields.sources == {"fps": "1.json", "camera": "1.json"}
+    assert fields["camera"].sources == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
 
 
 def test_null_takes_an_inherited_field_away_and_is_itself_where_there_is_none() -> None:
     """Then the sentence can say that it is null."""
     fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
-    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.places
+    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.sources
     with pytest.raises(InputError, match=r"^1\.json: fps is null"):
         Fields(merged({}, {"fps": None}), "1.json").number("fps", 1, 2)
 
@@ -40,7 +40,7 @@ def test_null_takes_an_inherited_field_away_and_is_itself_where_there_is_none() 
 def test_what_was_taken_away_can_be_said_again() -> None:
     """By a file that is nearer still."""
     fields = merged({"method": "ekf"}, {"method": None}, {"method": "map"})
-    assert fields == {"method": "map"} and fields.places == {"method": "2.json"}
+    assert fields == {"method": "map"} and fields.sources == {"method": "2.json"}
 
 
 @pytest.mark.parametrize("pair", [*ALTERNATIVES, *(pair[::-1] for pair in ALTERNATIVES)])
@@ -74,17 +74,17 @@ def test_an_object_takes_the_place_of_what_is_none_and_the_other_way_round() -> 
 )
 def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) -> None:
     """And where nobody says it, the nearest."""
-    fields = Inherited().patched({"camera": {"lens_mm": -1}}, FAR)
-    fields = fields.patched({"camera": {"sensor_width_mm": "x"}}, NEAR)
+    fields = InheritedFields().overridden_by({"camera": {"lens_mm": -1}}, FAR)
+    fields = fields.overridden_by({"camera": {"sensor_width_mm": "x"}}, NEAR)
     with pytest.raises(InputError, match=said):
         Fields(fields, NEAR).child("camera", "an object").number(field, 0, 1)
 
 
 def test_places_of_objects_read_well() -> None:
     """The file, then the way in it."""
-    assert child_place("a.json", "camera") == "a.json: camera"
-    assert child_place("a.json: camera", "lens") == "a.json: camera.lens"
-    assert child_place("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
+    assert child_location("a.json", "camera") == "a.json: camera"
+    assert child_location("a.json: camera", "lens") == "a.json: camera.lens"
+    assert child_location("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
 
 
 VALUES = st.recursive(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from _faults import GROWING, Killed, disk_full, faulty_calls, killed, tree
 from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
-from keymark.core.files.commit import free_name
+from keymark.core.files.commit import backup_name
 from keymark.core.files.output_folder import output_folder
 
 SEAL = "seal.json"
@@ -211,7 +211,7 @@ def test_a_second_file_kept_beside_gets_a_name_of_its_own(tmp_path: Path) -> Non
     """Nothing kept is replaced."""
     for name in ("motion.blend", "motion (changed).blend"):
         (tmp_path / name).touch()
-    assert free_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
+    assert backup_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
 
 
 def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:

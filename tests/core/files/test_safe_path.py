@@ -6,14 +6,14 @@ from pathlib import Path
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
-from keymark.core.files.safe_path import LONGEST, LONGEST_PART, check_links, inside_path
+from keymark.core.files.safe_path import LONGEST_NAME_BYTES, LONGEST_PATH, check_symlinks, safe_path
 
 VALID = "a path inside the folder"
 
 
 def inside(text: object, folder: Path) -> Path:
     """The path in a field."""
-    return inside_path(Fields({"clip": text}, "take.json"), "clip", folder, VALID)
+    return safe_path(Fields({"clip": text}, "take.json"), "clip", folder, VALID)
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def test_a_path_inside_is_taken(text: str, tmp_path: Path) -> None:
     [
         *("", " ", ".", "./", "..", "../x", "a/../../x", "a\\..\\..\\x", "/x", "\\x", "C:\\x", "C:x"),
         *("\\\\server\\share\\x", "//server/x", "a\0b", "a\nb", "a\u202eb", "a\x1b[31mb", "\ud800"),
-        *("x" * (LONGEST_PART + 1), "\u30c7" * 100, "x/" * LONGEST, 7, None, ["clip.mp4"]),
+        *("x" * (LONGEST_NAME_BYTES + 1), "\u30c7" * 100, "x/" * LONGEST_PATH, 7, None, ["clip.mp4"]),
     ],
 )
 def test_any_other_path_is_refused(text: object, tmp_path: Path) -> None:
@@ -63,11 +63,11 @@ def test_links_must_stay_in_one_of_the_folders(tmp_path: Path) -> None:
         (tmp_path / "same").symlink_to(home)
     except OSError:
         pytest.skip("no links here")
-    check_links([home / "file", home / "near", home / "none", tmp_path / "same" / "near"], [home])
-    check_links([home / "far"], [home, other])
+    check_symlinks([home / "file", home / "near", home / "none", tmp_path / "same" / "near"], [home])
+    check_symlinks([home / "far"], [home, other])
     for name in ("far", "by", "folder/file", "folder"):
         with pytest.raises(InputError, match="leads by a link to .*it must stay inside"):
-            check_links([home / name], [home])
+            check_symlinks([home / name], [home])
 
 
 def test_a_circle_of_links_is_left_to_who_opens_it(tmp_path: Path) -> None:
@@ -76,4 +76,4 @@ def test_a_circle_of_links_is_left_to_who_opens_it(tmp_path: Path) -> None:
         os.symlink(tmp_path / "a", tmp_path / "a")
     except OSError:
         pytest.skip("no links here")
-    check_links([tmp_path / "a"], [tmp_path])
+    check_symlinks([tmp_path / "a"], [tmp_path])

@@ -24,7 +24,7 @@ LIMITS = {
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
     f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
     f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
-    f"{safe_path.LONGEST} characters; {safe_path.LONGEST_PART} bytes": "a path; a name in it",
+    f"{safe_path.LONGEST_PATH} characters; {safe_path.LONGEST_NAME_BYTES} bytes": "a path; a name in it",
     f"{find_takes.MOST_TAKES}": "takes of a shoot",
     f"{take_file.MOST_FRAMES}": "frames of a take",
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",

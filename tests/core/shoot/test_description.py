@@ -47,7 +47,7 @@ def test_the_nearest_file_counts(shoot: Path) -> None:
     take_in(take, method="interpolation")
     assert settings_of(take).method == "interpolation" and settings_of(take).floor_m == 1.0
     assert settings_of(take, method="map").method == "map"
-    assert describe(take).fields.at("fps") == str(shoot / "shoot.json")
+    assert describe(take).fields.source_of("fps") == str(shoot / "shoot.json")
     assert describe(take).files == (shoot / "shoot.json", shoot / "day" / "shoot.json", take / "take.json")
 
 
