@@ -1,4 +1,4 @@
-"""Locks that die with their process, and single files that are written whole under them."""
+"""Locks that end with their process, and single files that are written atomically under them."""
 
 import errno
 import os
@@ -25,7 +25,7 @@ sys.stdin.read()
 
 @pytest.mark.skipif(os.name == "nt", reason="uses the other kind of lock")
 def test_a_lock_dies_with_its_process(tmp_path: Path) -> None:
-    """Another process' lock is respected until it is killed; the file it leaves means nothing."""
+    """The lock of another process is respected until that is killed; the file it leaves means nothing."""
     file = tmp_path / "a.lock"
     words = [sys.executable, "-c", HOLD, str(file)]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
@@ -57,14 +57,14 @@ def test_where_there_are_no_locks_work_goes_on(tmp_path: Path, monkeypatch: pyte
         pass
 
 
-def test_hidden_names_are_short_and_tell_places_apart() -> None:
-    """Whatever the place is called."""
+def test_hidden_prefixes_are_short_and_different() -> None:
+    """For names of any length and script."""
     names = [hidden_prefix(name) for name in ("a", "b", "n" * 255, "舞者", os.fsdecode(b"\xff"))]
     assert len(set(names)) == len(names) and all(len(name.encode()) == len(names[0]) < 40 for name in names)
 
 
 def test_who_writes_the_same_file_waits(tmp_path: Path) -> None:
-    """Both files were written whole, one after the other; nothing is left but the later one."""
+    """Both are written completely, one after the other; nothing is left but the later one."""
     inside, order = threading.Event(), []
 
     def first(beside: Path) -> None:
