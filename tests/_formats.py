@@ -13,7 +13,7 @@ from _synthetic_take import BODY, true_postures, write_json, write_synthetic_tak
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.review.score import read_truth
-from keymark.core.shoot.finding.take_list import read_take_list
+from keymark.core.shoot.discovery.take_list import read_take_list
 from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes

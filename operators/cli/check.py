@@ -7,9 +7,9 @@ from functools import cache, partial
 
 from ...core.errors import ConversionError, describe_unexpected
 from ...core.progress import Job, Progress, run
-from ...core.shoot.check.odd_takes import with_odd_ones
+from ...core.shoot.check.outlier_takes import with_odd_ones
 from ...core.shoot.check.take_check import TakeCheck, check_take
-from ...core.shoot.finding.open_shoot import open_shoot
+from ...core.shoot.discovery.open_shoot import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.take.conversion_settings import ConversionSettings
 from ...core.text import pluralize

@@ -4,7 +4,7 @@ import argparse
 from dataclasses import replace
 from typing import Any
 
-from ...core.shoot.finding.take_location import take_place
+from ...core.shoot.discovery.take_path import take_place
 from ...core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.take.description import Description, chosen_settings, describe
 from .console import arguments_console

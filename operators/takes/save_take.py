@@ -41,7 +41,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and write the folder."""
         with reported(self):
-            from ...core.shoot.finding.take_location import check_free
+            from ...core.shoot.discovery.take_path import check_free
             from ...core.take.take_file import write_take
             from ..bridge.take_from_scene import read_scene_take
 

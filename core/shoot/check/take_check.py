@@ -13,7 +13,7 @@ from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
 from ..shoot import ShootTake
-from .effort import Effort, effort
+from .cost_estimate import Effort, effort
 from .findings import Findings
 from .footage_check import check_footage, count_frames
 from .keyframe_check import check_keyframes

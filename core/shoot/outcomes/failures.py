@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...files.fields import Fields
 from ...files.json_file import read_json, write_json
 from ...take.description import clip_name
-from ..finding.take_names import RESERVED, name_of_way
+from ..discovery.take_names import RESERVED, name_of_way
 from ..shoot import Shoot
 
 FOLDER = Path(RESERVED[0]) / "failures"

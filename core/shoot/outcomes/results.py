@@ -7,7 +7,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...take.conversion_record import NAME, ConversionRecord, read_record
 from ...take.shoot_file import whole_way
-from ..finding.take_names import name_of_way
+from ..discovery.take_names import name_of_way
 
 
 @dataclass(frozen=True, eq=False)

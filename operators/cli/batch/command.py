@@ -12,8 +12,8 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
-from ....core.shoot.finding.open_shoot import open_shoot
-from ....core.shoot.finding.take_names import check_output
+from ....core.shoot.discovery.open_shoot import open_shoot
+from ....core.shoot.discovery.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ..console import Console, arguments_console

@@ -11,7 +11,7 @@ from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
-from keymark.core.shoot.finding import find_takes, take_list
+from keymark.core.shoot.discovery import find_takes, take_list
 from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
 
 MIB = 2**20

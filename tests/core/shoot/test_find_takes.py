@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.shoot.finding import find_takes as finding
-from keymark.core.shoot.finding import take_list
-from keymark.core.shoot.finding.find_takes import find_takes
-from keymark.core.shoot.finding.open_shoot import open_shoot
-from keymark.core.shoot.finding.take_names import check_output
+from keymark.core.shoot.discovery import find_takes as discovery
+from keymark.core.shoot.discovery import take_list
+from keymark.core.shoot.discovery.find_takes import find_takes
+from keymark.core.shoot.discovery.open_shoot import open_shoot
+from keymark.core.shoot.discovery.take_names import check_output
 
 
 def make(folder: Path, *ways: str) -> Path:
@@ -126,11 +126,11 @@ def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytes
 def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sentence, not a long search."""
     shoot = make(tmp_path / "shoot", "/".join(["d"] * 6) + "/take.json", "a/take.json", "b/take.json")
-    monkeypatch.setattr(finding, "DEEPEST", 4)
+    monkeypatch.setattr(discovery, "DEEPEST", 4)
     with pytest.raises(InputError, match="more than 4 folders deep"):
         find_takes(shoot)
     monkeypatch.undo()
-    monkeypatch.setattr(finding, "MOST_TAKES", 2)
+    monkeypatch.setattr(discovery, "MOST_TAKES", 2)
     with pytest.raises(InputError, match="more than 2 takes"):
         find_takes(shoot)
 

@@ -1,8 +1,8 @@
 """Clips unlike the rest of their shoot, and what a shoot asks for."""
 
 import pytest
-from keymark.core.shoot.check.effort import effort
-from keymark.core.shoot.check.odd_takes import with_odd_ones
+from keymark.core.shoot.check.cost_estimate import effort
+from keymark.core.shoot.check.outlier_takes import with_odd_ones
 from keymark.core.shoot.check.take_check import TakeCheck
 
 
