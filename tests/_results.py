@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 from _faults import tree
 from keymark.core.files.digest import content_digest
-from keymark.core.files.output_folder import real_path
+from keymark.core.files.paths import real_path
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.curve_digest import curve_digest
 from keymark.operators.cli.conversion.changed_files import AS_MADE

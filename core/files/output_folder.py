@@ -10,6 +10,7 @@ from ..errors import ConversionError, InputError, KeymarkError
 from .commit import Commit, Moves, clean_up, files_below, roll_back, roll_forward, write_journal
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .fsync import DISK_ERRORS
+from .paths import real_path
 from .recovery import recover
 
 NO_BACKUPS: Mapping[str, str] = {}
@@ -100,12 +101,6 @@ def _make_folder(folder: Path) -> None:
         with suppress(OSError):
             folder.rmdir()
         raise
-
-
-def real_path(path: Path) -> Path:
-    """An absolute path, links resolved, that begins with one slash: two have a meaning in Blender."""
-    real = os.path.realpath(path)
-    return Path("/" + real.lstrip("/") if real.startswith("//") else real)
 
 
 def _target_folder(path: Path) -> Path:

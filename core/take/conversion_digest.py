@@ -12,7 +12,7 @@ from ..footage.clips.image_sequence import find_images
 from .conversion_settings import ConversionSettings
 from .description import Description
 from .methods import METHODS
-from .shoot_file import OWN, SETTINGS
+from .shoot_file import FILE_FIELDS, SETTING_FIELDS
 
 FORMAT = 1
 """Raised whenever the same input gives another result without a new version."""
@@ -64,7 +64,7 @@ def conversion_digest(
 
 def _said(fields: Mapping[str, Any]) -> str:
     """What is said of the take itself; of its markers also in which order, which is that of the results."""
-    said = {name: value for name, value in fields.items() if name not in (*OWN, *SETTINGS)}
+    said = {name: value for name, value in fields.items() if name not in (*FILE_FIELDS, *SETTING_FIELDS)}
     markers = said.get("markers")
     if isinstance(markers, Mapping):
         said["markers"] = list(markers.items())

@@ -15,7 +15,7 @@ from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
 from ..files.safe_path import safe_path
 
-NAME = "conversion.json"
+RECORD_FILE = "conversion.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**22
 MOST_LISTED = 10**6
@@ -64,7 +64,7 @@ def write_record(folder: Path, record: ConversionRecord) -> None:
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_json(folder / NAME, {"schema_version": SCHEMA_VERSION, **asdict(record)}, indent=1)
+    write_json(folder / RECORD_FILE, {"schema_version": SCHEMA_VERSION, **asdict(record)}, indent=1)
 
 
 def read_record(folder: Path) -> ConversionRecord:
@@ -73,7 +73,7 @@ def read_record(folder: Path) -> ConversionRecord:
     Raises:
         InputError: There is none, or a field is unusable.
     """
-    path = folder / NAME
+    path = folder / RECORD_FILE
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
     fields.check_version(SCHEMA_VERSION)
     return ConversionRecord(
@@ -95,7 +95,7 @@ def read_record(folder: Path) -> ConversionRecord:
     )
 
 
-def record_if_any(folder: Path) -> ConversionRecord | None:
+def find_record(folder: Path) -> ConversionRecord | None:
     """A folder's record; None where there is none, or none that can be read."""
     try:
         return read_record(folder)
@@ -103,9 +103,9 @@ def record_if_any(folder: Path) -> ConversionRecord | None:
         return None
 
 
-def is_finished(folder: Path, digest: str) -> bool:
+def is_up_to_date(folder: Path, digest: str) -> bool:
     """Whether a folder holds the whole result of a conversion with this digest."""
-    record = record_if_any(folder)
+    record = find_record(folder)
     if record is None:
         return False
     return record.digest == digest and all(os.path.isfile(folder / name) for name in record.files)

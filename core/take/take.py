@@ -7,7 +7,7 @@ from ..body.kinematics import Body
 from ..footage.camera import Camera
 from ..footage.marker_style import MarkerStyle
 from ..prior.keyframes import Keyframe
-from .description import OWN
+from .description import TAKE_FILE
 
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimeters."""
@@ -37,7 +37,7 @@ class Take:
     @property
     def file(self) -> Path:
         """The file that describes it."""
-        return self.described_in or self.folder / OWN
+        return self.described_in or self.folder / TAKE_FILE
 
     @property
     def name(self) -> str:

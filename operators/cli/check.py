@@ -7,9 +7,9 @@ from functools import cache, partial
 
 from ...core.errors import ConversionError, describe_unexpected
 from ...core.progress import Job, Progress, run
-from ...core.shoot.check.outlier_takes import with_odd_ones
+from ...core.shoot.check.outlier_takes import flag_outliers
 from ...core.shoot.check.take_check import TakeCheck, check_take
-from ...core.shoot.discovery.open_shoot import open_shoot
+from ...core.shoot.discovery.find_takes import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.take.conversion_settings import ConversionSettings
 from ...core.text import pluralize
@@ -52,7 +52,7 @@ def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -
     for index, check in _some_at_a_time(looks, jobs):
         checks[index] = check
         yield Progress(STAGE, len(checks) / len(looks))
-    return with_odd_ones([checks[index] for index in sorted(checks)])
+    return flag_outliers([checks[index] for index in sorted(checks)])
 
 
 def _look(
@@ -65,7 +65,7 @@ def _look(
         if debug:
             raise
         what = describe_unexpected(error)
-        said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        said = f"{take.path}: looking at it failed unexpectedly ({what}); --debug shows where"
         return TakeCheck(take.name, (said,), ())
 
 

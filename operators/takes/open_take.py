@@ -50,10 +50,10 @@ class KEYMARK_OT_open_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the take, and only then change the scene."""
         with reported(self):
-            from ...core.shoot.discovery.take_path import take_place
+            from ...core.shoot.discovery.take_path import take_path
             from .take_to_scene import read_for_scene, show_take
 
-            opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)
+            opened = read_for_scene(take_path(Path(bpy.path.abspath(self.filepath))), self.keyframes)
             show_take(context, opened)
             look_through_camera(context, active_take(context.scene))
             show_range(context)

@@ -41,7 +41,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and write the folder."""
         with reported(self):
-            from ...core.shoot.discovery.take_path import check_free
+            from ...core.shoot.discovery.take_path import check_hides_no_take
             from ...core.take.take_file import write_take
             from ..bridge.take_from_scene import read_scene_take
 
@@ -58,7 +58,7 @@ class KEYMARK_OT_save_take(bpy.types.Operator):
                 )
             )
             folder = Path(bpy.path.abspath(self.directory))
-            check_free(folder)
+            check_hides_no_take(folder)
             folder.mkdir(parents=True, exist_ok=True)
             write_take(take, folder)
             for note in notes:

@@ -1,1 +1,1 @@
-"""The takes of a shoot, found below a folder or read from a list, and what they may be called."""
+"""Discovery of a shoot's takes, below a folder or in a list, and the rules for their names."""

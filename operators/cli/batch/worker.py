@@ -61,7 +61,7 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
         result, error, kind = FAILED, str(failed), CONVERSION
     except OSError as wrong:
         reason = wrong.strerror or wrong
-        result, error, kind = FAILED, f"{job.take.place}: cannot be converted ({reason})", CONVERSION
+        result, error, kind = FAILED, f"{job.take.path}: cannot be converted ({reason})", CONVERSION
     except Exception as unknown:
         what = describe_unexpected(unknown)
         result, error, kind = FAILED, f"failed unexpectedly ({what}); convert --debug shows where", CRASH

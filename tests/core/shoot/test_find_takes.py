@@ -8,8 +8,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.shoot.discovery import find_takes as discovery
 from keymark.core.shoot.discovery import take_list
-from keymark.core.shoot.discovery.find_takes import find_takes
-from keymark.core.shoot.discovery.open_shoot import open_shoot
+from keymark.core.shoot.discovery.find_takes import find_takes, open_shoot
 from keymark.core.shoot.discovery.take_names import check_output
 
 
@@ -139,7 +138,7 @@ def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
     """Its results have a folder of their own."""
     shoot = make(tmp_path / "shoot", "shoot.json", "day/x.mp4", "day/y.mp4")
     (take,) = open_shoot(shoot / "day" / "x.mp4").takes
-    assert (take.name, take.place) == ("x", shoot / "day" / "x.mp4")
+    assert (take.name, take.path) == ("x", shoot / "day" / "x.mp4")
 
 
 @pytest.mark.parametrize(
@@ -181,7 +180,7 @@ def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
     shoot = open_shoot(listed)
     assert [take.name for take in shoot.takes] == ["a", "day/x"] and shoot.folder == tmp_path
     x = shoot.takes[1]
-    assert (x.place, x.said_in) == (tmp_path / "day" / "x.mp4", f"{listed}, line 1")
+    assert (x.path, x.overrides_location) == (tmp_path / "day" / "x.mp4", f"{listed}, line 1")
     assert x.describe().settings.method == "ekf"
 
 
