@@ -10,11 +10,11 @@ from ..footage.clips.clip import Clip
 from .take import Take
 
 LONGEST_FRAMES = 40_000
-"""Of one take: twenty minutes at 30 a second, for which an estimate needs about two and a half gigabytes."""
+"""Twenty minutes at 30 frames a second, for which an estimate needs about two and a half gigabytes."""
 
 
 def open_clip(take: Take) -> Clip:
-    """Open a take's clip and check what `take.json` says of it.
+    """Open a take's clip and check `take.json` against it.
 
     Raises:
         InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
@@ -24,14 +24,14 @@ def open_clip(take: Take) -> Clip:
     check_size(take, clip)
     count = clip.frame_count
     if count > LONGEST_FRAMES or take.frame_count not in (None, count):
-        # Containers may claim a wrong number; decoding tells.
+        # Containers may claim a wrong number; decoding counts.
         count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
     check_frame_count(take, count)
     return clip
 
 
 def open_footage(path: Path, fps: float | None) -> Clip:
-    """Open a clip, of whatever take; `fps` is the rate of images.
+    """Open a clip without its take; `fps` is the rate of an image sequence.
 
     Raises:
         InputError: It is missing or unreadable.
@@ -43,21 +43,21 @@ def open_footage(path: Path, fps: float | None) -> Clip:
 
 
 def check_size(take: Take, clip: Clip) -> None:
-    """Hold the size of a clip's frames against the take.
+    """Check the size of a clip's frames against the camera's resolution.
 
     Raises:
-        InputError: The camera's resolution is another.
+        InputError: They differ.
     """
     if clip.size != take.camera.resolution:
         raise InputError(
             f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
             f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-            f"{_turned(take, clip)}"
+            f"{_rotation_hint(take, clip)}"
         )
 
 
-def _turned(take: Take, clip: Clip) -> str:
-    """What to do where width and height are swapped."""
+def _rotation_hint(take: Take, clip: Clip) -> str:
+    """The rest of the sentence where width and height are swapped."""
     if clip.size != take.camera.resolution[::-1]:
         return ""
     return (
@@ -67,12 +67,12 @@ def _turned(take: Take, clip: Clip) -> str:
 
 
 def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
-    """Hold the number of frames that a clip really has against the take.
+    """Check the true number of a clip's frames against the take.
 
     Args:
         take: The take.
-        count: The frames that there are.
-        claimed: Those that the clip's file says there are.
+        count: Number of frames that can be decoded.
+        claimed: Number of frames that the clip's file claims.
 
     Raises:
         InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
@@ -87,7 +87,7 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "
-            f"{take.clip.name} holds {count} frames that can be decoded{_cut_off(count, claimed)}"
+            f"{take.clip.name} holds {count} frames that can be decoded{_damage_hint(count, claimed)}"
         )
     if take.camera.is_moving and len(take.camera.matrix_world) < count:
         poses = len(take.camera.matrix_world)
@@ -100,19 +100,19 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
             raise InputError(
                 f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
                 f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
-                f"{_cut_off(count, claimed)}"
+                f"{_damage_hint(count, claimed)}"
             )
 
 
-def _cut_off(count: int, claimed: int) -> str:
-    """What may be the matter where a file claims more frames than there are."""
+def _damage_hint(count: int, claimed: int) -> str:
+    """The rest of the sentence where a file claims more frames than it has."""
     if count >= claimed:
         return ""
     return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
 
 
 def check_in_front(take: Take) -> None:
-    """Hold the keyframes against the camera: what lies behind it can leave nothing in its picture.
+    """Check that the camera sees the keyframes.
 
     Raises:
         InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.

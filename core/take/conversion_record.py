@@ -1,6 +1,7 @@
-"""`conversion.json`: what a finished conversion was made of and what came out, beside its files.
+"""`conversion.json`: the record of a finished conversion, its input digest, notes and files.
 
-It is the last file to arrive and the first to go, so that files without it are never taken for whole.
+It is the manifest of the result's commit: written last and removed first, so that a folder without it never
+counts as finished.
 """
 
 import os
@@ -27,39 +28,39 @@ _SHA256 = re.compile(r"[0-9a-f]{64}", re.ASCII)
 
 @dataclass(frozen=True)
 class ConversionRecord:
-    """A finished conversion. Nothing in it depends on when, where or how fast it ran."""
+    """The record of a finished conversion; nothing in it depends on time, folder or speed of the run."""
 
     digest: str
-    """Of everything the result follows from, see `conversion_digest`."""
+    """Digest of the input, see `conversion_digest`."""
     keymark: str
-    """The version that made it."""
+    """Keymark's version."""
     take: str
-    """What people call the take."""
+    """Name of the take."""
     method: str
     library: str | None
-    """Identifier of the library that was matched; None where all was posed."""
+    """Identifier of the library that was matched; None where all keyframes are posed."""
     frames: int
     frame_start: int
     fps: float
     keyframes: tuple[int, ...]
     """Scene frames."""
     matched: tuple[int, ...]
-    """Those of them that were matched with a library; a person posed the others."""
+    """Scene frames of the keyframes that were matched with a library; a person posed the others."""
     confidence: float | None
-    """Mean over the frames of what a review believes, 0 to 1; None for a method without uncertainty."""
+    """Mean confidence of the frames, 0 to 1; None for a method without uncertainty."""
     weakest: float | None
-    """Confidence that one frame in twenty falls short of."""
+    """Confidence that one frame in twenty falls short of: the 5th percentile."""
     weak_frames: tuple[int, ...]
-    """Scene frames worth another keyframe, the worst first."""
+    """Scene frames that need another keyframe, the worst first."""
     notes: tuple[str, ...]
-    """What a person should know, one sentence each."""
+    """Notes for a person, one sentence each."""
     files: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of every file of the result, by its path in the folder; for motion.blend, in which Blender
     leaves memory addresses, that of its Action's curves."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
-    """Write a record into a folder of results, beside and moved into place.
+    """Write a record into a folder of results, atomically.
 
     Raises:
         ConversionError: The file cannot be written.
@@ -96,7 +97,7 @@ def read_record(folder: Path) -> ConversionRecord:
 
 
 def find_record(folder: Path) -> ConversionRecord | None:
-    """A folder's record; None where there is none, or none that can be read."""
+    """A folder's record; None where there is none, or it cannot be read."""
     try:
         return read_record(folder)
     except InputError:
@@ -104,7 +105,7 @@ def find_record(folder: Path) -> ConversionRecord | None:
 
 
 def is_up_to_date(folder: Path, digest: str) -> bool:
-    """Whether a folder holds the whole result of a conversion with this digest."""
+    """Whether a folder holds the complete result of a conversion with this input digest."""
     record = find_record(folder)
     if record is None:
         return False

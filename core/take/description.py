@@ -23,6 +23,7 @@ from .shoot_file import SHOOT_FILE, find_shoot_files, shoot_fields
 
 TAKE_FILE = "take.json"
 KEYFRAME_FILE = "keyframes.json"
+CLIP_FILE = "clip.mp4"
 CLIP_VALID = "a path inside the take's folder, as in clip.mp4"
 
 
@@ -71,29 +72,24 @@ def describe(
             f"{path}: nothing describes this clip; {own_file.name} beside it, or {SHOOT_FILE} there "
             "or in a folder above, must say what camera, actor and markers it shows"
         )
-    fields = InheritedFields()
-    folders: dict[str, Path] = {}
-    for file, values in shared.items():
-        fields = fields.overridden_by(shoot_fields(file, values), str(file))
-        folders[str(file)] = file.parent
     files = [*shared]
+    layers = [(str(file), file.parent, shoot_fields(file, values)) for file, values in shared.items()]
     if os.path.isfile(own_file) or is_folder:
-        fields = fields.overridden_by(read_json(own_file), str(own_file))
-        folders[str(own_file)] = folder
         files.append(own_file)
+        layers.append((str(own_file), folder, read_json(own_file)))
     if overrides:
-        fields = fields.overridden_by(overrides, overrides_location)
-        folders[overrides_location] = folder
-    described = Fields(fields, str(files[-1]))
-    clip = path
+        layers.append((overrides_location, folder, dict(overrides)))
+    inherited = InheritedFields()
+    for location, _, values in layers:
+        inherited = inherited.overridden_by(values, location)
+    fields = Fields(inherited, str(files[-1]))
+    settings = read_settings(fields, {location: base for location, base, _ in layers})
     if is_folder:
-        clip = (
-            safe_path(described, "clip", folder, CLIP_VALID) if described.has("clip") else folder / "clip.mp4"
-        )
-    settings = read_settings(described, folders)
-    keyframes = settings.keyframes or (
-        folder / KEYFRAME_FILE if is_folder else sidecar_file(path, KEYFRAME_FILE)
-    )
+        clip = safe_path(fields, "clip", folder, CLIP_VALID) if fields.has("clip") else folder / CLIP_FILE
+        keyframes = settings.keyframes or folder / KEYFRAME_FILE
+    else:
+        clip = path
+        keyframes = settings.keyframes or sidecar_file(path, KEYFRAME_FILE)
     used = [*files, clip, keyframes, *_linked_images(clip)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
@@ -106,7 +102,7 @@ def describe(
         files=tuple(files),
         clip=clip,
         keyframes=keyframes,
-        fields=described,
+        fields=fields,
         settings=settings,
         inherits=bool(shared),
     )

@@ -1,4 +1,4 @@
-"""A take: one recorded performance, validated, and what looks wrong with it."""
+"""A take: one recorded performance, validated, with notes on what looks wrong."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,24 +24,24 @@ class Take:
     frame_start: int
     """Scene frame of the clip's first decoded frame."""
     frame_count: int | None
-    """Frames of the clip; None where only the clip itself tells."""
+    """Number of frames of the clip; None where it is not given."""
     camera: Camera
     body: Body
     markers: tuple[MarkerStyle, ...]
     keyframes: tuple[Keyframe, ...]
     described_in: Path | None = None
-    """The file that sentences name; None for a folder's own `take.json`."""
+    """The nearest file that describes it; None for the `take.json` of its folder."""
     title: str = ""
-    """What people call it; empty for the folder's name."""
+    """Its name; empty for the folder's name."""
 
     @property
     def file(self) -> Path:
-        """The file that describes it."""
+        """The nearest file that describes it, for sentences."""
         return self.described_in or self.folder / TAKE_FILE
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Its title, or the name of its folder."""
         return self.title or self.folder.absolute().name
 
     @property
@@ -51,12 +51,12 @@ class Take:
 
     @property
     def keyframe_indices(self) -> tuple[int, ...]:
-        """Positions of the keyframes in the clip."""
+        """Frame indices of the keyframes."""
         return tuple(keyframe.index for keyframe in self.keyframes)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is usable but looks wrong, one sentence each."""
+        """Sentences on keyframes that are usable but look wrong."""
         return tuple(
             f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
             "cm on average from any posture of this actor; check them and the actor's segment lengths"

@@ -26,27 +26,27 @@ MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
 MOST_MARKERS = 64
-LONGEST_MARKER = 200
-"""Characters of a marker's name."""
+LONGEST_MARKER_NAME = 200
+"""Characters."""
 
 
 def read_take(
-    place: Path,
+    path: Path,
     keyframes: Path | None = None,
     *,
     keyframes_required: bool = True,
 ) -> Take:
-    """Read a take and what it inherits from the shoots above; the clip is not checked yet (see `open_clip`).
+    """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
     Args:
-        place: The folder that holds `take.json`, or a clip that a shoot describes (see `shoot/description`).
+        path: The folder that holds `take.json`, or a clip that a shoot describes (see `description`).
         keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
         keyframes_required: Whether a take without a keyframe file is refused.
 
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
-    return read_described(describe(place), keyframes, keyframes_required=keyframes_required)
+    return read_described(describe(path), keyframes, keyframes_required=keyframes_required)
 
 
 def read_described(
@@ -56,13 +56,13 @@ def read_described(
     keyframes_required: bool = True,
     fewest_keyframes: int = FEWEST_KEYFRAMES,
 ) -> Take:
-    """Read a take as it is described; see `read_take`.
+    """Read a take from its description; see `read_take`.
 
-    `fewest_keyframes` says how many the keyframe file must hold; with 0 the take's own is not even opened.
+    `fewest_keyframes` is the number that the keyframe file must hold; with 0 the take's own is not opened.
     """
     fields = description.fields
     if description.inherits:
-        fields = _with_the_clip(fields, description.clip)
+        fields = _with_clip_fields(fields, description.clip)
     from_clip = description.inherits and not fields.has("frame_start")
     frame_start = 1 if from_clip else fields.integer("frame_start", -(10**6), 10**6)
     frame_count = fields.integer("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
@@ -94,13 +94,13 @@ def read_described(
 def write_take(take: Take, folder: Path) -> None:
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json` and the clip.
 
-    Every file is written beside and moved into place; a clip that lies in the folder stays as it is.
+    Every file is written atomically; a clip that lies in the folder stays as it is.
 
     Raises:
         InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
         ConversionError: A file cannot be written.
     """
-    clip = _clip_inside(take, folder)
+    clip = _copy_clip(take, folder)
     fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
     if take.frame_count is not None:
         fields["frame_count"] = take.frame_count
@@ -115,8 +115,8 @@ def write_take(take: Take, folder: Path) -> None:
     write_json(folder / "take.json", fields, indent=1)
 
 
-def _clip_inside(take: Take, folder: Path) -> str:
-    """The clip's path within `folder`, after copying it there where it lies elsewhere."""
+def _copy_clip(take: Take, folder: Path) -> str:
+    """Copy the clip into `folder` unless it lies there; returns its path within."""
     source = take.clip.resolve()
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
@@ -129,20 +129,20 @@ def _clip_inside(take: Take, folder: Path) -> str:
     return source.name
 
 
-def _with_the_clip(fields: Fields, path: Path) -> Fields:
-    """The fields with rate and size from the clip itself, where the shoot leaves them out."""
+def _with_clip_fields(fields: Fields, path: Path) -> Fields:
+    """The fields with rate and size from the clip itself, where all files leave them out."""
     assert isinstance(fields.values, InheritedFields)
     camera = fields.values.get("camera")
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
     if fields.has("fps") and sized:
         return fields
     clip = open_footage(path, None)
-    told: dict[str, Any] = {}
+    from_clip: dict[str, Any] = {}
     if not fields.has("fps") and clip.knows_its_rate:
-        told["fps"] = clip.fps
+        from_clip["fps"] = clip.fps
     if not sized:
-        told["camera"] = {"resolution": list(clip.size)}
-    return Fields(fields.values.overridden_by(told, str(path)), fields.where)
+        from_clip["camera"] = {"resolution": list(clip.size)}
+    return Fields(fields.values.overridden_by(from_clip, str(path)), fields.where)
 
 
 def _camera(fields: Fields, frame_count: int | None) -> Camera:
@@ -189,10 +189,10 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
 
 
 def _marker(markers: Fields, name: str) -> MarkerStyle:
-    if not name.strip() or len(name) > LONGEST_MARKER or any(map(is_control_character, name)):
+    if not name.strip() or len(name) > LONGEST_MARKER_NAME or any(map(is_control_character, name)):
         raise InputError(
             f"{markers.where}: a marker is called {shown(name)}; its name must be one line of at most "
-            f"{LONGEST_MARKER} characters that can be seen"
+            f"{LONGEST_MARKER_NAME} visible characters"
         )
     marker = markers.child(name, "an object with color_srgb")
     segment = marker.text("segment", "a body segment's name") if marker.has("segment") else name

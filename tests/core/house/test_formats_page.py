@@ -29,7 +29,8 @@ LIMITS = {
     f"{shoot.MOST_TAKES}": "takes of a shoot",
     f"{take_file.MOST_FRAMES}": "frames of a take",
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
-    f"{take_file.MOST_MARKERS}; {take_file.LONGEST_MARKER} characters": "markers of a take; a marker's name",
+    f"{take_file.MOST_MARKERS}; "
+    f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
     f"{posture_fields.FARTHEST_M:.0f} m": "places of keyframes, from the origin",
