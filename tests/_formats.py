@@ -1,4 +1,4 @@
-"""Every file format that is read: a valid value, its reader as the commands use it, and its schema."""
+"""Every file format that is read: a valid value, and its reader as the commands use it."""
 
 import json
 import shutil
@@ -30,17 +30,17 @@ class Format:
     """A file format."""
 
     name: str
-    """Of its schema, too."""
+    """Also that of its schema."""
     valid: dict[str, Any]
-    """With every field that may be there."""
+    """A value with every optional field."""
     read: Callable[[bytes], object]
-    """Read a file of these bytes; the objects around it are valid."""
+    """Reads a file of these bytes; the files around it are valid."""
     whole: bool = False
-    """Whether the schema's part `complete` is meant: nothing is inherited."""
+    """Whether the schema's part `complete` applies: nothing is inherited."""
 
 
 def formats(folder: Path) -> dict[str, Format]:
-    """All formats, by name; what is around the files lies in a folder of their own."""
+    """All formats by name; the files around them are written into `folder`."""
     take = write_synthetic_take(folder / "take", FRAMES, 4)
     said = _said(take)
     all_formats = [
