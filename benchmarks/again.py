@@ -25,7 +25,8 @@ from keymark.core.estimate.reconstruct import Reconstruction, reconstruct  # noq
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
-from keymark.core.take.take import Take, read_take  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take_file import read_take  # noqa: E402
 from trials import Trial  # noqa: E402
 
 LONG_S = 100.0

@@ -104,7 +104,7 @@ def conversion_s(take: Path) -> dict[str, float]:
     """Processor time of a conversion's parts [s] as workers do it, on one thread: a mean after a first."""
     load_project()
     import cv2
-    from keymark.core.take.description import chosen_settings, describe
+    from keymark.core.take.description import describe, effective_settings
     from keymark.operators.cli.conversion.convert_take import convert
 
     cv2.setNumThreads(1)
@@ -114,7 +114,7 @@ def conversion_s(take: Path) -> dict[str, float]:
         for number in range(CONVERSIONS + 1):
             clock = StageClock(time.process_time)
             output = Path(temporary) / str(number)
-            convert(description, output, clock, chosen_settings(description))  # type: ignore[arg-type]
+            convert(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
             if number:  # the first starts Blender
                 spent = {name: spent[name] + value for name, value in clock.seconds().items()}
     return {name: value / CONVERSIONS for name, value in spent.items()}

@@ -20,7 +20,7 @@ from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.shoot.check.take_check import TakeCheck, check_take  # noqa: E402
 from keymark.core.shoot.shoot import ShootTake  # noqa: E402
-from keymark.core.take.take import read_take  # noqa: E402
+from keymark.core.take.take_file import read_take  # noqa: E402
 
 USUAL = "demo/aerobic"
 NOISE = "noise=alls=6:allf=t"

@@ -22,8 +22,10 @@ from keymark.core.estimate.whole_clip import WholeClipOptions, estimate_whole_cl
 from keymark.core.prior.interpolation import interpolate  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
+from keymark.core.take.clip_check import open_clip  # noqa: E402
 from keymark.core.take.motion_file import write_motion  # noqa: E402
-from keymark.core.take.take import Take, open_clip, read_take, write_take  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take_file import read_take, write_take  # noqa: E402
 
 LONG_FRAMES = 18_000
 """Ten minutes at 30 frames a second."""

@@ -28,7 +28,8 @@ from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
-from keymark.core.take.take import Take, read_take  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take_file import read_take  # noqa: E402
 from trials import Trial  # noqa: E402
 
 FITTING: dict[str, tuple[str, ...]] = {

@@ -63,14 +63,14 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     began = time.perf_counter()
     load_project()
     import bpy  # noqa: F401  # loading it is part of the start-up
-    from keymark.core.take.description import chosen_settings, describe
+    from keymark.core.take.description import describe, effective_settings
     from keymark.operators.cli.conversion.convert_take import convert
 
     clock = StageClock()
     started = time.perf_counter() - began
     description = describe(folder)
     # No more of a console is needed.
-    result = convert(description, output, clock, chosen_settings(description))  # type: ignore[arg-type]
+    result = convert(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
     frames = len(result.reconstruction.motion.time_s)
     return {
         "frames": frames,
@@ -118,8 +118,9 @@ def processor_times(folder: Path) -> dict[str, float]:
     from keymark.core.estimate.reconstruct import reconstruct
     from keymark.core.footage.markers import track_markers
     from keymark.core.progress import run
+    from keymark.core.take.clip_check import open_clip
     from keymark.core.take.read_footage import expected_regions
-    from keymark.core.take.take import open_clip, read_take
+    from keymark.core.take.take_file import read_take
 
     cv2.setNumThreads(1)
     take = read_take(folder)

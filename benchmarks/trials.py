@@ -16,7 +16,8 @@ from keymark.core.prior.interpolation import interpolate, interpolate_linearly  
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
-from keymark.core.take.take import Take, read_take  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take_file import read_take  # noqa: E402
 
 INTERPOLATIONS = {
     "linear": interpolate_linearly,

@@ -1,4 +1,4 @@
-"""What can go wrong, in two kinds: the input is unusable, or the conversion failed."""
+"""Errors: unusable input, a failed conversion, or results that another process works on."""
 
 
 class KeymarkError(Exception):
@@ -10,14 +10,14 @@ class InputError(KeymarkError):
 
 
 class ConversionError(KeymarkError):
-    """The input was usable, yet no motion could be computed or written from it."""
+    """The input is usable, but no motion could be computed from it or written."""
 
 
 class BusyError(KeymarkError):
-    """Another process is at work on the same results; what it leaves may be what was wanted."""
+    """Another process works on the same results, which may be those that are wanted."""
 
 
-def unexpected(error: BaseException) -> str:
-    """An error that nobody has thought of, in one line for a sentence."""
-    said = " ".join(str(error).split())
-    return f"{type(error).__name__}: {said}" if said else type(error).__name__
+def describe_unexpected(error: BaseException) -> str:
+    """Type and message of an unforeseen error in one line, for a sentence."""
+    message = " ".join(str(error).split())
+    return f"{type(error).__name__}: {message}" if message else type(error).__name__

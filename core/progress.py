@@ -1,16 +1,16 @@
-"""Jobs that yield their progress: the one form every long computation has."""
+"""Jobs: generators that yield their progress and return their result, for every long computation."""
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 from typing import Any, Protocol, TypeVar
 
 Result = TypeVar("Result")
-Given = TypeVar("Given")
-Shown = TypeVar("Shown")
+Yielded = TypeVar("Yielded")
+Mapped = TypeVar("Mapped")
 
 
 class Postures(Protocol):
-    """A batch of postures, as `body/posture` has them, for which jobs of every kind have no other use."""
+    """A batch of postures, as in `body/posture`, which this module does not import."""
 
     @property
     def batch(self) -> tuple[int, ...]:
@@ -24,35 +24,35 @@ class Postures(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Preview:
-    """The motion of some frames as far as it is known, for whoever likes to watch."""
+    """The motion of some frames as estimated so far, for a live view."""
 
     first: int
-    """The first of the frames, from 0 for the clip's first."""
+    """Index of the first of these frames, 0 for the clip's first."""
     posture: Postures
-    """A batch of their postures."""
+    """Their postures, one batch."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a running job is."""
+    """Progress of a running job."""
 
     stage: str
-    """What is being done, for a person: a short phrase."""
+    """Name of the current step, for a person: a short phrase."""
     fraction: float
-    """Share of the whole job that is done, 0 to 1."""
+    """Completed share of the whole job, 0 to 1."""
     preview: Preview | None = None
-    """What has just been estimated, where something has."""
+    """Frames that have just been estimated, if any."""
 
 
 Part = Generator[float | Preview, None, Result]
-"""A part of a job that yields the fraction of it that is done, and previews."""
+"""A part of a job: yields its completed fraction and previews, returns its result."""
 
 Job = Generator[Progress, None, Result]
-"""A job that yields its progress and returns its result; closing it cancels it."""
+"""A job: yields its progress and returns its result; closing it cancels it."""
 
 
-def run(job: Generator[Given, None, Result], report: Callable[[Given], object] | None = None) -> Result:
-    """Drive a job, or a part of one, to its end and return its result, passing each progress to `report`."""
+def run(job: Generator[Yielded, None, Result], report: Callable[[Yielded], object] | None = None) -> Result:
+    """Run a job, or a part of one, to its end; each progress is passed to `report`."""
     while True:
         try:
             progress = next(job)
@@ -64,7 +64,7 @@ def run(job: Generator[Given, None, Result], report: Callable[[Given], object] |
 
 
 def within(stage: str, part: Part[Result], first: float, last: float) -> Job[Result]:
-    """Run a part that yields its own fraction as the stretch `first` to `last` of a whole job."""
+    """Turn a part into a job with one stage name; its progress runs from `first` to `last`."""
     fraction = first
 
     def progress(done: float | Preview) -> Progress:
@@ -74,33 +74,33 @@ def within(stage: str, part: Part[Result], first: float, last: float) -> Job[Res
         fraction = done
         return Progress(stage, fraction)
 
-    return _changed(scaled(part, first, last), progress)
+    return _map_progress(scaled(part, first, last), progress)
 
 
 def stretch(job: Job[Result], first: float, last: float) -> Job[Result]:
-    """Run a job as the stretch `first` to `last` of a longer one."""
-    return _changed(job, lambda done: replace(done, fraction=first + (last - first) * done.fraction))
+    """Rescale a job's progress from 0 to 1 to `first` to `last` of a longer job."""
+    return _map_progress(job, lambda done: replace(done, fraction=first + (last - first) * done.fraction))
 
 
 def scaled(part: Generator[float | Preview | None, None, Result], first: float, last: float) -> Part[Result]:
-    """Run a part as the stretch `first` to `last`; one that only says that it still runs stays at `first`."""
+    """Rescale a part's fraction to `first` to `last`; a part that yields None stays at `first`."""
 
-    def share(done: float | Preview | None) -> float | Preview:
+    def rescale(done: float | Preview | None) -> float | Preview:
         if isinstance(done, Preview):
             return done
         return first if done is None else first + (last - first) * done
 
-    return _changed(part, share)
+    return _map_progress(part, rescale)
 
 
-def _changed(
-    part: Generator[Given, None, Result], change: Callable[[Given], Shown]
-) -> Generator[Shown, None, Result]:
-    """Run a generator with each thing it yields changed; returns its result."""
+def _map_progress(
+    part: Generator[Yielded, None, Result], function: Callable[[Yielded], Mapped]
+) -> Generator[Mapped, None, Result]:
+    """Apply a function to every value that a generator yields; its result is returned."""
     while True:
         try:
-            given = next(part)
+            value = next(part)
         except StopIteration as stop:
             result: Result = stop.value
             return result
-        yield change(given)
+        yield function(value)

@@ -1,10 +1,10 @@
-"""Runs the command line of this very tree in a process that dies when it is told to.
+"""Runs the command line of this tree in a process that is killed at a given moment.
 
-    python tests/_dying.py never FOLDER convert ...    says at its end what it took
-    python tests/_dying.py 17 FOLDER convert ...       killed at the 17th thing it does to files in FOLDER
-    python tests/_dying.py 0.35s FOLDER convert ...    killed after so much of a processor's time
+    python tests/_dying.py never FOLDER convert ...    prints file operations and processor time at its end
+    python tests/_dying.py 17 FOLDER convert ...       killed at the 17th file operation in FOLDER
+    python tests/_dying.py 0.35s FOLDER convert ...    killed after 0.35 s of processor time
 
-All that takes long to load is loaded before, so that deaths fall into the work.
+Modules that load slowly are imported before, so that the kill falls into the work.
 """
 
 import json
@@ -20,18 +20,21 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from _boot import load_package  # noqa: E402
 
 load_package()
-TOUCHED = ("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.listdir", "os.scandir", "os.link")
+FILE_EVENTS = (
+    *("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir"),
+    *("os.listdir", "os.scandir", "os.link"),
+)
 
 
-class Touches:
-    """Counts what is done to files in a folder; ends the process at one of them."""
+class FileOperations:
+    """Counts the operations on files in a folder; kills the process at one of them."""
 
     def __init__(self, folder: str, last: int | None) -> None:
         self.folder, self.last, self.count = folder, last, 0
 
     def __call__(self, event: str, given: tuple[Any, ...]) -> None:
-        """Be told of everything Python does."""
-        if event in TOUCHED and any(self.is_inside(one) for one in given[:2]):
+        """Audit hook of Python."""
+        if event in FILE_EVENTS and any(self.is_inside(one) for one in given[:2]):
             self.count += 1
             if self.count == self.last:
                 os.kill(os.getpid(), signal.SIGKILL)
@@ -42,22 +45,22 @@ class Touches:
 
 
 def main() -> int:
-    """Run, or die."""
+    """Run the command line until its end, or until it is killed."""
     when, folder, *words = sys.argv[1:]
     import bpy  # noqa: F401
     import keymark.operators.bridge.result_files  # noqa: F401
     from keymark.operators.cli import convert  # noqa: F401
     from keymark.operators.cli.main import main as run
 
-    touches = Touches(folder, int(when) if when.isdigit() else None)
-    sys.addaudithook(touches)
+    operations = FileOperations(folder, int(when) if when.isdigit() else None)
+    sys.addaudithook(operations)
     begun = time.process_time()
-    if when.endswith("s"):  # what it counts ends the process as a kill does: nothing catches it
+    if when.endswith("s"):  # the timer ends the process as a kill does: nothing catches it
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, float(when.removesuffix("s")))
     status = run(words)
     signal.setitimer(signal.ITIMER_PROF, 0.0)
-    print(json.dumps({"touches": touches.count, "cpu_s": time.process_time() - begun}))
+    print(json.dumps({"operations": operations.count, "cpu_s": time.process_time() - begun}))
     return status
 
 

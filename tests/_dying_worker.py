@@ -1,7 +1,7 @@
 """A worker that is killed in the middle of a take, before its files are complete.
 
-Usage: _dying_worker.py FOLDER. Every file in FOLDER is one death in the take that its name begins with: it is
-removed, and the process kills itself.
+Usage: _dying_worker.py FOLDER. Every file in FOLDER is one kill in the take that its name begins with: the
+file is removed, and the process kills itself.
 """
 
 import os
@@ -21,7 +21,7 @@ write = convert_take._write_scene
 
 
 def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
-    """Write the scene, unless a death is due."""
+    """Write the scene, unless a kill is due."""
     assert (place / "motion.json").is_file()
     for due in Path(sys.argv[1]).glob(f"{take.name}*"):
         due.unlink()

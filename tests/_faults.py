@@ -1,9 +1,8 @@
-"""Processes that die, and disks that fill up, at a chosen call of the operating system."""
+"""Fault injection: a process is killed or a disk full at a chosen call of the operating system."""
 
 import errno
 import io
 import os
-import random
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,21 +11,16 @@ from typing import Any
 import pytest
 
 GROWING = ("mkdir", "open", "replace", "rename", "link", "symlink")
-"""Calls that need room on a disk."""
+"""Calls that need free space on the disk."""
 CHANGING = (*GROWING, "unlink", "remove", "rmdir", "fsync", "utime")
 
 
 class Killed(BaseException):
-    """Stands for the end of a process: from then on no call has any effect, so nothing is tidied up."""
+    """Stands for SIGKILL: from then on no call has any effect, so nothing is cleaned up."""
 
 
 class Calls:
-    """Counts the calls that change a file system and makes one of them fail.
-
-    Attributes:
-        count: Calls so far.
-        log: Their names.
-    """
+    """Counts the calls that change a file system, logs their names, and makes one of them fail."""
 
     def __init__(self, fails_at: int | None, fault: Callable[[str], BaseException], lasting: bool) -> None:
         self.fails_at, self.fault, self.lasting = fails_at, fault, lasting
@@ -35,7 +29,7 @@ class Calls:
         self.descriptors: list[int] = []
 
     def check(self, name: str) -> None:
-        """Count a call; raise where it is the one to fail."""
+        """Count a call; raise if it is the one to fail."""
         self.count += 1
         self.log.append(name)
         if self.fails_at is None:
@@ -45,12 +39,12 @@ class Calls:
 
 
 def killed(_name: str) -> BaseException:
-    """The process is gone."""
+    """The process is killed."""
     return Killed()
 
 
 def disk_full(_name: str) -> BaseException:
-    """There is no room left."""
+    """The disk is full."""
     return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
@@ -63,30 +57,30 @@ def faulty_calls(
 ) -> Iterator[Calls]:
     """Let the `fails_at`-th changing call, from 1, fail; None only counts them.
 
-    What is written into a file counts as one call more, and fails with nothing written.
+    Writing into a file counts as one more call, and fails with nothing written.
 
     Args:
-        fails_at: Which call.
-        fault: What is raised.
+        fails_at: Number of the call.
+        fault: Makes the error to raise, from the call's name.
         lasting: Whether all later calls fail as well.
-        names: Of the calls in `os` that count.
+        names: Names of the calls in `os` that count.
     """
     calls = Calls(fails_at, fault, lasting)
     with pytest.MonkeyPatch.context() as patch:
         for name in names:
-            patch.setattr(os, name, _counted(name, getattr(os, name), calls))
-        patch.setattr(io, "open", _counted_file(io.open, calls))
-        patch.setattr(os, "close", _counted_close(os.close, calls))
+            patch.setattr(os, name, _faulty(name, getattr(os, name), calls))
+        patch.setattr(io, "open", _faulty_file(io.open, calls))
+        patch.setattr(os, "close", _faulty_close(os.close, calls))
         try:
             yield calls
         finally:
             patch.undo()
-            for descriptor in calls.descriptors:  # as the end of a process closes them, and so unlocks
+            for descriptor in calls.descriptors:  # as the end of a process does, which releases its locks
                 os.close(descriptor)
 
 
-def _counted(name: str, call: Callable[..., Any], calls: Calls) -> Callable[..., Any]:
-    def counted(*args: Any, **words: Any) -> Any:
+def _faulty(name: str, call: Callable[..., Any], calls: Calls) -> Callable[..., Any]:
+    def faulty(*args: Any, **words: Any) -> Any:
         reads = name == "open" and not args[1] & (os.O_CREAT | os.O_WRONLY | os.O_RDWR)
         if reads and not (calls.fault is killed and calls.lasting):
             return call(*args, **words)
@@ -96,24 +90,24 @@ def _counted(name: str, call: Callable[..., Any], calls: Calls) -> Callable[...,
             calls.descriptors.append(result)
         return result
 
-    return counted
+    return faulty
 
 
-def _counted_close(call: Callable[[int], None], calls: Calls) -> Callable[[int], None]:
-    """A dead process closes nothing by itself."""
+def _faulty_close(call: Callable[[int], None], calls: Calls) -> Callable[[int], None]:
+    """A killed process closes no descriptor itself."""
 
-    def counted(descriptor: int) -> None:
+    def faulty(descriptor: int) -> None:
         if calls.fault is killed and calls.fails_at is not None and calls.count >= calls.fails_at:
             return
         if descriptor in calls.descriptors:
             calls.descriptors.remove(descriptor)
         call(descriptor)
 
-    return counted
+    return faulty
 
 
-def _counted_file(call: Callable[..., Any], calls: Calls) -> Callable[..., Any]:
-    def counted(file: Any, mode: str = "r", *args: Any, **words: Any) -> Any:
+def _faulty_file(call: Callable[..., Any], calls: Calls) -> Callable[..., Any]:
+    def faulty(file: Any, mode: str = "r", *args: Any, **words: Any) -> Any:
         if mode in ("r", "rb"):
             return call(file, mode, *args, **words)
         calls.check("open file")
@@ -125,18 +119,12 @@ def _counted_file(call: Callable[..., Any], calls: Calls) -> Callable[..., Any]:
             raise
         return opened
 
-    return counted
+    return faulty
 
 
 def tree(folder: Path) -> dict[str, bytes | None]:
-    """Every path below a folder, with what is in the files."""
+    """Every path below a folder, with the content of the files."""
     return {
         path.relative_to(folder).as_posix(): path.read_bytes() if path.is_file() else None
         for path in sorted(folder.rglob("*"))
     }
-
-
-def points(seed: int, count: int, latest: float) -> list[float]:
-    """Moments at which processes are killed [s], the same in every run."""
-    generator = random.Random(seed)
-    return [generator.uniform(0.0, latest) for _ in range(count)]

@@ -1,4 +1,4 @@
-"""Every file format that is read: a valid value, its reader as the commands use it, and its schema."""
+"""Every file format that is read: a valid value, and its reader as the commands use it."""
 
 import json
 import shutil
@@ -13,12 +13,13 @@ from _synthetic_take import BODY, true_postures, write_json, write_synthetic_tak
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.review.score import read_truth
-from keymark.core.shoot.finding.take_list import read_take_list
+from keymark.core.shoot.discovery.take_list import read_take_list
+from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import read_motion, write_motion
-from keymark.core.take.take import check_in_front, read_described, read_take
+from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8
 SHARED = ("fps", "frame_start", "camera", "markers", "actor")
@@ -29,17 +30,17 @@ class Format:
     """A file format."""
 
     name: str
-    """Of its schema, too."""
+    """Also that of its schema."""
     valid: dict[str, Any]
-    """With every field that may be there."""
+    """A value with every optional field."""
     read: Callable[[bytes], object]
-    """Read a file of these bytes; the objects around it are valid."""
+    """Reads a file of these bytes; the files around it are valid."""
     whole: bool = False
-    """Whether the schema's part `complete` is meant: nothing is inherited."""
+    """Whether the schema's part `complete` applies: nothing is inherited."""
 
 
 def formats(folder: Path) -> dict[str, Format]:
-    """All formats, by name; what is around the files lies in a folder of their own."""
+    """All formats by name; the files around them are written into `folder`."""
     take = write_synthetic_take(folder / "take", FRAMES, 4)
     said = _said(take)
     all_formats = [

@@ -1,4 +1,4 @@
-"""What became of takes that never were, for the pages that show it."""
+"""Outcomes of imaginary takes, for tests of the pages that show them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -38,5 +38,5 @@ def failed(output: Path, name: str, error: str, record: ConversionRecord | None 
 
 
 def waiting(output: Path, name: str) -> Outcome:
-    """A take whose turn has not come."""
+    """A take that is not converted yet."""
     return Outcome(name, output / name, Status.WAITING)

@@ -1,4 +1,4 @@
-"""What folders of results hold, as far as it is the same in every run."""
+"""The content of result folders that is the same in every run."""
 
 import json
 from pathlib import Path
@@ -6,22 +6,22 @@ from pathlib import Path
 import bpy
 from _faults import tree
 from keymark.core.files.digest import content_digest
-from keymark.core.files.output_folder import real_path
+from keymark.core.files.paths import real_path
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.actions import curve_digest
 from keymark.operators.cli.conversion.changed_files import AS_MADE
 
 VARYING = ("motion.blend", AS_MADE)
-"""Blender leaves memory addresses in its files; the record has the digest of their curves."""
+"""Blender writes memory addresses into its files; the record has the digest of their curves."""
 
 
 def same_in_every_run(folder: Path) -> dict[str, bytes | None]:
-    """Everything below a folder but the bytes of .blend files, and what only tells them."""
-    return {name: held for name, held in tree(folder).items() if not name.endswith(VARYING)}
+    """All files below a folder but .blend files and their digests."""
+    return {name: content for name, content in tree(folder).items() if not name.endswith(VARYING)}
 
 
 def is_whole(folder: Path) -> bool:
-    """Whether a folder counts as finished; then every file must be there, and be the one of its record."""
+    """Whether a folder counts as finished; then every file must match its record."""
     if not (folder / "conversion.json").exists():
         return False
     record = read_record(folder)
@@ -43,6 +43,6 @@ def blend_is_of(folder: Path) -> bool:
     return digests == {read_record(folder).files["motion.blend"]}
 
 
-def hidden(folder: Path) -> list[str]:
-    """What killed processes have left."""
+def hidden_files(folder: Path) -> list[str]:
+    """The hidden files that killed processes have left."""
     return [name for name in tree(folder) if Path(name).name.startswith(".keymark-")]

@@ -1,4 +1,4 @@
-"""A small shoot made on the spot: clips of one performer, which one file describes."""
+"""A small shoot: clips of one performer, described by one file."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ FPS = 30.0
 
 
 def shoot_fields() -> dict[str, Any]:
-    """What all takes have in common; their clips tell rate and size."""
+    """Fields that all takes inherit; rate and size come from their clips."""
     return {
         "schema_version": 1,
         "root": True,
@@ -37,8 +37,8 @@ def shoot_fields() -> dict[str, Any]:
 def write_shoot(folder: Path, takes: int = 3, frames: int = 8) -> Path:
     """Write a shoot whose takes are `day1/take01`, `day1/take02` and so on; returns the folder.
 
-    Every third take is a folder with `take.json` and images; the others are mere videos, beside which their
-    keyframes lie. Each shows another part of the same movement, so that no two give the same motion.
+    Every third take is a folder with `take.json` and images; the others are bare videos with their keyframe
+    files. Each shows another part of the same movement, so that no two give the same motion.
     """
     day = folder / "day1"
     day.mkdir(parents=True)

@@ -14,7 +14,7 @@ from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run, within
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 STEP = 6
 """Every sixth frame is rendered; keyframes are among them by chance only."""

@@ -17,7 +17,7 @@ from keymark.core.progress import run
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 TAKE = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
 FRAMES = (19, 36, 60, 75, 88, 100)

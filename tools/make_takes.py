@@ -26,7 +26,8 @@ from keymark.core.body.posture_fields import rounded  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.take.keyframe_file import write_keyframes  # noqa: E402
-from keymark.core.take.take import Take, write_take  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take_file import write_take  # noqa: E402
 from studio.catalogue import TAKES  # noqa: E402
 from studio.described import Described  # noqa: E402
 from studio.filming import (  # noqa: E402

@@ -18,10 +18,11 @@ from ..prior.interpolation import interpolate
 from ..prior.marker_speed import marker_speed
 from ..prior.performer_offset import with_style
 from ..progress import Job, Progress, stretch, within
+from ..take.clip_check import check_frame_count, check_in_front
 from ..take.methods import METHODS
 from ..take.motion import Motion
 from ..take.read_footage import average_model, read_footage
-from ..take.take import Take, check_frame_count, check_in_front
+from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import worthwhile

@@ -1,1 +1,1 @@
-"""Reading and writing files that can be trusted: strict JSON, checked fields, folders that appear whole."""
+"""Trustworthy reading and writing of files: strict JSON, checked fields, folders committed as a whole."""

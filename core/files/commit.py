@@ -1,7 +1,8 @@
-"""A complete set of files on its way into its folder; begun by one process, it can be ended by another.
+"""Two-phase commit of a result folder: moves are journaled, so that another process can finish them.
 
-What has to be done is written down first, beside the folder. From then on the set counts as made: a process
-that finds such a paper, and its writer dead, does the rest.
+First the files are made in a staging folder; then a journal beside the target folder lists the moves. From
+then on the commit counts as made: a process that finds the journal, and its writer dead, rolls it forward
+(see `recovery`).
 """
 
 import itertools
@@ -11,129 +12,133 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from pathlib import Path, PureWindowsPath
-from typing import Any
+from pathlib import Path
 
-from ..errors import InputError
-from .fsync import to_disk
-from .json_file import read_json
+from .fsync import fsync_path
 
-NEW, OLD, PAPER, DRAFT = "-new", "-old", ".json", ".json.new"
-LARGEST_BYTES = 2**24
+STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
+"""Endings of the hidden names; version 0.1.0 wrote the same ones, and the same fields in the journal."""
 
 Moves = list[tuple[Path, Path]]
 
 
 @dataclass(frozen=True)
-class Arrival:
-    """Where a set of files comes from and goes to."""
+class Commit:
+    """A set of files, the folder it is made in and the folder it goes to."""
 
     target: Path
-    """The folder that it goes to, which may not be there yet."""
+    """The folder that the files go to, which may not exist yet."""
     stem: Path
-    """What the paths of everything hidden that belongs to it begin with."""
-    seal: str | None = None
-    """The file that vouches for the others: the first to go, the last to arrive."""
-    made: tuple[str, ...] = ()
+    """Beginning of the paths of all hidden files and folders of the commit."""
+    manifest: str | None = None
+    """The file that lists the others: the first to be removed, the last to be written."""
+    written: tuple[str, ...] = ()
     """The files of the set, as paths in the target."""
-    gone: tuple[str, ...] = ()
-    """Files of earlier sets that this one lacks; they are removed."""
-    aside: Mapping[str, str] = field(default_factory=dict)
-    """Files in the target that are kept, by the other name that they get."""
+    removed: tuple[str, ...] = ()
+    """Files of earlier sets that this one lacks."""
+    backups: Mapping[str, str] = field(default_factory=dict)
+    """Files in the target that are kept under another name instead of being replaced or removed."""
 
     @property
-    def new(self) -> Path:
+    def staging_folder(self) -> Path:
         """The folder in which the set is made."""
-        return self.stem.with_name(self.stem.name + NEW)
+        return self.stem.with_name(self.stem.name + STAGING)
 
     @property
-    def old(self) -> Path:
+    def rollback_folder(self) -> Path:
         """The folder for what the set replaces, as long as it may have to go back."""
-        return self.stem.with_name(self.stem.name + OLD)
+        return self.stem.with_name(self.stem.name + ROLLBACK)
 
     @property
-    def paper(self) -> Path:
-        """What has to be done; while it is there, the set is complete but not all in place."""
-        return self.stem.with_name(self.stem.name + PAPER)
+    def journal(self) -> Path:
+        """The list of moves; while it exists, the set is complete but not all in the target."""
+        return self.stem.with_name(self.stem.name + JOURNAL)
 
     @property
-    def draft(self) -> Path:
-        """The paper while it is written."""
-        return self.stem.with_name(self.stem.name + DRAFT)
+    def journal_draft(self) -> Path:
+        """The journal while it is written."""
+        return self.stem.with_name(self.stem.name + JOURNAL_DRAFT)
 
 
-def found_arrival(empty: Arrival) -> Arrival | None:
-    """The arrival that another process has begun and not ended; None where there is none, or not all."""
-    try:
-        said = read_json(empty.paper, LARGEST_BYTES)
-        made, gone, aside, seal = (said[name] for name in ("made", "gone", "aside", "seal"))
-        names = [*made, *gone, *aside.keys(), *aside.values(), *([] if seal is None else [seal])]
-        if said["target"] != empty.target.name or not all(map(_is_inside, names)):
-            return None
-    except (InputError, LookupError, TypeError, AttributeError):
-        return None
-    found = Arrival(empty.target, empty.stem, seal, tuple(made), tuple(gone), dict(aside))
-    return (
-        found
-        if all(any((at / name).is_file() for at in (found.new, found.target)) for name in made)
-        else None
-    )
-
-
-def announce(arrival: Arrival) -> None:
-    """Bring a complete set to the disk and write down what has to be done with it.
+def write_journal(commit: Commit) -> None:
+    """First phase: flush a complete set to the disk and write the journal.
 
     Raises:
         OSError: The disk is full, or gone.
     """
-    for folder, _, names in os.walk(arrival.new):
+    for folder, _, names in os.walk(commit.staging_folder):
         for name in names:
-            to_disk(Path(folder) / name)
-        to_disk(Path(folder))
-    said = {
-        "target": arrival.target.name,
-        "seal": arrival.seal,
-        "made": list(arrival.made),
-        "gone": list(arrival.gone),
-        "aside": dict(arrival.aside),
+            fsync_path(Path(folder) / name)
+        fsync_path(Path(folder))
+    fields = {
+        "target": commit.target.name,
+        "seal": commit.manifest,
+        "made": list(commit.written),
+        "gone": list(commit.removed),
+        "aside": dict(commit.backups),
     }
-    arrival.draft.write_text(json.dumps(said), encoding="utf-8")
-    to_disk(arrival.draft)
-    os.replace(arrival.draft, arrival.paper)
-    to_disk(arrival.paper.parent)
+    commit.journal_draft.write_text(json.dumps(fields), encoding="utf-8")
+    fsync_path(commit.journal_draft)
+    os.replace(commit.journal_draft, commit.journal)
+    fsync_path(commit.journal.parent)
 
 
-def move_in(arrival: Arrival, done: Moves) -> None:
-    """Move an announced set into its folder; files moved already by another process are left where they are.
+def roll_forward(commit: Commit, moves: Moves) -> None:
+    """Second phase: move a journaled set into its folder; what another process has moved already stays.
 
     Args:
-        arrival: The set.
-        done: Takes note of every move (from, to), so that it can be undone.
+        commit: The set.
+        moves: Receives every move (from, to), so that it can be rolled back.
 
     Raises:
         OSError: A file cannot be moved.
     """
-    new, target = arrival.new, arrival.target
-    waiting = [name for name in arrival.made if (new / name).is_file()]
-    if waiting == list(arrival.made) and not target.exists():
-        _move(new, target, done)
-        to_disk(target.parent)
+    staging_folder, target = commit.staging_folder, commit.target
+    staged = [name for name in commit.written if (staging_folder / name).is_file()]
+    if staged == list(commit.written) and not target.exists():
+        _move(staging_folder, target, moves)
+        fsync_path(target.parent)
         return
-    waiting.sort(key=lambda name: name == arrival.seal)
-    replaced = sorted([*waiting, *arrival.gone], key=lambda name: name != arrival.seal)
+    staged.sort(key=lambda name: name == commit.manifest)
+    replaced = sorted([*staged, *commit.removed], key=lambda name: name != commit.manifest)
     for name in replaced:
-        _move_away(arrival, name, done)
-        if name == arrival.seal:
-            to_disk(target)
-    folders = {(target / name).parent for name in (*arrival.made, *arrival.gone)}
-    for name in waiting:
-        if name == arrival.seal:
-            _all_to_disk(folders)
-        _move(new / name, target / name, done)
-    _all_to_disk(folders)
+        _move_away(commit, name, moves)
+        if name == commit.manifest:
+            fsync_path(target)
+    folders = {(target / name).parent for name in (*commit.written, *commit.removed)}
+    for name in staged:
+        if name == commit.manifest:
+            _fsync_all(folders)
+        _move(staging_folder / name, target / name, moves)
+    _fsync_all(folders)
     for folder in folders - {target}:
-        with suppress(OSError):  # there is something in it
+        with suppress(OSError):  # it is not empty
             folder.rmdir()
+
+
+def roll_back(commit: Commit, moves: Moves) -> None:
+    """Undo moves, the last first, also one that was interrupted.
+
+    Raises:
+        OSError: A move cannot be undone; those before it stay in `moves`.
+    """
+    while moves:
+        source, destination = moves[-1]
+        if not os.path.lexists(source) and os.path.lexists(destination):
+            source.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(destination, source)
+        if destination.parent != commit.target:
+            with suppress(OSError):  # it holds other files
+                destination.parent.rmdir()
+        moves.pop()
+
+
+def clean_up(commit: Commit) -> None:
+    """Remove all hidden files of a commit, the journal first: without it the others mean nothing."""
+    for file in (commit.journal, commit.journal_draft):
+        file.unlink(missing_ok=True)
+    for folder in (commit.staging_folder, commit.rollback_folder):
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def files_below(folder: Path) -> tuple[str, ...]:
@@ -141,8 +146,8 @@ def files_below(folder: Path) -> tuple[str, ...]:
     return tuple(sorted(file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()))
 
 
-def free_name(file: Path) -> Path:
-    """The name beside a file under which it is kept where it is not to be replaced."""
+def backup_name(file: Path) -> Path:
+    """An unused name beside a file, under which it is kept where it is not to be replaced."""
     for number in itertools.count(1):
         other = file.with_stem(f"{file.stem} (changed{'' if number == 1 else f' {number}'})")
         if not os.path.lexists(other):
@@ -150,55 +155,25 @@ def free_name(file: Path) -> Path:
     raise AssertionError("numbers have no end")
 
 
-def undo(arrival: Arrival, done: Moves) -> None:
-    """Take moves back, the last first, also one that was interrupted.
-
-    Raises:
-        OSError: One cannot be taken back; those before it stay in `done`.
-    """
-    while done:
-        source, destination = done[-1]
-        if not os.path.lexists(source) and os.path.lexists(destination):
-            source.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(destination, source)
-        if destination.parent != arrival.target:
-            with suppress(OSError):  # there is something else in it
-                destination.parent.rmdir()
-        done.pop()
-
-
-def clear(arrival: Arrival) -> None:
-    """Remove all that is hidden of a set, the paper first: what is left then is nothing but rubbish."""
-    for file in (arrival.paper, arrival.draft):
-        file.unlink(missing_ok=True)
-    for folder in (arrival.new, arrival.old):
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _move_away(arrival: Arrival, name: str, done: Moves) -> None:
-    """Make room for a file of the set, or remove one that it lacks."""
-    there = arrival.target / name
-    if not there.is_file() and not there.is_symlink():
+def _move_away(commit: Commit, name: str, moves: Moves) -> None:
+    """Make room in the target for a file of the set, or remove a file that the set lacks."""
+    existing = commit.target / name
+    if not existing.is_file() and not existing.is_symlink():
         return
-    if name in arrival.aside:
-        kept = arrival.target / arrival.aside[name]
-        _move(there, free_name(there) if os.path.lexists(kept) else kept, done)
+    if name in commit.backups:
+        backup = commit.target / commit.backups[name]
+        _move(existing, backup_name(existing) if os.path.lexists(backup) else backup, moves)
     else:
-        _move(there, arrival.old / name, done)
+        _move(existing, commit.rollback_folder / name, moves)
 
 
-def _move(source: Path, destination: Path, done: Moves) -> None:
+def _move(source: Path, destination: Path, moves: Moves) -> None:
     destination.parent.mkdir(parents=True, exist_ok=True)
-    done.append((source, destination))  # before: an interruption may come right after the move
+    moves.append((source, destination))  # before: an interruption may come right after the move
     os.replace(source, destination)
 
 
-def _is_inside(name: Any) -> bool:
-    way = PureWindowsPath(name)  # which reads both kinds of slash
-    return not way.anchor and ".." not in way.parts and bool(way.name)
-
-
-def _all_to_disk(folders: Iterable[Path]) -> None:
+def _fsync_all(folders: Iterable[Path]) -> None:
     for folder in folders:
         if folder.is_dir():
-            to_disk(folder)
+            fsync_path(folder)

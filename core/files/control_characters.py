@@ -1,19 +1,19 @@
-"""Letters that people cannot see, which have no place in names and sentences."""
+"""Control characters: invisible ones, which names and sentences may not hold."""
 
 import unicodedata
 
-HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
-"""Categories: control, formatting (also what turns the direction of writing), halves of characters, line
+CATEGORIES = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Unicode categories: control, formatting (also what turns the direction of writing), surrogates, line
 breaks."""
 JOINERS = "\u200c\u200d"
 """Zero-width, but letters of several scripts need them between them."""
 
 
-def is_hidden(letter: str, allowed: str = JOINERS) -> bool:
-    """Whether a letter is one that cannot be seen, or changes how others are."""
-    return letter not in allowed and unicodedata.category(letter) in HIDDEN
+def is_control_character(character: str, allowed: str = JOINERS) -> bool:
+    """Whether a character is invisible, or changes how others are shown."""
+    return character not in allowed and unicodedata.category(character) in CATEGORIES
 
 
-def seen(text: str) -> str:
-    """A text with whatever is hidden in it spelt out, for terminals, which would obey it."""
-    return "".join(ascii(letter)[1:-1] if is_hidden(letter) else letter for letter in text)
+def escape_control_characters(text: str) -> str:
+    """A text with its control characters as escapes, for terminals, which would obey them."""
+    return "".join(ascii(char)[1:-1] if is_control_character(char) else char for char in text)

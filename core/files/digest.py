@@ -1,4 +1,4 @@
-"""Digests by which it is known again what a result was computed from."""
+"""Digests of values and files: they tell whether a result was computed from the same input."""
 
 import hashlib
 from pathlib import Path
@@ -6,16 +6,17 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from .regular_file import ordinary_size
+from .regular_file import regular_file_size
 
-LENGTH = 32
+DIGITS = 32
 """Hexadecimal digits: 128 bits."""
 SAMPLES = 16
+"""Of a file's content, spread evenly, for its fingerprint."""
 SAMPLE_BYTES = 65536
 
 
 def digest(*parts: object) -> str:
-    """A digest of numbers, text, bytes, arrays and tuples of such; only like values have like digests.
+    """A digest of numbers, text, bytes, arrays and tuples of these; only equal values have equal digests.
 
     Raises:
         TypeError: A part is of another kind.
@@ -34,22 +35,22 @@ def digest(*parts: object) -> str:
             hashed.update(f"{type(part).__name__} {len(text)}:".encode() + text)
         else:
             raise TypeError(f"a {type(part).__name__} has no digest")
-    return hashed.hexdigest()[:LENGTH]
+    return hashed.hexdigest()[:DIGITS]
 
 
-def file_digest(path: Path) -> str:
-    """A digest of a file by its size, its time of change and samples of what is in it.
+def file_fingerprint(path: Path) -> str:
+    """A quick digest of a file: its size, its modification time and samples of its content.
 
     Raises:
-        InputError: There is no such ordinary file.
+        InputError: There is no such regular file.
         OSError: The file cannot be read.
     """
-    ordinary_size(path, "a file that can be read")
+    regular_file_size(path, "a file that can be read")
     state = path.stat()
     samples = []
     with path.open("rb") as file:
-        for place in np.linspace(0, max(state.st_size - SAMPLE_BYTES, 0), SAMPLES).astype(int):
-            file.seek(int(place))
+        for offset in np.linspace(0, max(state.st_size - SAMPLE_BYTES, 0), SAMPLES).astype(int):
+            file.seek(int(offset))
             samples.append(file.read(SAMPLE_BYTES))
             if state.st_size <= SAMPLE_BYTES:
                 break
@@ -57,12 +58,12 @@ def file_digest(path: Path) -> str:
 
 
 def content_digest(path: Path) -> str:
-    """SHA-256 of a file's content.
+    """SHA-256 of a file's whole content.
 
     Raises:
         InputError: The file cannot be read.
     """
-    ordinary_size(path, "a file that can be read")
+    regular_file_size(path, "a file that can be read")
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,17 +1,17 @@
-"""Letting what has been written outlive a loss of power."""
+"""Flushing files and folders to the disk, so that they outlive a loss of power."""
 
 import errno
 import os
 import sys
 from pathlib import Path
 
-LOSSES = frozenset(
+DISK_ERRORS = frozenset(
     getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO") if hasattr(errno, name)
 )
-"""Errors that say the disk is full or broken, not that a place was ill chosen."""
+"""Errors that say the disk is full or broken, not that a path was ill chosen."""
 
 
-def to_disk(path: Path) -> None:
+def fsync_path(path: Path) -> None:
     """Wait until a file's content, or a folder's list of names, is on the disk, where the system can.
 
     Raises:
@@ -26,5 +26,5 @@ def to_disk(path: Path) -> None:
         finally:
             os.close(descriptor)
     except OSError as error:
-        if error.errno in LOSSES:  # others only mean that there is no such thing here
+        if error.errno in DISK_ERRORS:  # others only mean that this file system has no fsync
             raise

@@ -1,60 +1,61 @@
-"""JSON objects that inherit fields from others, each field knowing which file says it.
+"""JSON objects whose fields are inherited from several files, each field with its source.
 
-Merging is that of JSON Merge Patch (RFC 7396): objects are merged field by field, everything else is
-replaced, and null takes an inherited field away. Fields whose names begin with `//` are comments.
+Overriding is JSON Merge Patch (RFC 7396): objects are merged field by field, everything else is replaced,
+and null removes an inherited field. Fields whose names begin with `//` are comments.
 """
 
 import re
 from collections.abc import Mapping
 from typing import Any
 
-COMMENT = "//"
+COMMENT_PREFIX = "//"
 _FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)
 ALTERNATIVES = (("segments_m", "height_m"), ("matrix_world", "matrix_world_frames"))
-"""Of each pair one says what the other would: the nearer one counts, whichever it is."""
+"""Two fields of each pair say the same: the nearer one counts, whichever it is."""
 
 
-class Inherited(dict[str, Any]):
-    """An object's fields, and for each the place of the object that says it, as sentences name it."""
+class InheritedFields(dict[str, Any]):
+    """The fields of an object after inheritance, and the source of each for sentences."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.places: dict[str, str] = {}
+        self.sources: dict[str, str] = {}
+        """Location of the object that gives each field, by name."""
 
-    def patched(self, patch: Mapping[str, Any], where: str) -> "Inherited":
-        """These fields with a nearer object's over them.
+    def overridden_by(self, patch: Mapping[str, Any], location: str) -> "InheritedFields":
+        """These fields with a nearer object merged over them.
 
         Args:
             patch: The nearer object.
-            where: Its place: a file, and the way to the object in it.
+            location: Where it stands: a file, and the path to the object in it.
         """
-        merged = Inherited()
+        merged = InheritedFields()
         merged.update(self)
-        merged.places.update(self.places)
+        merged.sources.update(self.sources)
         for first, second in ALTERNATIVES:
             for name, other in ((first, second), (second, first)):
                 if patch.get(name) is not None and other not in patch:
                     merged._drop(other)
         for name, value in patch.items():
-            if name.startswith(COMMENT):
+            if name.startswith(COMMENT_PREFIX):
                 continue
             if value is None and name in self:
                 merged._drop(name)
                 continue
-            merged.places[name] = where
+            merged.sources[name] = location
             if isinstance(value, Mapping):
-                known = self.get(name)
-                base = known if isinstance(known, Inherited) else Inherited()
-                merged[name] = base.patched(value, child_place(where, name))
+                inherited = self.get(name)
+                base = inherited if isinstance(inherited, InheritedFields) else InheritedFields()
+                merged[name] = base.overridden_by(value, child_location(location, name))
             else:
                 merged[name] = value
         return merged
 
     def _drop(self, name: str) -> None:
         self.pop(name, None)
-        self.places.pop(name, None)
+        self.sources.pop(name, None)
 
 
-def child_place(where: str, name: str) -> str:
-    """The place of an object in a field of another: `take.json: camera`, then `take.json: camera.lens`."""
-    return f"{where}: {name}" if _FILE.search(where) else f"{where}.{name}"
+def child_location(location: str, name: str) -> str:
+    """The location of an object in a field of another: `take.json: camera`, then `take.json: camera.lens`."""
+    return f"{location}: {name}" if _FILE.search(location) else f"{location}.{name}"

@@ -1,4 +1,4 @@
-"""JSON files, read strictly and written whole: no NaN, no endless numbers, nothing half-written."""
+"""JSON files, read strictly and written atomically: no NaN, no infinite numbers, nothing half-written."""
 
 import json
 import os
@@ -11,26 +11,26 @@ from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
-from .folder_lock import LOCK, folder_lock, hidden_name
-from .fsync import to_disk
-from .regular_file import ordinary_size
+from .file_lock import LOCK, file_lock, hidden_prefix
+from .fsync import fsync_path
+from .regular_file import regular_file_size
 
 LARGEST_BYTES = 64 * 2**20
-"""A moving camera of an hour fits; a video handed in by mistake does not."""
+"""A moving camera of an hour fits; a video given by mistake does not."""
 DEEPEST = 50
-"""Levels of lists and objects; no file of ours has ten."""
+"""Levels of nested lists and objects; no file of ours has ten."""
 MOST_LISTS = 4 * 10**6
-"""Lists and objects of a file, each of which takes many times its two letters once it is read."""
+"""Lists and objects of a file, each of which takes many times its two characters once it is read."""
 WORK = "-work"
-"""What the names of folders in which single files are made end with."""
+"""Ending of the hidden folder in which a single file is written."""
 MOST_DIGITS = 15
-"""Whole numbers of more digits have no exact float64."""
+"""Integers of more digits have no exact float64."""
 
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
-_HALF = re.compile(r"\\u[dD][89a-fA-F]")
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 _SHORT = Repr()
-"""Looks at no more of a value than is shown."""
+"""Reads no more of a value than is shown."""
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 8, 400, 400
 _SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 
@@ -40,7 +40,7 @@ def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
 
     Args:
         path: The file, UTF-8, with or without a byte order mark.
-        largest_bytes: A larger file is not read.
+        largest_bytes: A larger file is refused.
 
     Returns:
         The object's fields; every number in it is finite.
@@ -57,7 +57,7 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
 
     Args:
         text: The JSON.
-        where: What sentences about it begin with.
+        where: Location of the text, with which sentences begin.
 
     Raises:
         InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
@@ -67,7 +67,7 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
     try:
         value = json.loads(
             text,
-            object_pairs_hook=_object,
+            object_pairs_hook=_unique_fields,
             parse_constant=_refuse_constant,
             parse_float=_float,
             parse_int=_int,
@@ -79,20 +79,18 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
         ) from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
-    _check_letters(text, value, where)
+    _check_surrogates(text, value, where)
     if not isinstance(value, dict):
         raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
     return value
 
 
 def write_json(path: Path, value: Any, indent: int | None = None) -> None:
-    """Write a value as strict JSON beside `path`, then move it into place.
-
-    The same value always gives the same bytes.
+    """Write a value as strict JSON, atomically; the same value always gives the same bytes.
 
     Args:
-        path: The file; one that is there is replaced whole.
-        value: What `json` can write; a number that is not finite is refused.
+        path: The file; an older one is replaced.
+        value: A value that `json` can write; a number that is not finite is refused.
         indent: Spaces a level for files that people edit; None writes without spaces.
 
     Raises:
@@ -101,21 +99,23 @@ def write_json(path: Path, value: Any, indent: int | None = None) -> None:
     """
     separators = (",", ":") if indent is None else (",", ": ")
     text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
-    write_whole(path, lambda beside: beside.write_text(text + "\n", encoding="utf-8", newline="\n"))
+    write_atomically(path, lambda beside: beside.write_text(text + "\n", encoding="utf-8", newline="\n"))
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make a file beside `path` and move it into place, so that `path` is never half a file.
+def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a file atomically: `write` makes it in a hidden folder beside `path`, from which it is moved.
 
-    Who writes the same file meanwhile waits. What a killed process has left goes with the next writing.
+    Others that write the same file meanwhile wait. The remains of a killed process go with the next writing.
 
     Raises:
         ConversionError: The file cannot be written.
     """
     try:
-        stem = path.parent / hidden_name(path.name)
-        busy = f"{path}: another process has been writing it for too long; try again when it has finished"
-        with folder_lock(stem.with_name(stem.name + LOCK), busy, wait=True):
+        stem = path.parent / hidden_prefix(path.name)
+        busy_message = (
+            f"{path}: another process has been writing it for too long; try again when it has finished"
+        )
+        with file_lock(stem.with_name(stem.name + LOCK), busy_message, wait=True):
             folder = stem.with_name(stem.name + WORK)
             try:
                 if os.path.lexists(folder):
@@ -123,7 +123,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
                 folder.mkdir()
                 beside = folder / path.name
                 write(beside)
-                to_disk(beside)
+                fsync_path(beside)
                 os.replace(beside, path)
             finally:
                 shutil.rmtree(folder, ignore_errors=True)
@@ -132,14 +132,14 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def shown(value: Any, longest: int = 60) -> str:
-    """A value as people can read it in a sentence: one line, cut where it is long."""
+    """A value for a sentence: its repr in one line, cut where it is long."""
     text = _SHORT.repr(value)
     return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
 def _read_text(path: Path, largest_bytes: int) -> str:
     valid = "a JSON file in UTF-8"
-    size = ordinary_size(path, valid)
+    size = regular_file_size(path, valid)
     try:
         with path.open("rb") as file:
             content = file.read(largest_bytes + 1)  # it may have grown since
@@ -155,7 +155,7 @@ def _read_text(path: Path, largest_bytes: int) -> str:
 
 
 def _check_nesting(text: str, where: str) -> None:
-    """Refuse lists and objects that are too many or too deep, before room is made for them."""
+    """Refuse lists and objects that are too many or nested too deeply, before memory is taken for them."""
     count = text.count("[") + text.count("{")
     if count <= DEEPEST:
         return
@@ -170,9 +170,9 @@ def _check_nesting(text: str, where: str) -> None:
             )
 
 
-def _check_letters(text: str, value: Any, where: str) -> None:
-    """Refuse halves of characters, which escapes can write and no file can hold."""
-    if _HALF.search(text) is None:
+def _check_surrogates(text: str, value: Any, where: str) -> None:
+    """Refuse lone surrogates, halves of characters: escapes can write them, UTF-8 cannot."""
+    if _SURROGATE.search(text) is None:
         return
     try:
         json.dumps(value, ensure_ascii=False).encode()
@@ -182,7 +182,7 @@ def _check_letters(text: str, value: Any, where: str) -> None:
         ) from error
 
 
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _unique_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     fields: dict[str, Any] = {}
     for name, value in pairs:
         if name in fields:

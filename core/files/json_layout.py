@@ -1,4 +1,4 @@
-"""JSON laid out for people who read it and compare its versions line by line."""
+"""JSON formatted for people: easy to read, and to compare line by line between versions."""
 
 import json
 import re
@@ -6,33 +6,33 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .json_file import write_whole
+from .json_file import write_atomically
 
 WIDTH = 110
-"""What fits in so many characters, and holds no lists or objects, stands in one line."""
+"""Characters of a line: a list or an object of plain values that fits stands in one line."""
 INDENT = 2
 _AXIS = re.compile(r"_[xyz]$")
 
 
 def write_readable_json(path: Path, value: Any) -> None:
-    """Write a value as strict JSON that reads well, whole or not at all; the same value gives the same bytes.
+    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes.
 
     Raises:
         ValueError: A number is NaN or infinite.
         ConversionError: The file cannot be written.
     """
-    text = laid_out(value) + "\n"
-    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+    text = format_json(value) + "\n"
+    write_atomically(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def laid_out(value: Any, depth: int = 0, before: int = 0) -> str:
-    """A value as JSON, one item a line.
+def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
+    """A value as JSON text, one item a line.
 
-    Short lists and objects stand in one line, and so do the components x, y and z of one thing where more of
-    the object's names are compound ones: a change of one of them is a change of one line.
+    Short lists and objects stand in one line, and so do the components x, y and z of one quantity where names
+    of the object are compound ones: a change of one quantity is a change of one line.
 
     Args:
-        value: What `json` can write.
+        value: A value that `json` can write.
         depth: Spaces before its lines.
         before: Characters before it in its line.
     """
@@ -49,7 +49,7 @@ def laid_out(value: Any, depth: int = 0, before: int = 0) -> str:
     if flat and not compound and depth + before + len(short) <= WIDTH:
         return short
     inner = depth + INDENT
-    lines = [", ".join(name + laid_out(item, inner, len(name)) for name, item in row) for row in rows]
+    lines = [", ".join(name + format_json(item, inner, len(name)) for name, item in row) for row in rows]
     opening, closing = ("{", "}") if isinstance(value, Mapping) else ("[", "]")
     between = "\n" + " " * inner
     return opening + between + f",{between}".join(lines) + "\n" + " " * depth + closing
@@ -60,7 +60,7 @@ def _plain(value: Any) -> str:
 
 
 def _rows(fields: Mapping[str, Any]) -> Iterable[list[tuple[str, Any]]]:
-    """The fields with their names as JSON, those together that differ in the axis only."""
+    """The fields with their names as JSON; those that differ in the axis only share a row."""
     rows: dict[str, list[tuple[str, Any]]] = {}
     for name, item in fields.items():
         stem = _AXIS.sub("", name) if "." in name else name

@@ -1,4 +1,4 @@
-"""Nested lists of numbers as arrays: whatever is not numbers through and through is none."""
+"""Nested lists of numbers in JSON, read as arrays; text and truth values among them are refused."""
 
 from typing import Any
 
@@ -8,21 +8,22 @@ from ..arrays import Array
 
 
 def number_array(value: Any, *, nulls: bool = False) -> Array | None:
-    """Nested lists of numbers as an array, each list of a level being as long as the others.
+    """Nested lists of numbers as an array.
 
     Args:
-        value: What a JSON file holds.
+        value: The value of a JSON field.
         nulls: Whether null may stand for a number, and becomes NaN; else all are finite.
 
     Returns:
-        The array; None where a text, true or false, an object or a list of another length is among them.
+        The array; None where lists of one level differ in length, or text, true, false or an object is among
+        the numbers.
     """
     try:
-        things = np.asarray(value, dtype=object)  # numpy would take texts and truth values for numbers
+        items = np.asarray(value, dtype=object)  # as float64, numpy would convert text and truth values
     except ValueError:  # lists of several lengths
         return None
-    kinds = set(map(type, things.ravel())) - ({type(None)} if nulls else set())
+    kinds = set(map(type, items.ravel())) - ({type(None)} if nulls else set())
     if not all(issubclass(kind, int | float) and kind is not bool for kind in kinds):
         return None
-    array = things.astype(np.float64)
+    array = items.astype(np.float64)
     return array if nulls or np.isfinite(array).all() else None

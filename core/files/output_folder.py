@@ -1,97 +1,100 @@
-"""A folder of results that appears whole or not at all, whatever ends the process that makes it."""
+"""Result folders, written completely or not at all, even where the process is killed."""
 
 import errno
 import os
-import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .commit import Arrival, announce, clear, files_below, found_arrival, move_in, undo
-from .folder_lock import LOCK, folder_lock, hidden_name
-from .fsync import LOSSES
+from .commit import Commit, Moves, clean_up, files_below, roll_back, roll_forward, write_journal
+from .file_lock import LOCK, file_lock, hidden_prefix
+from .fsync import DISK_ERRORS
+from .paths import real_path
+from .recovery import recover
 
-NOTHING_ASIDE: Mapping[str, str] = {}
+NO_BACKUPS: Mapping[str, str] = {}
 
 
 @contextmanager
 def output_folder(
     path: Path,
-    belongings: Collection[str] = (),
-    seal: str | None = None,
-    aside: Mapping[str, str] = NOTHING_ASIDE,
+    own_files: Collection[str] = (),
+    manifest: str | None = None,
+    backups: Mapping[str, str] = NO_BACKUPS,
 ) -> Iterator[Path]:
-    """Give an empty folder beside `path`; when the block ends well, what is in it moves into `path`.
+    """Give an empty staging folder; when the block ends well, its files are committed to `path`.
 
-    Until then, and for good where the block raises or makes nothing, `path` stays as it was; a folder that
-    was not there is not there afterwards either. Files of other names in `path` are kept. A folder that was
-    not there appears at once; in one that was, a reader sees the files of a set arrive one after the other,
-    each of them whole, and the seal only while all are there and of one set.
+    Until then, and for good where the block raises or makes no file, `path` stays as it was; a folder that
+    did not exist does not exist afterwards either. Files of other names in `path` are kept. A new folder
+    appears at once; in an older one a reader sees the files of a set arrive one after the other, each of them
+    whole, and the manifest only while all files of one set are there.
 
-    Where a process was killed, the next that comes to `path` ends what it had completed and removes what it
-    had not, before the block begins.
+    Where a process was killed, the next one that uses `path` finishes or removes its commit before the block
+    begins.
 
     Args:
         path: The folder; made with its parents where it is missing.
-        belongings: Names, relative to `path`, of all files that such a block may make. Those left from an
-            earlier run that this one does not make are removed, so that a set is never of two runs.
-        seal: Name of the file that vouches for the others.
-        aside: Names of files in `path` that would be replaced or removed, and the names that they get
-            instead; it is looked at when the block has ended.
+        own_files: Names, relative to `path`, of all files that such a block may make. Those of an earlier run
+            that this one does not make are removed, so that a set is never of two runs.
+        manifest: Name of the file that lists the others.
+        backups: Names of files in `path` that would be replaced or removed, and the names that they get
+            instead; read after the block.
 
     Raises:
         InputError: `path` is no folder, or nothing can be written there.
         BusyError: Another process or thread works on the same folder.
-        ConversionError: The files cannot be moved into place.
+        ConversionError: The files cannot be moved into `path`.
     """
     try:
-        target = _target(path)
-        above = [folder for folder in target.parents if not folder.exists()]
-        stem = _level(target) / hidden_name(target.name)
+        target = _target_folder(path)
+        new_parents = [folder for folder in target.parents if not folder.exists()]
+        stem = _staging_parent(target) / hidden_prefix(target.name)
     except (OSError, ValueError) as error:
-        raise _refused(path, error) from error
-    busy = f"{path}: another process is writing there; try again when it has finished"
+        raise _refusal(path, error) from error
+    busy_message = f"{path}: another process is writing there; try again when it has finished"
     entered = False
     try:
-        with folder_lock(stem.with_name(stem.name + LOCK), busy):
-            empty = Arrival(target, stem, seal)
-            _tidy(empty)
-            _make(empty.new)
+        with file_lock(stem.with_name(stem.name + LOCK), busy_message):
+            empty = Commit(target, stem, manifest)
+            recover(empty)
+            _make_folder(empty.staging_folder)
             entered = True
-            yield from _filled(empty, belongings, aside)
+            yield from _stage_and_commit(empty, own_files, backups)
     except KeymarkError:
         raise
     except OSError as error:
-        raise _failed(path, error) if entered else _refused(path, error) from error
+        raise _write_error(path, error) if entered else _refusal(path, error) from error
     finally:
-        _remove_empty(above)
+        _remove_empty(new_parents)
 
 
-def _filled(empty: Arrival, belongings: Collection[str], aside: Mapping[str, str]) -> Iterator[Path]:
-    """Let the set be made, then move it in."""
-    done: list[tuple[Path, Path]] = []
+def _stage_and_commit(
+    empty: Commit, own_files: Collection[str], backups: Mapping[str, str]
+) -> Iterator[Path]:
+    """Let the block fill the staging folder, then commit it, or roll back."""
+    moves: Moves = []
     try:
-        yield empty.new
-        made = files_below(empty.new)
-        if made:
-            gone = tuple(sorted(set(belongings) - set(made)))
-            arrival = Arrival(empty.target, empty.stem, empty.seal, made, gone, dict(aside))
-            announce(arrival)
-            move_in(arrival, done)
+        yield empty.staging_folder
+        written = files_below(empty.staging_folder)
+        if written:
+            removed = tuple(sorted(set(own_files) - set(written)))
+            commit = Commit(empty.target, empty.stem, empty.manifest, written, removed, dict(backups))
+            write_journal(commit)
+            roll_forward(commit, moves)
     except BaseException:
-        undo(empty, done)  # where this fails, the next to come ends what was begun
-        clear(empty)
+        roll_back(empty, moves)  # where this fails, the next run recovers
+        clean_up(empty)
         raise
     try:
-        clear(empty)
+        clean_up(empty)
     except KeyboardInterrupt:
-        clear(empty)
+        clean_up(empty)
         raise
 
 
-def _make(folder: Path) -> None:
-    """Make a folder, or leave none where that is interrupted."""
+def _make_folder(folder: Path) -> None:
+    """Make a folder, and remove it again where that is interrupted."""
     try:
         folder.mkdir()
     except KeyboardInterrupt:
@@ -100,30 +103,10 @@ def _make(folder: Path) -> None:
         raise
 
 
-def _tidy(empty: Arrival) -> None:
-    """End or remove what a killed process has left."""
-    found = found_arrival(empty)
-    if found is not None:
-        move_in(found, [])
-    clear(empty)
-    if empty.stem.parent == empty.target:
-        for rest in empty.target.glob(f"{empty.stem.name}-*"):  # Blender's files, see `blend_place`
-            rest.unlink(missing_ok=True)
-    for rest in (empty.new, empty.old):
-        if os.path.lexists(rest):
-            shutil.rmtree(rest)  # which could not be removed: this time say why
-
-
-def real_path(path: Path) -> Path:
-    """A path from the root, links resolved, with one slash before it: two mean something to Blender."""
-    real = os.path.realpath(path)
-    return Path("/" + real.lstrip("/") if real.startswith("//") else real)
-
-
-def _target(path: Path) -> Path:
+def _target_folder(path: Path) -> Path:
     target = real_path(path)
     try:
-        os.lstat(target)  # a name that cannot be is an error here, and from Python 3.14 on nowhere else
+        os.lstat(target)  # an impossible name is an error here, and from Python 3.14 on nowhere else
     except FileNotFoundError:
         return target
     if not target.is_dir():
@@ -131,10 +114,10 @@ def _target(path: Path) -> Path:
     return target
 
 
-def _level(target: Path) -> Path:
-    """The folder from which files can be moved into `target`: that it lies in, or else itself.
+def _staging_parent(target: Path) -> Path:
+    """The folder for the staging folder, from which files can be moved: the target's parent, or the target.
 
-    The first is not possible where `target` is a mounted volume or its parent is not ours to write.
+    The parent cannot be used where the target is a mounted volume or the parent is not ours to write.
     """
     if not target.is_dir():
         return target.parent
@@ -144,22 +127,22 @@ def _level(target: Path) -> Path:
     return target.parent if beside and target.stat().st_dev == target.parent.stat().st_dev else target
 
 
-def _refused(path: Path, error: Exception) -> KeymarkError:
-    """The sentence on a place where nothing can be begun."""
-    if isinstance(error, OSError) and error.errno in LOSSES:
-        return _failed(path, error)
+def _refusal(path: Path, error: Exception) -> KeymarkError:
+    """The error for a folder in which no staging folder can be made."""
+    if isinstance(error, OSError) and error.errno in DISK_ERRORS:
+        return _write_error(path, error)
     if isinstance(error, FileExistsError) and error.filename is None:
         return InputError(f"{path}: {error.strerror}")
     reason = (error.strerror if isinstance(error, OSError) else None) or error
     return InputError(f"{path}: cannot be written ({reason}); name a folder that can")
 
 
-def _failed(path: Path, error: OSError) -> ConversionError:
+def _write_error(path: Path, error: OSError) -> ConversionError:
     return ConversionError(f"{path}: cannot be written ({error.strerror or error})")
 
 
 def _remove_empty(folders: Sequence[Path]) -> None:
-    """Remove folders that this run has made, nearest first, while they are empty."""
+    """Remove parent folders that this run has made, nearest first, while they are empty."""
     for folder in folders:
         try:
             folder.rmdir()

@@ -1,4 +1,4 @@
-"""Ordinary files, told from what only looks like one: devices and pipes may have no end, or never begin."""
+"""Regular files, told from devices and pipes, which may have no end, or never begin."""
 
 import stat
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 from ..errors import InputError
 
 
-def ordinary_size(path: Path, valid: str) -> int:
-    """The size of an ordinary file in bytes; it has not been opened, which alone could wait for ever.
+def regular_file_size(path: Path, valid: str) -> int:
+    """The size of a regular file in bytes; the file is not opened, which alone could wait for ever.
 
     Args:
         path: The file.

@@ -32,7 +32,7 @@ def read_resolution(fields: Fields) -> tuple[int, int]:
     fits = numbers is not None and numbers.shape == (2,) and not np.any(numbers % 1)
     if numbers is None or not fits or numbers.min() < 1 or numbers.max() > LARGEST_SIDE_PX:
         shown_value = shown(fields.values["resolution"])
-        raise InputError(f"{fields.at('resolution')}: resolution is {shown_value}; it must be {valid}")
+        raise InputError(f"{fields.source_of('resolution')}: resolution is {shown_value}; it must be {valid}")
     return int(numbers[0]), int(numbers[1])
 
 
@@ -52,7 +52,7 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
     numbers = number_array(listed)
     if numbers is None or numbers.ndim != 1 or numbers.size > 3 or np.any(np.abs(numbers) > MOST_DISTORTION):
         raise InputError(
-            f"{fields.at('distortion')}: distortion is {shown(value)}; "
+            f"{fields.source_of('distortion')}: distortion is {shown(value)}; "
             f"it must be up to three numbers [k1, k2, k3], each within {MOST_DISTORTION:g}"
         )
     padded = np.zeros(3)
@@ -80,12 +80,14 @@ def read_poses(fields: Fields) -> Array:
 def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:
     matrices = number_array(fields.required(name, valid))
     if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
-        raise InputError(f"{fields.at(name)}: {name} has the wrong form; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} has the wrong form; it must be {valid}")
     stacked = matrices.reshape(-1, 4, 4).copy()
     fault = _first_fault(stacked)
     if fault is not None:
         index, what = fault
-        raise InputError(f"{fields.at(name)}: {name}" + (f"[{index}]" if ndim == 3 else "") + f" {what}")
+        raise InputError(
+            f"{fields.source_of(name)}: {name}" + (f"[{index}]" if ndim == 3 else "") + f" {what}"
+        )
     left, _, right = np.linalg.svd(_scaled(stacked))
     stacked[:, :3, :3] = left @ right
     return stacked.reshape(matrices.shape)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InputError
-from ..files.digest import digest, file_digest
+from ..files.digest import digest, file_fingerprint
 from .clips.image_sequence import find_images
 from .marker_style import MarkerStyle
 from .region_tracks import ExpectedRegions
@@ -65,8 +65,8 @@ def footage_digest(path: Path) -> str:
 def _footage(path: Path, fps: float) -> tuple[object, ...]:
     images = find_images(path)
     if images is None:
-        return (file_digest(path),)
+        return (file_fingerprint(path),)
     states = [file.stat() for file in images]
     names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
     step = max(1, len(images) // MOST_SAMPLED)
-    return fps, names, tuple(file_digest(file) for file in images[::step])
+    return fps, names, tuple(file_fingerprint(file) for file in images[::step])

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from ..body.actor import Actor
 from ..body.posture import Posture
-from ..text import counted
+from ..text import pluralize
 
 Travel = tuple[float, float, float]
 
@@ -71,7 +71,7 @@ class Library:
     @property
     def size(self) -> str:
         """How many postures and motions, in words."""
-        return f"{counted(len(self.postures), 'posture')}, {counted(len(self.motions), 'motion')}"
+        return f"{pluralize(len(self.postures), 'posture')}, {pluralize(len(self.motions), 'motion')}"
 
     @cached_property
     def by_name(self) -> Mapping[str, LibraryPosture]:

@@ -39,7 +39,7 @@ def read_library_fields(fields: Fields, skeleton: Skeleton) -> Library:
     return Library(
         identifier=checked_identifier(identifier, f"{fields.where}: identifier"),
         title=_line(fields, "title", LONGEST_NAME),
-        version=fields.whole("version", 1, HIGHEST_VERSION),
+        version=fields.integer("version", 1, HIGHEST_VERSION),
         author=_line(fields, "author", LONGEST_LINE),
         license=_license(fields),
         actor=_actor(fields),

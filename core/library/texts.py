@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from ..errors import InputError
-from ..files.control_characters import is_hidden
+from ..files.control_characters import is_control_character
 from ..files.json_file import shown
 
 LONGEST_IDENTIFIER = 64
@@ -65,7 +65,7 @@ def text_fault(text: object, longest: int) -> str:
         return f"must be a text of at most {longest} characters"
     if not text.strip() or text != text.strip():
         return "must be a text that neither is empty nor begins or ends with a space"
-    if any(is_hidden(letter) for letter in text):
+    if any(is_control_character(letter) for letter in text):
         return "must be one line of text without control characters"
     if not name_key(text):
         return "must be a text in which something can be seen"
@@ -76,7 +76,7 @@ def text_fault(text: object, longest: int) -> str:
 def name_key(name: str) -> str:
     """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
-    return " ".join("".join(letter for letter in folded if not is_hidden(letter, "")).split())
+    return " ".join("".join(letter for letter in folded if not is_control_character(letter, "")).split())
 
 
 def told_apart(name: str, taken: Iterable[str]) -> str:

@@ -17,7 +17,8 @@ from ..prior.marker_speed import marker_speed, propose_keyframes
 from ..progress import Job, Progress, stretch, within
 from ..take.description import Description
 from ..take.read_footage import read_footage
-from ..take.take import Take, read_described
+from ..take.take import Take
+from ..take.take_file import read_described
 from .library_match import LibraryMatch, Prepared, Sought, match_library, prepare, prepared_anew
 from .posed_constraints import Anchors
 

@@ -1,1 +1,1 @@
-"""Shoots: many takes that share a description."""
+"""Shoots: many takes that inherit from one description; their discovery, check and outcomes."""

@@ -5,36 +5,38 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..take.conversion_settings import NOTHING_CHOSEN, ConversionSettings
-from ..take.description import Description, chosen_settings, describe
+from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
+from ..take.description import Description, describe, effective_settings
+
+MOST_TAKES = 100_000
 
 
 @dataclass(frozen=True, eq=False)
 class ShootTake:
-    """One take of a shoot, as it was found; nothing of it has been read yet."""
+    """One take of a shoot; none of its files has been read yet."""
 
     name: str
-    """Its way from the shoot's folder, with slashes, without a clip's ending; results lie under the same."""
-    place: Path
-    """The take's folder, or the clip."""
-    nearest: Mapping[str, Any] | None = None
-    """What a list says of it, which counts before all else."""
-    said_in: str = ""
-    """Where it says so, for sentences."""
+    """Its path from the shoot's folder, with slashes, without a clip's ending; also that of its results."""
+    path: Path
+    """The take's folder, or a bare clip."""
+    overrides: Mapping[str, Any] | None = None
+    """Fields in a line of a list, which override all files."""
+    overrides_location: str = ""
+    """Location of these fields, for sentences."""
 
     def describe(self) -> Description:
-        """Gather what is said of it.
+        """Merge all files that describe the take.
 
         Raises:
             InputError: A file is unusable.
         """
-        return describe(self.place, self.nearest, self.said_in)
+        return describe(self.path, self.overrides, self.overrides_location)
 
     def settings(
-        self, description: Description, farther: ConversionSettings = NOTHING_CHOSEN
+        self, description: Description, defaults: ConversionSettings = NO_SETTINGS
     ) -> ConversionSettings:
-        """How it is converted; `farther` counts where nothing nearer says anything."""
-        return chosen_settings(description, farther)
+        """The settings of its conversion; `defaults` for what the description leaves out."""
+        return effective_settings(description, defaults)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +44,13 @@ class Shoot:
     """Takes that are converted together."""
 
     path: Path
-    """The folder, or the list."""
+    """The folder, the list, or the one clip."""
     takes: tuple[ShootTake, ...]
     """In the order of their names, each name once."""
 
     @property
     def folder(self) -> Path:
-        """What the takes' names are relative to."""
+        """The folder that the takes' names are relative to."""
         return self.path if self.path.is_dir() else self.path.parent
 
 

@@ -1,18 +1,20 @@
-"""What a person should know of a take's clip, one sentence each."""
+"""Notes on a take's clip for a person, one sentence each."""
 
 import numpy as np
 
 from ..footage.clips.clip import Clip
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from .take import Take, rate_note
+from .take import Take
 
-PAUSE = 2.5
-"""Longest time between two frames, in usual ones, that is nothing to speak of."""
+NOTICEABLE_RATE = 0.02
+"""Difference of two frame rates that is worth a note, as a share of the take's."""
+LONGEST_INTERVAL = 2.5
+"""Time between two frames, as a multiple of the median, from which on frames seem to be missing."""
 
 
 def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
-    """Sentences on what may be wrong with the clip."""
+    """Sentences on what may be wrong with a clip that has been read."""
     rate = rate_note(take, clip)
     notes = [*clip.notes] if rate is None else [*clip.notes, rate]
     tracks = reading.tracks
@@ -22,16 +24,23 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
             "decoded; it may be cut off or damaged"
         )
-    return (*notes, *reading.noticed.notes(take.frame_start), *_pause_notes(take, tracks))
+    return (*notes, *reading.noticed.notes(take.frame_start), *_gap_notes(take, tracks))
 
 
-def _pause_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
-    """A sentence where frames seem to have been left out, so that numbers of frames are not times."""
-    pauses = np.diff(tracks.time_s)
-    if len(pauses) < 2 or pauses.max() < PAUSE * np.median(pauses):
+def rate_note(take: Take, clip: Clip) -> str | None:
+    """A sentence where the clip's own frame rate differs from the take's; None where they agree."""
+    if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
+        return None
+    return f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}"
+
+
+def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
+    """A sentence on the longest gap in the time stamps: there, frame numbers are no longer times."""
+    intervals = np.diff(tracks.time_s)
+    if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
         return ()
-    before = int(pauses.argmax())
+    before = int(intervals.argmax())
     return (
-        f"no frame was recorded for {pauses[before]:.2f} s after frame {before + take.frame_start}: "
-        "keyframes count the frames there are, so look whether those after it lie where they should",
+        f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; "
+        "check the keyframes after it",
     )

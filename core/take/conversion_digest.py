@@ -1,4 +1,4 @@
-"""By what it is known that a take has been converted already: everything the result follows from."""
+"""The digest of a conversion's input: a batch skips takes whose results have the same one."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from ..footage.clips.image_sequence import find_images
 from .conversion_settings import ConversionSettings
 from .description import Description
 from .methods import METHODS
-from .shoot_file import OWN, SETTINGS
+from .shoot_file import FILE_FIELDS, SETTING_FIELDS
 
 FORMAT = 1
 """Raised whenever the same input gives another result without a new version."""
@@ -25,16 +25,16 @@ def conversion_digest(
     output: Path,
     version: str,
 ) -> str:
-    """A digest that changes with everything a conversion depends on, and with nothing else.
+    """A digest that changes with every input of a conversion, and with nothing else.
 
-    Files count by what is in them, never by when they were changed: clocks differ, copies keep no times.
+    Files count by their content, not by their modification times: clocks differ, copies keep no times.
 
     Args:
-        description: The take's.
-        settings: How it is converted.
-        libraries: Digests of what each library to match with holds.
-        output: Where results go: a .blend holds the way from there to its clip.
-        version: Keymark's.
+        description: The take's description.
+        settings: The settings of its conversion.
+        libraries: Digests of the libraries to match with.
+        output: The folder of the results: a .blend holds the relative path from there to its clip.
+        version: Keymark's version.
 
     Raises:
         InputError: A file cannot be read.
@@ -50,9 +50,9 @@ def conversion_digest(
     return digest(
         FORMAT,
         version,
-        _said(description.fields.values),
+        _take_fields(description.fields.values),
         description.name,
-        _way(description.clip, output),
+        _relative_clip(description.clip, output),
         tuple((file.name, content_digest(file)) for file in footage),
         None if posed is None else content_digest(posed),
         tuple(libraries),
@@ -62,16 +62,16 @@ def conversion_digest(
     )
 
 
-def _said(fields: Mapping[str, Any]) -> str:
-    """What is said of the take itself; of its markers also in which order, which is that of the results."""
-    said = {name: value for name, value in fields.items() if name not in (*OWN, *SETTINGS)}
-    markers = said.get("markers")
+def _take_fields(fields: Mapping[str, Any]) -> str:
+    """The fields of the take itself as JSON; markers in their order, which is that of the results."""
+    kept = {name: value for name, value in fields.items() if name not in (*FILE_FIELDS, *SETTING_FIELDS)}
+    markers = kept.get("markers")
     if isinstance(markers, Mapping):
-        said["markers"] = list(markers.items())
-    return json.dumps(said, sort_keys=True, ensure_ascii=False)
+        kept["markers"] = list(markers.items())
+    return json.dumps(kept, sort_keys=True, ensure_ascii=False)
 
 
-def _way(clip: Path, output: Path) -> str:
+def _relative_clip(clip: Path, output: Path) -> str:
     try:
         return os.path.relpath(os.path.realpath(clip), os.path.realpath(output))
     except ValueError:  # another drive

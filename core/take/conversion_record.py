@@ -1,6 +1,7 @@
-"""`conversion.json`: what a finished conversion was made of and what came out, beside its files.
+"""`conversion.json`: the record of a finished conversion, its input digest, notes and files.
 
-It is the last file to arrive and the first to go, so that files without it are never taken for whole.
+It is the manifest of the result's commit: written last and removed first, so that a folder without it never
+counts as finished.
 """
 
 import os
@@ -13,9 +14,9 @@ from typing import Any
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
-from ..files.safe_path import inside_path
+from ..files.safe_path import safe_path
 
-NAME = "conversion.json"
+RECORD_FILE = "conversion.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**22
 MOST_LISTED = 10**6
@@ -27,44 +28,44 @@ _SHA256 = re.compile(r"[0-9a-f]{64}", re.ASCII)
 
 @dataclass(frozen=True)
 class ConversionRecord:
-    """A finished conversion. Nothing in it depends on when, where or how fast it ran."""
+    """The record of a finished conversion; nothing in it depends on time, folder or speed of the run."""
 
     digest: str
-    """Of everything the result follows from, see `conversion_digest`."""
+    """Digest of the input, see `conversion_digest`."""
     keymark: str
-    """The version that made it."""
+    """Keymark's version."""
     take: str
-    """What people call the take."""
+    """Name of the take."""
     method: str
     library: str | None
-    """Identifier of the library that was matched; None where all was posed."""
+    """Identifier of the library that was matched; None where all keyframes are posed."""
     frames: int
     frame_start: int
     fps: float
     keyframes: tuple[int, ...]
     """Scene frames."""
     matched: tuple[int, ...]
-    """Those of them that were matched with a library; a person posed the others."""
+    """Scene frames of the keyframes that were matched with a library; a person posed the others."""
     confidence: float | None
-    """Mean over the frames of what a review believes, 0 to 1; None for a method without uncertainty."""
+    """Mean confidence of the frames, 0 to 1; None for a method without uncertainty."""
     weakest: float | None
-    """Confidence that one frame in twenty falls short of."""
+    """Confidence that one frame in twenty falls short of: the 5th percentile."""
     weak_frames: tuple[int, ...]
-    """Scene frames worth another keyframe, the worst first."""
+    """Scene frames that need another keyframe, the worst first."""
     notes: tuple[str, ...]
-    """What a person should know, one sentence each."""
+    """Notes for a person, one sentence each."""
     files: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of every file of the result, by its path in the folder; for motion.blend, in which Blender
     leaves memory addresses, that of its Action's curves."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
-    """Write a record into a folder of results, beside and moved into place.
+    """Write a record into a folder of results, atomically.
 
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_json(folder / NAME, {"schema_version": SCHEMA_VERSION, **asdict(record)}, indent=1)
+    write_json(folder / RECORD_FILE, {"schema_version": SCHEMA_VERSION, **asdict(record)}, indent=1)
 
 
 def read_record(folder: Path) -> ConversionRecord:
@@ -73,7 +74,7 @@ def read_record(folder: Path) -> ConversionRecord:
     Raises:
         InputError: There is none, or a field is unusable.
     """
-    path = folder / NAME
+    path = folder / RECORD_FILE
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
     fields.check_version(SCHEMA_VERSION)
     return ConversionRecord(
@@ -82,8 +83,8 @@ def read_record(folder: Path) -> ConversionRecord:
         take=_line(fields, "take"),
         method=_line(fields, "method"),
         library=_line(fields, "library") if fields.has("library") else None,
-        frames=fields.whole("frames", 1, MOST_LISTED),
-        frame_start=fields.whole("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
+        frames=fields.integer("frames", 1, MOST_LISTED),
+        frame_start=fields.integer("frame_start", -FARTHEST_FRAME, FARTHEST_FRAME),
         fps=fields.number("fps", 1e-3, 1e4),
         keyframes=_frames(fields, "keyframes"),
         matched=_frames(fields, "matched"),
@@ -95,17 +96,17 @@ def read_record(folder: Path) -> ConversionRecord:
     )
 
 
-def record_if_any(folder: Path) -> ConversionRecord | None:
-    """A folder's record; None where there is none, or none that can be read."""
+def find_record(folder: Path) -> ConversionRecord | None:
+    """A folder's record; None where there is none, or it cannot be read."""
     try:
         return read_record(folder)
     except InputError:
         return None
 
 
-def is_finished(folder: Path, digest: str) -> bool:
-    """Whether a folder holds the whole result of a conversion with this digest."""
-    record = record_if_any(folder)
+def is_up_to_date(folder: Path, digest: str) -> bool:
+    """Whether a folder holds the complete result of a conversion with this input digest."""
+    record = find_record(folder)
     if record is None:
         return False
     return record.digest == digest and all(os.path.isfile(folder / name) for name in record.files)
@@ -119,14 +120,14 @@ def _line(fields: Fields, name: str) -> str:
     valid = f"a text of at most {LONGEST_LINE} characters"
     text = fields.text(name, valid)
     if len(text) > LONGEST_LINE:
-        raise InputError(f"{fields.at(name)}: {name} is {shown(text)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(text)}; it must be {valid}")
     return text
 
 
 def _list(fields: Fields, name: str, kind: type, most: int, valid: str) -> list[Any]:
     value = fields.required(name, valid)
     if not isinstance(value, list) or len(value) > most or not all(type(item) is kind for item in value):
-        raise InputError(f"{fields.at(name)}: {name} is {shown(value)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
     return value
 
 
@@ -134,7 +135,7 @@ def _frames(fields: Fields, name: str) -> tuple[int, ...]:
     valid = f"a list of at most {MOST_LISTED} frames"
     frames = _list(fields, name, int, MOST_LISTED, valid)
     if any(abs(frame) > FARTHEST_FRAME + MOST_LISTED for frame in frames):
-        raise InputError(f"{fields.at(name)}: {name} is {shown(frames)}; it must be {valid}")
+        raise InputError(f"{fields.source_of(name)}: {name} is {shown(frames)}; it must be {valid}")
     return tuple(frames)
 
 
@@ -142,7 +143,7 @@ def _notes(fields: Fields) -> tuple[str, ...]:
     valid = f"a list of at most {MOST_NOTES} sentences of {LONGEST_NOTE} characters"
     notes = _list(fields, "notes", str, MOST_NOTES, valid)
     if any(len(note) > LONGEST_NOTE for note in notes):
-        raise InputError(f"{fields.at('notes')}: notes is {shown(notes)}; it must be {valid}")
+        raise InputError(f"{fields.source_of('notes')}: notes is {shown(notes)}; it must be {valid}")
     return tuple(notes)
 
 
@@ -151,7 +152,7 @@ def _files(fields: Fields) -> Mapping[str, str]:
     if len(files.values) > MOST_FILES:
         raise InputError(f"{files.where} names {len(files.values)} files; at most {MOST_FILES} are read")
     for name, digest in files.values.items():
-        inside_path(Fields({"name": name}, files.where), "name", Path(), "a file of this folder")
+        safe_path(Fields({"name": name}, files.where), "name", Path(), "a file of this folder")
         if not isinstance(digest, str) or _SHA256.fullmatch(digest) is None:
             raise InputError(
                 f"{files.where}: {shown(name)} is {shown(digest)}; it must be a SHA-256 of 64 digits"

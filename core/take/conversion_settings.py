@@ -1,13 +1,13 @@
-"""How a take is converted, as far as a person can choose."""
+"""Settings of a conversion: keyframes, library, floor, method, pictures."""
 
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..errors import InputError
-from ..files.control_characters import is_hidden
+from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
-from ..files.safe_path import inside_path
+from ..files.safe_path import safe_path
 from .methods import METHODS
 
 HIGHEST_FLOOR_M = 1000.0
@@ -18,58 +18,59 @@ LIBRARY_VALID = "a library's name, auto, or the path of a library file inside th
 
 @dataclass(frozen=True)
 class ConversionSettings:
-    """Choices; what is None is left to the take and to Keymark."""
+    """Settings; those that are None are left to the take and to Keymark."""
 
     keyframes: Path | None = None
-    """The keyframe file; by default the take's own where it has one."""
+    """The keyframe file; by default the take's own where it exists."""
     library: str | None = None
-    """Name or file of the library to match with, or `auto`; None where all is posed."""
+    """Name or file of the library to match with, or `auto`; None where all keyframes are posed."""
     floor_m: float | None = None
     """Height of the floor where it is known [m]; for matching."""
     method: str | None = None
     """`map` (the default), `ekf` or `interpolation`."""
     pictures: bool | None = None
-    """Whether to draw the report; the default is to."""
+    """Whether to draw the report; by default it is drawn."""
 
-    def over(self, farther: "ConversionSettings") -> "ConversionSettings":
-        """These choices, and where they say nothing those of another."""
+    def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
+        """These settings, and the default for each that is None."""
         merged = {}
         for field in fields(self):
             own = getattr(self, field.name)
-            merged[field.name] = getattr(farther, field.name) if own is None else own
+            merged[field.name] = getattr(defaults, field.name) if own is None else own
         return ConversionSettings(**merged)
 
 
-NOTHING_CHOSEN = ConversionSettings()
+NO_SETTINGS = ConversionSettings()
 
 
 def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:
-    """The choices that a description makes.
+    """The settings in a take's description.
 
     Args:
-        description: Its fields.
-        folders: For each place that may say a field, the folder that paths in it are relative to.
+        description: The fields of the take, inherited ones included.
+        folders: For each source of fields, the folder that its paths are relative to.
 
     Raises:
-        InputError: A field is not what it must be, or a path leaves its folder.
+        InputError: A field has no valid value, or a path leaves its folder.
     """
     method = description.text("method", listed(METHODS)) if description.has("method") else None
     if method not in (None, *METHODS):
         raise InputError(
-            f"{description.at('method')}: method is {shown(method)}; it must be one of {listed(METHODS)}"
+            f"{description.source_of('method')}: method is {shown(method)}; "
+            f"it must be one of {listed(METHODS)}"
         )
     pictures = description.values.get("pictures")
     if pictures is not None and not isinstance(pictures, bool):
         raise InputError(
-            f"{description.at('pictures')}: pictures is {shown(pictures)}; it must be true or false"
+            f"{description.source_of('pictures')}: pictures is {shown(pictures)}; it must be true or false"
         )
     floor_m = None
     if description.has("floor_m"):
         floor_m = description.number("floor_m", -HIGHEST_FLOOR_M, HIGHEST_FLOOR_M, "m")
     keyframes = None
     if description.has("keyframes"):
-        keyframes = inside_path(
-            description, "keyframes", folders[description.at("keyframes")], KEYFRAMES_VALID
+        keyframes = safe_path(
+            description, "keyframes", folders[description.source_of("keyframes")], KEYFRAMES_VALID
         )
     return ConversionSettings(keyframes, _library(description, folders), floor_m, method, pictures)
 
@@ -78,10 +79,12 @@ def _library(description: Fields, folders: dict[str, Path]) -> str | None:
     if not description.has("library"):
         return None
     name = description.text("library", LIBRARY_VALID)
-    if not name.lower().endswith(".json"):  # a name; whatever holds a slash would be taken for a file
-        if len(name) > LONGEST_NAME or any(letter in "/\\" or is_hidden(letter) for letter in name):
+    if not name.lower().endswith(".json"):  # a name, which must not look like a path
+        if len(name) > LONGEST_NAME or any(
+            letter in "/\\" or is_control_character(letter) for letter in name
+        ):
             raise InputError(
-                f"{description.at('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
+                f"{description.source_of('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
             )
         return name
-    return str(inside_path(description, "library", folders[description.at("library")], LIBRARY_VALID))
+    return str(safe_path(description, "library", folders[description.source_of("library")], LIBRARY_VALID))

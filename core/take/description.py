@@ -1,7 +1,7 @@
-"""What is said of one take, by its own file and by the shoots it belongs to, each field from the nearest.
+"""The description of one take: the fields of its own file and those it inherits from `shoot.json` above.
 
-A take is a folder that holds `take.json`; or, where a `shoot.json` above describes it, a mere video or a
-folder of images, beside which `NAME.take.json` and `NAME.keyframes.json` may say more.
+A take is a folder that holds `take.json`; or, where a `shoot.json` above describes it, a bare clip: a video
+or a folder of images. Its sidecar files `NAME.take.json` and `NAME.keyframes.json` override and add.
 """
 
 import os
@@ -13,148 +13,149 @@ from typing import Any
 
 from ..errors import InputError
 from ..files.fields import Fields
-from ..files.inherited_fields import Inherited
+from ..files.inherited_fields import InheritedFields
 from ..files.json_file import read_json
-from ..files.safe_path import check_links, inside_path
+from ..files.paths import absolute_path
+from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
-from .conversion_settings import NOTHING_CHOSEN, ConversionSettings, read_settings
-from .shoot_file import NAME, shoot_fields, shoot_files, whole_way
+from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings
+from .shoot_file import SHOOT_FILE, find_shoot_files, shoot_fields
 
-OWN = "take.json"
-KEYFRAMES = "keyframes.json"
+TAKE_FILE = "take.json"
+KEYFRAME_FILE = "keyframes.json"
+CLIP_FILE = "clip.mp4"
 CLIP_VALID = "a path inside the take's folder, as in clip.mp4"
 
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """One take as it is described; the fields are not checked yet but for those named here."""
+    """The description of one take; of its fields only those named here are checked yet."""
 
-    place: Path
-    """The take: a folder, or the clip itself."""
+    path: Path
+    """The take: a folder, or a bare clip."""
     name: str
     """What people call it."""
     folder: Path
-    """What paths in it are relative to."""
+    """The folder that the take's own paths are relative to."""
     file: Path
     """The nearest file that describes it; sentences name it where a field is missing."""
     files: tuple[Path, ...]
     """All files that describe it, the farthest first."""
     clip: Path
     keyframes: Path
-    """Where its keyframes are, if it has some."""
+    """The keyframe file, which may not exist."""
     fields: Fields
     settings: ConversionSettings
     inherits: bool
-    """Whether any of it comes from a shoot; then the clip itself may tell its rate and size."""
+    """Whether a `shoot.json` describes it; then rate and size may come from the clip itself."""
 
 
-def describe(place: Path, nearest: Mapping[str, Any] | None = None, said_in: str = "") -> Description:
-    """Gather what is said of a take.
+def describe(
+    path: Path, overrides: Mapping[str, Any] | None = None, overrides_location: str = ""
+) -> Description:
+    """Merge all files that describe a take.
 
     Args:
-        place: A folder with `take.json`, a video, or a folder of images.
-        nearest: Fields that count before all others, as a line of a list has them; their paths are relative
-            to the take's folder.
-        said_in: Where these stand, for sentences.
+        path: A folder with `take.json`, a video, or a folder of images.
+        overrides: Fields that override all files, as in a line of a list; their paths are relative to the
+            take's folder.
+        overrides_location: Location of these fields, for sentences.
 
     Raises:
         InputError: There is no such take, nothing describes it, or a file is unusable.
     """
-    own = _own_file(place)
-    folder, whole = own.parent, own.name == OWN
-    shared = shoot_files(folder)
-    if not os.path.isfile(own) and not whole and not shared:
+    own_file = _own_file(path)
+    folder, is_folder = own_file.parent, own_file.name == TAKE_FILE
+    shared = find_shoot_files(folder)
+    if not os.path.isfile(own_file) and not is_folder and not shared:
         raise InputError(
-            f"{place}: nothing describes this clip; {own.name} beside it, or {NAME} there or in a folder "
-            "above, must say what camera, actor and markers it shows"
+            f"{path}: nothing describes this clip; {own_file.name} beside it, or {SHOOT_FILE} there "
+            "or in a folder above, must say what camera, actor and markers it shows"
         )
-    fields = Inherited()
-    folders: dict[str, Path] = {}
-    for file, values in shared.items():
-        fields = fields.patched(shoot_fields(file, values), str(file))
-        folders[str(file)] = file.parent
     files = [*shared]
-    if os.path.isfile(own) or whole:
-        fields = fields.patched(read_json(own), str(own))
-        folders[str(own)] = folder
-        files.append(own)
-    if nearest:
-        fields = fields.patched(nearest, said_in)
-        folders[said_in] = folder
-    described = Fields(fields, str(files[-1]))
-    clip = place
-    if whole:
-        clip = (
-            inside_path(described, "clip", folder, CLIP_VALID)
-            if described.has("clip")
-            else folder / "clip.mp4"
-        )
-    settings = read_settings(described, folders)
-    keyframes = settings.keyframes or (folder / KEYFRAMES if whole else beside(place, KEYFRAMES))
+    layers = [(str(file), file.parent, shoot_fields(file, values)) for file, values in shared.items()]
+    if os.path.isfile(own_file) or is_folder:
+        files.append(own_file)
+        layers.append((str(own_file), folder, read_json(own_file)))
+    if overrides:
+        layers.append((overrides_location, folder, dict(overrides)))
+    inherited = InheritedFields()
+    for location, _, values in layers:
+        inherited = inherited.overridden_by(values, location)
+    fields = Fields(inherited, str(files[-1]))
+    settings = read_settings(fields, {location: base for location, base, _ in layers})
+    if is_folder:
+        clip = safe_path(fields, "clip", folder, CLIP_VALID) if fields.has("clip") else folder / CLIP_FILE
+        keyframes = settings.keyframes or folder / KEYFRAME_FILE
+    else:
+        clip = path
+        keyframes = settings.keyframes or sidecar_file(path, KEYFRAME_FILE)
     used = [*files, clip, keyframes, *_linked_images(clip)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
-    check_links(used, [files[0].parent if shared else folder, folder])
+    check_symlinks(used, [files[0].parent if shared else folder, folder])
     return Description(
-        place=place,
-        name=whole_way(place).name if whole else clip_name(place),
+        path=path,
+        name=absolute_path(path).name if is_folder else clip_name(path),
         folder=folder,
         file=files[-1],
         files=tuple(files),
         clip=clip,
         keyframes=keyframes,
-        fields=described,
+        fields=fields,
         settings=settings,
         inherits=bool(shared),
     )
 
 
-def chosen_settings(
-    description: Description, farther: ConversionSettings = NOTHING_CHOSEN
+def effective_settings(
+    description: Description, defaults: ConversionSettings = NO_SETTINGS
 ) -> ConversionSettings:
-    """How a take is to be converted: keyframes that it has are used beside a library.
+    """The settings of a take's conversion; beside a library its own keyframes are used where it has some.
 
     Args:
-        description: The take's.
-        farther: What counts where the take and its shoots say nothing.
+        description: The take's description.
+        defaults: Settings for what the take and its shoots leave out.
     """
-    settings = description.settings.over(farther)
+    settings = description.settings.with_defaults(defaults)
     if settings.library is not None and settings.keyframes is None and os.path.exists(description.keyframes):
         return replace(settings, keyframes=description.keyframes)
     return settings
 
 
-def _own_file(place: Path) -> Path:
-    """A take's own file, whether it is there or not."""
+def _own_file(path: Path) -> Path:
+    """A take's own file, which may not exist."""
     try:
-        kind = place.stat().st_mode
-        images = S_ISDIR(kind) and not (place / OWN).exists() and any(map(is_image, place.iterdir()))
+        kind = path.stat().st_mode
+        images = S_ISDIR(kind) and not (path / TAKE_FILE).exists() and any(map(is_image, path.iterdir()))
     except FileNotFoundError as error:
-        raise InputError(f"{place}: no such folder; a take is a folder that holds {OWN}") from error
+        raise InputError(f"{path}: no such folder; a take is a folder that holds {TAKE_FILE}") from error
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(
-            f"{place}: cannot be read ({reason}); a take is a folder that holds {OWN}"
+            f"{path}: cannot be read ({reason}); a take is a folder that holds {TAKE_FILE}"
         ) from error
     if not S_ISDIR(kind) and not S_ISREG(kind):
-        raise InputError(f"{place}: is a device, a pipe or a socket; a take is a folder that holds {OWN}")
-    return place / OWN if S_ISDIR(kind) and not images else beside(place, OWN)
+        raise InputError(
+            f"{path}: is a device, a pipe or a socket; a take is a folder that holds {TAKE_FILE}"
+        )
+    return path / TAKE_FILE if S_ISDIR(kind) and not images else sidecar_file(path, TAKE_FILE)
 
 
 def _linked_images(clip: Path) -> list[Path]:
-    """The images of a folder that are links."""
+    """The images of a folder that are symbolic links."""
     try:
         with os.scandir(clip) as entries:
             return [Path(entry.path) for entry in entries if entry.is_symlink()]
-    except (OSError, ValueError):  # no folder, or none that can be read, which whoever opens the clip says
+    except (OSError, ValueError):  # no readable folder, as opening the clip will say
         return []
 
 
-def beside(place: Path, ending: str) -> Path:
-    """The file that says more of a mere clip: `NAME.take.json` or `NAME.keyframes.json`."""
-    return place.with_name(f"{clip_name(place)}.{ending}")
+def sidecar_file(clip: Path, ending: str) -> Path:
+    """The file beside a bare clip that adds to its description: `NAME.take.json` or `NAME.keyframes.json`."""
+    return clip.with_name(f"{clip_name(clip)}.{ending}")
 
 
-def clip_name(place: Path) -> str:
-    """What people call a mere clip: its name without an ending, or that of its folder of images."""
-    return whole_way(place).name if place.is_dir() else place.stem
+def clip_name(clip: Path) -> str:
+    """The name of a bare clip: that of the video without its ending, or of the folder of images."""
+    return absolute_path(clip).name if clip.is_dir() else clip.stem

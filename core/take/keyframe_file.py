@@ -16,13 +16,15 @@ from ..files.fields import Fields, listed
 from ..files.json_file import read_json, shown, write_json
 from ..prior.keyframes import Keyframe, Matched
 
-NAMES_LONGEST = 200
+LONGEST_NAME = 200
 FEWEST_KEYFRAMES = 2
-"""Between which there is something to interpolate."""
+"""Fewest that can be interpolated."""
 MOST_KEYFRAMES = 20_000
 """Ten a hundred frames in two hours of film."""
+SMALLEST_EXTENT_M = 0.05
+"""Largest distance of a point from their mean, below which all points are one."""
 FITTED_TOGETHER = 500
-"""Keyframes whose points are fitted at once, so that many take no more memory than some."""
+"""Keyframes whose points are fitted at once; bounds the memory."""
 
 
 def read_keyframes(
@@ -32,14 +34,14 @@ def read_keyframes(
 
     A keyframe holds `frame` and `posture` (every degree of freedom by name, meters and radians), or `frame`
     and `points` (thirteen points [m], world axes), to which a posture of the actor is fitted. With both, the
-    posture counts. One that nobody posed says in `matched` which library it comes from.
+    posture counts. A matched keyframe names its library in `matched`.
 
     Args:
         path: The file.
         body: The actor's body.
         frame_start: Scene frame of the clip's first frame.
         frame_count: Frames of the clip; None where it is not known yet.
-        fewest: So many keyframes there must be.
+        fewest: Number of keyframes that are required.
 
     Raises:
         InputError: The file or a field is unusable, a frame is outside the clip or given twice, or there
@@ -56,10 +58,10 @@ def read_keyframes(
         )
     if len(rows) > MOST_KEYFRAMES:
         raise InputError(f"{path}: keyframes has {len(rows)} of them; at most {MOST_KEYFRAMES} are read")
-    posed = [Fields.of(row, f"{path}: keyframes[{place}]") for place, row in enumerate(rows)]
-    indices = [_index(row, frame_start, frame_count) for row in posed]
-    _refuse_twice(path, indices, frame_start)
-    keyframes = _keyframes(posed, indices, body)
+    objects = [Fields.of(row, f"{path}: keyframes[{index}]") for index, row in enumerate(rows)]
+    frames = [_frame_index(row, frame_start, frame_count) for row in objects]
+    _refuse_duplicates(path, frames, frame_start)
+    keyframes = _keyframes(objects, frames, body)
     return tuple(sorted(keyframes, key=lambda keyframe: keyframe.index))
 
 
@@ -83,9 +85,9 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
     write_json(path, {"keyframes": rows}, indent=1)
 
 
-def _index(row: Fields, frame_start: int, frame_count: int | None) -> int:
+def _frame_index(row: Fields, frame_start: int, frame_count: int | None) -> int:
     last = frame_start + (frame_count or 10**6) - 1
-    frame = row.whole("frame", -(10**7), 10**7)
+    frame = row.integer("frame", -(10**7), 10**7)
     if not frame_start <= frame <= last:
         clip = (
             f"the clip's frames are {frame_start} to {last}"
@@ -96,7 +98,7 @@ def _index(row: Fields, frame_start: int, frame_count: int | None) -> int:
     return frame - frame_start
 
 
-def _refuse_twice(path: Path, indices: Sequence[int], frame_start: int) -> None:
+def _refuse_duplicates(path: Path, indices: Sequence[int], frame_start: int) -> None:
     seen: set[int] = set()
     for index in indices:
         if index in seen:
@@ -106,28 +108,28 @@ def _refuse_twice(path: Path, indices: Sequence[int], frame_start: int) -> None:
         seen.add(index)
 
 
-def _keyframes(posed: Sequence[Fields], indices: Sequence[int], body: Body) -> list[Keyframe]:
-    points = np.full((len(posed), len(body.skeleton.point_names), 3), np.nan)
+def _keyframes(rows: Sequence[Fields], frames: Sequence[int], body: Body) -> list[Keyframe]:
+    points = np.full((len(rows), len(body.skeleton.point_names), 3), np.nan)
     postures: dict[int, Posture] = {}
-    for place, row in enumerate(posed):
+    for index, row in enumerate(rows):
         if row.has("posture"):
             valid = f"an object with {listed(body.skeleton.dof_names, 3)}"
-            postures[place] = read_posture(row.child("posture", valid), body.skeleton)
+            postures[index] = read_posture(row.child("posture", valid), body.skeleton)
         elif not row.has("points"):
             raise InputError(f"{row.where} has neither points nor posture; it must have one of them")
         if row.has("points"):
-            points[place] = _points(
+            points[index] = _points(
                 row.child("points", "an object with 13 points"), body.skeleton.point_names
             )
-    unposed = np.array([place for place in range(len(posed)) if place not in postures], dtype=np.intp)
-    for together in chunks(unposed, FITTED_TOGETHER) if len(unposed) else []:
-        fitted = fit_posture(body, points[together]).posture
-        postures.update({int(place): fitted[row] for row, place in enumerate(together)})
+    points_only = np.array([index for index in range(len(rows)) if index not in postures], dtype=np.intp)
+    for chunk in chunks(points_only, FITTED_TOGETHER) if len(points_only) else []:
+        fitted = fit_posture(body, points[chunk]).posture
+        postures.update({int(index): fitted[row] for row, index in enumerate(chunk)})
     keyframes = []
-    for place, index in enumerate(indices):
-        error = np.linalg.norm(body.points(body.pose(postures[place])) - points[place], axis=-1)
+    for index, frame in enumerate(frames):
+        error = np.linalg.norm(body.points(body.pose(postures[index])) - points[index], axis=-1)
         residual_m = float(np.nan_to_num(error.mean()))
-        keyframes.append(Keyframe(index, postures[place], residual_m, _matched(posed[place])))
+        keyframes.append(Keyframe(frame, postures[index], residual_m, _matched(rows[index])))
     return keyframes
 
 
@@ -140,9 +142,9 @@ def _matched(row: Fields) -> Matched | None:
         raise InputError(f"{fields.where}: mirrored is {shown(mirrored)}; it must be true or false")
     names = []
     for name in ("library", "posture"):
-        valid = f"a name of at most {NAMES_LONGEST} letters"
+        valid = f"a name of at most {LONGEST_NAME} characters"
         text = fields.text(name, valid)
-        if len(text) > NAMES_LONGEST:
+        if len(text) > LONGEST_NAME:
             raise InputError(f"{fields.where}: {name} is {shown(text)}; it must be {valid}")
         names.append(text)
     return Matched(names[0], names[1], mirrored, fields.number("confidence", 0.0, 1.0))
@@ -151,10 +153,10 @@ def _matched(row: Fields) -> Matched | None:
 def _points(fields: Fields, names: Sequence[str]) -> Array:
     valid = f"[x, y, z] in meters, each within {FARTHEST_M:g} m of the origin"
     rows = [fields.numbers(name, 3, -FARTHEST_M, FARTHEST_M, valid) for name in names]
-    places = np.asarray(rows)
-    across = float(np.linalg.norm(places - places.mean(axis=0), axis=-1).max())
-    if across < 0.05:
+    points = np.asarray(rows)
+    extent_m = float(np.linalg.norm(points - points.mean(axis=0), axis=-1).max())
+    if extent_m < SMALLEST_EXTENT_M:
         raise InputError(
             f"{fields.where} all lie in one place; they must be the 13 joints of a person, in meters"
         )
-    return places
+    return points

@@ -1,4 +1,4 @@
-"""Names of the ways to a motion, for whoever asks: also for `--help`, which waits for nothing else."""
+"""Method names; imports nothing, so that `--help` stays fast."""
 
 METHODS = ("map", "ekf", "interpolation")
-"""The whole clip at once, which is the default; the filter of the paper; the keyframes alone."""
+"""The estimate over the whole clip, the default; the paper's Kalman filter; interpolated keyframes alone."""

@@ -1,4 +1,4 @@
-"""The estimate: posture, thirteen points and their uncertainty for every frame of the clip."""
+"""A motion: posture, thirteen points and their covariance for every frame of the clip."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,11 +27,11 @@ class Motion:
     point_covariance: Array
     """(F, 13, 3, 3) estimated covariance of each point [m²]."""
     keyframe_indices: tuple[int, ...]
-    """Positions in the clip that were given as keyframes."""
+    """Frame indices of the keyframes."""
     method: str
-    """How it was estimated: `map`, `ekf` or `interpolation`."""
+    """Method of the estimate: `map`, `ekf` or `interpolation`."""
     diagnostics: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
-    """Further rows per frame, (F, ...), by name: what the estimate says of itself."""
+    """Diagnostics of the estimate by name, (F, ...) each."""
 
     @property
     def scene_frames(self) -> Array:

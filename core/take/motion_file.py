@@ -1,4 +1,4 @@
-"""`motion.json`: a motion as a file for other programs, and read back."""
+"""`motion.json`: writing a motion for other programs, and reading it."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,15 +22,15 @@ SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**29
 """Two hours of motion: about 2 kB a frame."""
 LARGEST_NUMBER = 1e15
-"""Of places, angles, times and covariances, in the file's units."""
+"""Of coordinates, angles, times and covariances, in the file's units."""
 MOST_DIAGNOSTICS = 100
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
-"""Rows and columns of xx, xy, xz, yy, yz, zz: all that a covariance of three coordinates has."""
+"""Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
 
 
 def write_motion(motion: Motion, path: Path) -> None:
-    """Write a motion as `motion.json`, beside and moved into place; the same motion gives the same bytes.
+    """Write a motion as `motion.json`, atomically; the same motion gives the same bytes.
 
     Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
@@ -69,16 +69,16 @@ def read_motion(path: Path) -> Motion:
     """
     fields = Fields(read_json(path, LARGEST_BYTES), str(path))
     fields.check_version(SCHEMA_VERSION)
-    count = fields.whole("frame_count", 1, 10**6)
+    count = fields.integer("frame_count", 1, 10**6)
     lengths = fields.child("actor", "an object with segments_m").child("segments_m", "an object of lengths")
     try:
         body = Body(Actor(lengths.values))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     skeleton = body.skeleton
-    frame_start = fields.whole("frame_start", -(10**7), 10**7)
+    frame_start = fields.integer("frame_start", -(10**7), 10**7)
     if fields.has("sigma_m"):
-        _rows(fields, "sigma_m", skeleton.point_names, (count,))  # the covariance says it too
+        _rows(fields, "sigma_m", skeleton.point_names, (count,))  # checked only: the covariance holds it too
     return Motion(
         body=body,
         fps=fields.number("fps", 1e-3, 1e4, "frames per second"),
@@ -156,7 +156,9 @@ def _array(value: Any, shape: tuple[int, ...], where: str) -> Array:
 def _keyframe_indices(fields: Fields, frame_start: int, count: int) -> tuple[int, ...]:
     frames = fields.required("keyframes", "a list of frames")
     first, last = frame_start, frame_start + count - 1
-    if not isinstance(frames, list) or not all(type(f) is int and first <= f <= last for f in frames):
+    if not isinstance(frames, list) or not all(
+        type(frame) is int and first <= frame <= last for frame in frames
+    ):
         raise InputError(
             f"{fields.where}: keyframes is {shown(frames)}; it must be a list of frames, {first} to {last}"
         )

@@ -1,4 +1,4 @@
-"""Reading a take's footage: its clip gone through once, with the keyframes to tell where markers are."""
+"""Reading a take's footage: one pass over its clip, with the markers expected near the keyframes."""
 
 from dataclasses import replace
 
@@ -11,32 +11,33 @@ from ..footage.region_tracks import ExpectedRegions
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.interpolation import interpolate
 from ..progress import Job, Progress, within
+from .clip_check import check_frame_count, check_in_front, open_clip
 from .clip_notes import clip_notes
-from .take import Take, check_frame_count, check_in_front, open_clip
+from .take import Take
 
 FOLLOWING = "Following the markers"
 EXPECTED_RADIUS_M = 0.45
-"""How far a marker may lie from where the interpolated keyframes put it, to be searched there first."""
-STRAYED_M_PER_S = 3.0
-"""How much farther, before the first keyframe and after the last, where the posture is only held."""
+"""Radius around a marker of the interpolated keyframes within which it is searched first."""
+RADIUS_GROWTH_M_PER_S = 3.0
+"""Growth of that radius before the first keyframe and after the last, where the posture is only held."""
 CHUNK_FRAMES = 500
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
-    """Read what is to be read of a take's clip.
+    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still.
 
     Args:
-        take: A take; keyframes tell where its markers are looked for first, and are not needed.
-        kept: What was read before, of whatever clip; it is used as far as it still holds (see `read_clip`).
+        take: A take; markers are searched near its keyframes first, where it has some.
+        kept: An earlier reading of any clip; its parts are used as far as they still hold (see `read_clip`).
 
     Yields:
         Progress.
 
     Returns:
-        The same as without `kept`.
+        The reading, the same with and without `kept`.
 
     Raises:
-        InputError: The clip cannot be used, or a color matches nothing in it.
+        InputError: The clip cannot be used, or a marker's color is not in it.
     """
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
@@ -54,7 +55,7 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
 
 
 def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
-    """Where the interpolated keyframes put each marker, with a generous radius."""
+    """Regions around each marker of the interpolated keyframes, with a generous radius."""
     prior = interpolate(take.keyframes, frame_count)
     model = average_model(take)
     center = np.empty((frame_count, len(take.markers), 2))
@@ -63,7 +64,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     posed = take.keyframe_indices
     beyond = np.maximum(np.arange(frame_count) - max(posed), min(posed) - np.arange(frame_count)).clip(0)
-    reach = EXPECTED_RADIUS_M + STRAYED_M_PER_S * beyond / take.fps
+    reach = EXPECTED_RADIUS_M + RADIUS_GROWTH_M_PER_S * beyond / take.fps
     radius = reach * take.camera.focal_px / np.maximum(depth, 0.1)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
     center, radius = np.round(64.0 * center) / 64.0, np.round(64.0 * radius) / 64.0
@@ -71,6 +72,6 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
 
 
 def average_model(take: Take) -> RegionModel:
-    """The markers as they sit on an average performer."""
+    """The markers as worn by an average performer."""
     placements = tuple(MarkerPlacement.usual(segment) for segment in take.marker_segments)
     return RegionModel(take.body, take.camera, placements)

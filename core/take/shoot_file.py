@@ -1,4 +1,4 @@
-"""`shoot.json`: what all takes below its folder have in common."""
+"""`shoot.json`: fields that all takes below its folder inherit."""
 
 import os
 from pathlib import Path
@@ -6,60 +6,56 @@ from typing import Any
 
 from ..errors import InputError
 from ..files.fields import Fields
-from ..files.inherited_fields import COMMENT
+from ..files.inherited_fields import COMMENT_PREFIX
 from ..files.json_file import read_json, shown
+from ..files.paths import absolute_path
 
-NAME = "shoot.json"
+SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
-SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "actor")
 """Fields of `take.json` that takes may inherit."""
-SETTINGS = ("library", "floor_m", "method", "pictures")
+SETTING_FIELDS = ("library", "floor_m", "method", "pictures")
 """Fields that say how takes are converted."""
-OWN = ("$schema", "schema_version", "root")
-"""Fields that say something of the file itself; an editor looks for the first."""
-KNOWN = (*OWN, *SHARED, *SETTINGS)
+FILE_FIELDS = ("$schema", "schema_version", "root")
+"""Fields about the file itself; editors read the first."""
+KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, *SETTING_FIELDS)
 
 
 def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """What one `shoot.json` says of takes; what the fields hold is checked where a take uses them.
+    """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them.
 
     Args:
         path: The file, for sentences.
-        values: All that stands in it, as `shoot_files` gives it.
+        values: All its fields, as `find_shoot_files` gives them.
 
     Raises:
-        InputError: It is of a newer Keymark, or has a field that is not known.
+        InputError: The file is of a newer Keymark, or has an unknown field.
     """
     fields = Fields(values, str(path))
-    fields.refuse_others([*KNOWN, *(name for name in values if name.startswith(COMMENT))])
+    fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
     if fields.has("schema_version"):
         fields.check_version(SCHEMA_VERSION)
     if not isinstance(values.get("root", False), bool):
         raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
-    return {name: value for name, value in values.items() if name not in OWN}
+    return {name: value for name, value in values.items() if name not in FILE_FIELDS}
 
 
-def shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
-    """Every `shoot.json` that takes in a folder inherit from, with all that stands in it, the farthest first.
+def find_shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
+    """Every `shoot.json` that takes in a folder inherit from, with all its fields, the farthest first.
 
-    They are looked for in the folder and all above it, up to one that says `"root": true`. Whatever is called
-    so counts: what a broken link or a folder of that name was to say is not left out in silence.
+    They are searched in the folder and all its parents, up to one that says `"root": true`. A broken link or
+    a folder of that name is an error: what it was to say is not left out in silence.
 
     Raises:
         InputError: One that is found cannot be read.
     """
     found: dict[Path, dict[str, Any]] = {}
-    whole = whole_way(folder)
-    for place in (whole, *whole.parents):
-        file = place / NAME
+    start = absolute_path(folder)
+    for parent in (start, *start.parents):
+        file = parent / SHOOT_FILE
         if os.path.lexists(file):
             found[file] = read_json(file, LARGEST_BYTES)
             if found[file].get("root") is True:
                 break
     return dict(reversed(found.items()))
-
-
-def whole_way(path: Path) -> Path:
-    """A path from the root, none of whose parents is a way back: those of `/day1/../day2` name `day1`."""
-    return Path(os.path.realpath(path)) if ".." in path.parts else path.absolute()

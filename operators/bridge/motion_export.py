@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import ConversionError, InputError
-from ...core.files.json_file import write_whole
+from ...core.files.json_file import write_atomically
 from .export_formats import ExportFormat
 from .scene_frames import showing_action
 
@@ -44,7 +44,7 @@ def export_motion(
             if not beside.exists():
                 raise ConversionError(f"{path}: the exporter wrote nothing")
 
-        write_whole(path, write)
+        write_atomically(path, write)
 
 
 @contextmanager

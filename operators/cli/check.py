@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
 
-from ...core.errors import ConversionError, unexpected
+from ...core.errors import ConversionError, describe_unexpected
 from ...core.progress import Job, Progress, run
-from ...core.shoot.check.odd_takes import with_odd_ones
+from ...core.shoot.check.outlier_takes import flag_outliers
 from ...core.shoot.check.take_check import TakeCheck, check_take
-from ...core.shoot.finding.open_shoot import open_shoot
+from ...core.shoot.discovery.find_takes import open_shoot
 from ...core.shoot.shoot import Shoot, ShootTake
 from ...core.take.conversion_settings import ConversionSettings
-from ...core.text import counted
+from ...core.text import pluralize
 from .check_text import check_summary, check_text
 from .console import arguments_console
 from .conversion.matched_keyframes import chosen_libraries
@@ -40,7 +40,7 @@ def check_command(arguments: argparse.Namespace) -> None:
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
-        raise ConversionError(f"{failing} of {counted(len(checks), 'take')} would not convert")
+        raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
 
 
 def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
@@ -52,7 +52,7 @@ def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -
     for index, check in _some_at_a_time(looks, jobs):
         checks[index] = check
         yield Progress(STAGE, len(checks) / len(looks))
-    return with_odd_ones([checks[index] for index in sorted(checks)])
+    return flag_outliers([checks[index] for index in sorted(checks)])
 
 
 def _look(
@@ -64,8 +64,8 @@ def _look(
     except Exception as error:
         if debug:
             raise
-        what = unexpected(error)
-        said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        what = describe_unexpected(error)
+        said = f"{take.path}: looking at it failed unexpectedly ({what}); --debug shows where"
         return TakeCheck(take.name, (said,), ())
 
 

@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ...core.files.fields import listed
+from ...core.files.paths import absolute_path
 from ...core.shoot.check.take_check import TakeCheck
 from ...core.shoot.shoot import Shoot
-from ...core.take.shoot_file import whole_way
 from .line_wrapping import broken
 
 READY, LOOK, FAILS = "ready", "look", "fails"
@@ -26,12 +26,12 @@ NARROWEST_NAME = 12
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
     """What was found, for `--json`."""
     counts = Counter(map(_word, checks))
-    efforts = [check.effort for check in checks if check.effort is not None]
+    costs = [check.cost for check in checks if check.cost is not None]
     return {
         "takes": [_take(check) for check in checks],
         "counts": {word: counts[word] for word in (READY, LOOK, FAILS)},
-        "estimated_seconds": round(sum(effort.seconds for effort in efforts), 1),
-        "estimated_bytes": sum(effort.size_bytes for effort in efforts),
+        "estimated_seconds": round(sum(cost.seconds for cost in costs), 1),
+        "estimated_bytes": sum(cost.size_bytes for cost in costs),
     }
 
 
@@ -125,11 +125,11 @@ def _last_line(checks: Sequence[TakeCheck]) -> str:
         f"{counts[LOOK]} to look at",
         f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
-    efforts = [check.effort for check in checks if check.effort is not None]
+    costs = [check.cost for check in checks if check.cost is not None]
     line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(said)}."
-    if not efforts:
+    if not costs:
         return line
-    seconds, size = sum(one.seconds for one in efforts), sum(one.size_bytes for one in efforts)
+    seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
     return f"{line} Roughly {_time(seconds)} of one processor and {_size(size)} for those that convert."
 
 
@@ -144,7 +144,7 @@ def _size(size_bytes: int) -> str:
 
 
 def _name(shoot: Shoot, check: TakeCheck) -> str:
-    return whole_way(shoot.folder).name if check.name == "." else check.name
+    return absolute_path(shoot.folder).name if check.name == "." else check.name
 
 
 def _word(check: TakeCheck) -> str:
@@ -173,6 +173,6 @@ def _take(check: TakeCheck) -> dict[str, Any]:
             }
             for readout in check.markers
         },
-        "estimated_seconds": None if check.effort is None else round(check.effort.seconds, 1),
-        "estimated_bytes": None if check.effort is None else check.effort.size_bytes,
+        "estimated_seconds": None if check.cost is None else round(check.cost.seconds, 1),
+        "estimated_bytes": None if check.cost is None else check.cost.size_bytes,
     }

@@ -4,9 +4,9 @@ import argparse
 from dataclasses import replace
 from typing import Any
 
-from ...core.shoot.finding.take_location import take_place
+from ...core.shoot.discovery.take_path import take_path
 from ...core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
-from ...core.take.description import Description, chosen_settings, describe
+from ...core.take.description import Description, describe, effective_settings
 from .console import arguments_console
 from .conversion.convert_take import convert
 from .conversion.matched_keyframes import match_summary
@@ -18,7 +18,7 @@ def convert_command(arguments: argparse.Namespace) -> None:
     """Convert the take that the command line names, and say what was made."""
     with arguments_console(arguments) as console:
         console.stage("Reading the take")
-        description = describe(take_place(arguments.take))
+        description = describe(take_path(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert(description, arguments.output, console, settings, arguments.debug)
         console.finish(summary(conversion), _text(conversion))
@@ -52,7 +52,7 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
         method=arguments.method,
         pictures=False if arguments.no_report else None,
     )
-    settings = given.over(chosen_settings(description))
+    settings = given.with_defaults(effective_settings(description))
     _check_floor(arguments.floor, settings)
     return settings if arguments.library is None else replace(settings, keyframes=arguments.keyframes)
 

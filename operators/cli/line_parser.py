@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import NoReturn
 
-from ...core.files.control_characters import seen
+from ...core.files.control_characters import escape_control_characters
 
 
 class UsageError(Exception):
@@ -32,7 +32,7 @@ def program_name() -> str:
 
 def complain(sentence: str) -> None:
     """Write one line on standard error, whatever the sentence holds."""
-    line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
+    line = f"{program_name()}: {escape_control_characters(' '.join(sentence.split()))}"
     encoding = sys.stderr.encoding or "utf-8"
     with suppress(OSError):  # the exit status tells, too
         print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)

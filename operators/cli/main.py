@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
-from ...core.errors import InputError, KeymarkError, unexpected
+from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .arguments import build_parser
 from .blender_silence import codec_silence
 from .line_parser import UsageError, complain
@@ -62,7 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         lacking = f"the Python module {error.name}" if error.name else "a Python module"
         return _say(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
     except Exception as error:
-        return _say(f"failed unexpectedly ({unexpected(error)}); --debug shows where", FAILED, debug)
+        return _say(f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where", FAILED, debug)
 
 
 def _open_standard_streams() -> None:

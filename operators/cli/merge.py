@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from ...core.errors import ConversionError, InputError
 from ...core.files.digest import content_digest
 from ...core.files.fields import listed
+from ...core.files.paths import absolute_path
 from ...core.progress import Progress
 from ...core.shoot.outcomes.failures import Failure, read_failures
 from ...core.shoot.outcomes.results import Result, Results, find_results
 from ...core.take.motion import Motion
 from ...core.take.motion_file import read_motion
-from ...core.take.shoot_file import whole_way
 from .blender_silence import blender_silence
 from .console import Console, arguments_console
 from .conversion.convert_take import MOTION, require_blender
@@ -45,7 +45,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
         console.stage("Looking for results")
         found = find_results(arguments.results)
         _check_place(arguments.output, found)
-        name = arguments.name or whole_way(arguments.results).name
+        name = arguments.name or absolute_path(arguments.results).name
         gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.files.json_layout import write_readable_json
+from ...core.files.paths import absolute_path
 from ...core.progress import run, within
-from ...core.shoot.finding.find_takes import find_takes
+from ...core.shoot.discovery.find_takes import find_takes
 from ...core.shoot.template.clip_survey import ClipSurvey, survey_clips
 from ...core.shoot.template.shoot_template import clip_lines, shoot_template
-from ...core.take.shoot_file import NAME, shoot_files, whole_way
+from ...core.take.shoot_file import SHOOT_FILE, find_shoot_files
 from .console import arguments_console
 from .line_parser import program_name
 
@@ -18,7 +19,7 @@ from .line_parser import program_name
 def new_command(arguments: argparse.Namespace) -> None:
     """Write a shoot's description from its clips."""
     folder: Path = arguments.shoot
-    output: Path = arguments.output or folder / NAME
+    output: Path = arguments.output or folder / SHOOT_FILE
     with arguments_console(arguments) as console:
         if output.exists():
             raise InputError(
@@ -28,7 +29,7 @@ def new_command(arguments: argparse.Namespace) -> None:
         shoot = find_takes(folder, undescribed=True)
         survey = run(within("Looking at the clips", survey_clips(shoot), 0.0, 1.0), console.progress)
         _check_clips(folder, survey)
-        above = [file for file in shoot_files(folder) if file != whole_way(folder) / NAME]
+        above = [file for file in find_shoot_files(folder) if file != absolute_path(folder) / SHOOT_FILE]
         template = shoot_template(survey, bool(above))
         write_readable_json(output, template)
         todo = to_fill_in(template)

@@ -4,13 +4,15 @@ import argparse
 from pathlib import Path
 
 from ...core.arrays import Array, IndexArray
-from ...core.files.json_file import write_whole
+from ...core.files.json_file import write_atomically
 from ...core.footage.markers import track_markers
 from ...core.prior.marker_speed import marker_speed, propose_keyframes
 from ...core.progress import Job, run, within
 from ...core.report.canvas import write_png
 from ...core.report.speed_plot import speed_plot
-from ...core.take.take import Take, open_clip, read_take
+from ...core.take.clip_check import open_clip
+from ...core.take.take import Take
+from ...core.take.take_file import read_take
 from .console import arguments_console
 
 
@@ -36,4 +38,4 @@ def _speed(take: Take) -> Job[Array]:
 
 def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
     picture = speed_plot(speed, [int(index) for index in indices], start)
-    write_whole(path, lambda beside: write_png(str(beside), picture))
+    write_atomically(path, lambda beside: write_png(str(beside), picture))

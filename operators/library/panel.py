@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..shell.messages import counted, label
+from ..shell.messages import count_label, label
 from ..shell.panel import SubPanel, draw_progress, draw_sentence
 from ..shell.takes import find_take
 from .editing.scene_libraries import active_motion, active_posture, find_library_here, library_here
@@ -306,8 +306,8 @@ def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.typ
     """What is known of a library at hand."""
     column = layout.column(align=True)
     column.scale_y = 0.85
-    postures = counted("1 posture", "{count} postures", len(item.postures))
-    motions = counted("1 motion", "{count} motions", item.motions)
+    postures = count_label(len(item.postures), "1 posture", "{count} postures")
+    motions = count_label(item.motions, "1 motion", "{count} motions")
     column.label(text=f"{postures}, {motions}", icon="INFO", translate=False)
     by = label("Version {version} by {author}", version=item.version, author=item.author)
     column.label(text=by, icon="BLANK1", translate=False)

@@ -14,14 +14,7 @@ from gpu_extras.batch import batch_for_shader
 
 from ...core.arrays import SingleArray
 from ...core.errors import KeymarkError
-from ..markers.mask_previews import (
-    ColorMask,
-    Preview,
-    clear_previews,
-    is_of_frame,
-    preview_of,
-    update_masks,
-)
+from ..markers.mask_previews import ColorMask, Preview, clear_previews, is_of_frame, preview_of, update_masks
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
 from . import drawing

@@ -32,6 +32,6 @@ def label(template: str, **values: Any) -> str:
     return str(bpy.app.translations.pgettext_iface(template)).format(**values)
 
 
-def counted(one: str, several: str, count: int) -> str:
-    """Words for so many of something, from a template for one and one for any other number."""
-    return label(one if count == 1 else several, count=count)
+def count_label(count: int, one: str, many: str) -> str:
+    """A line of a panel from one of two templates: `1 posture`, else `{count} postures`."""
+    return label(one if count == 1 else many, count=count)

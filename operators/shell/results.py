@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import ConversionError
+from ...core.files.array_cache import ArrayCache, Arrays
 from ...core.files.digest import digest
-from ...core.files.store import Arrays, Store
 from .lru_cache import LruCache, Result
 
 if TYPE_CHECKING:
@@ -118,12 +118,12 @@ def _save(key: str, arrays: Arrays) -> None:
         _store().save(key, arrays)
 
 
-def _store() -> Store:
+def _store() -> ArrayCache:
     try:
         folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
     except ValueError:  # not installed as an extension
         folder = Path(bpy.app.tempdir) / FOLDER
-    return Store(folder)
+    return ArrayCache(folder)
 
 
 def register() -> None:

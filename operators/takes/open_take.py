@@ -44,10 +44,10 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the take, and only then change the scene."""
-        from ...core.shoot.finding.take_location import take_place
+        from ...core.shoot.discovery.take_path import take_path
         from .take_to_scene import add_take_to_scene, read_for_scene
 
-        opened = read_for_scene(take_place(Path(bpy.path.abspath(self.filepath))), self.keyframes)
+        opened = read_for_scene(take_path(Path(bpy.path.abspath(self.filepath))), self.keyframes)
         add_take_to_scene(context, opened)
         look_through_camera(context, active_take(context.scene))
         show_range(context)

@@ -36,8 +36,8 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the take from the scene and write the folder."""
-        from ...core.shoot.finding.take_location import check_free
-        from ...core.take.take import write_take
+        from ...core.shoot.discovery.take_path import check_hides_no_take
+        from ...core.take.take_file import write_take
         from ..bridge.take_from_scene import read_scene_take
 
         if not self.directory:
@@ -53,7 +53,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
             )
         )
         folder = Path(bpy.path.abspath(self.directory))
-        check_free(folder)
+        check_hides_no_take(folder)
         folder.mkdir(parents=True, exist_ok=True)
         write_take(take, folder)
         for note in notes:

@@ -6,7 +6,10 @@ from pathlib import Path
 import bpy
 
 from ...core.arrays import Array
-from ...core.take.take import Take, check_frame_count, open_clip, rate_note, read_take
+from ...core.take.clip_check import check_frame_count, open_clip
+from ...core.take.clip_notes import rate_note
+from ...core.take.take import Take
+from ...core.take.take_file import read_take
 from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate

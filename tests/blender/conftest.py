@@ -18,7 +18,8 @@ from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.observation.regions import MarkerPlacement
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import Take, write_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import write_take
 
 FRAMES = 13
 SIZE = (160, 120)

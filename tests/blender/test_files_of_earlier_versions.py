@@ -11,10 +11,10 @@ from typing import Any
 import bpy
 import pytest
 from keymark.core.library.library_file import library_digest, library_to_json, read_library
-from keymark.core.shoot.finding.take_location import take_place
+from keymark.core.shoot.discovery.take_path import take_path
 from keymark.core.take.conversion_digest import conversion_digest
-from keymark.core.take.conversion_record import is_finished, read_record
-from keymark.core.take.description import chosen_settings, describe
+from keymark.core.take.conversion_record import is_up_to_date, read_record
+from keymark.core.take.description import describe, effective_settings
 
 SAVED = Path(__file__).resolve().parent / "saved"
 VERSIONS = ("0.1.0",)
@@ -285,16 +285,16 @@ def test_a_batch_regards_what_was_converted_as_unchanged(saved: Saved) -> None:
     library = read_library(saved.folder / "shoot" / "gestures.json")
 
     def now() -> str:
-        description = describe(take_place(saved.take))
-        settings = chosen_settings(description)
+        description = describe(take_path(saved.take))
+        settings = effective_settings(description)
         libraries = [library_digest(library)]
         return conversion_digest(description, settings, libraries, results, record.keymark)
 
     assert now() == record.digest
-    assert not is_finished(results, record.digest)
+    assert not is_up_to_date(results, record.digest)
     for name in record.files:
         (results / name).touch()
-    assert is_finished(results, record.digest)
+    assert is_up_to_date(results, record.digest)
     keyframes = saved.take / "keyframes.json"
     keyframes.write_text(keyframes.read_text(encoding="utf-8") + " ", encoding="utf-8")
     assert now() != record.digest

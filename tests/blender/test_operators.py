@@ -10,7 +10,8 @@ import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.body.shapes import marker_segments
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.markers.properties import SEGMENTS

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.messages import counted, label, say
+from keymark.operators.shell.messages import count_label, label, say
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
@@ -93,7 +93,7 @@ def test_sentences_that_are_said_are_not_put_together(repository: Path) -> None:
     for file in sorted((repository / "operators").rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
-                places = {"say": (2,), "label": (0,), "counted": (0, 1)}.get(node.func.id, ())
+                places = {"say": (2,), "label": (0,), "count_label": (1, 2)}.get(node.func.id, ())
                 places = tuple(place for place in places if place < len(node.args))
                 found += len(places)
                 templates = [part for place in places for part in ast.walk(node.args[place])]
@@ -128,5 +128,5 @@ def test_a_sentence_is_filled_in_after_translation(monkeypatch: pytest.MonkeyPat
 
 def test_one_is_not_several() -> None:
     """A number goes with words for one or for more."""
-    said = [counted("1 posture", "{count} postures", count) for count in (0, 1, 12)]
+    said = [count_label(count, "1 posture", "{count} postures") for count in (0, 1, 12)]
     assert said == ["0 postures", "1 posture", "12 postures"]

@@ -18,7 +18,7 @@ def demo_points() -> NDArray[np.float64]:
     """(118, 13, 3) points of the demonstration, converted here and now [m]."""
     from keymark.core.estimate.reconstruct import reconstruct
     from keymark.core.progress import run
-    from keymark.core.take.take import read_take
+    from keymark.core.take.take_file import read_take
 
     take = read_take(HERE.parent.parent / "presets" / "demo" / "aerobic")
     return np.asarray(run(reconstruct(take, "map")).motion.points, dtype=np.float64)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ... import MOST_PIXELS
 from ...errors import InputError
-from ...files.regular_file import ordinary_size
+from ...files.regular_file import regular_file_size
 
 LOOKED_AT = 4096
 VALID = "a video that OpenCV can read"
@@ -52,7 +52,7 @@ def check_container(path: Path) -> None:
     Raises:
         InputError: It is missing, no ordinary file, empty, or does not begin as a video does.
     """
-    if ordinary_size(path, VALID) == 0:
+    if regular_file_size(path, VALID) == 0:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
         with path.open("rb") as file:

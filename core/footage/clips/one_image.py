@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ... import MOST_PIXELS
 from ...arrays import Image
 from ...errors import InputError
-from ...files.regular_file import ordinary_size
+from ...files.regular_file import regular_file_size
 from .opencv_silence import opencv_silence
 
 LARGEST_BYTES = 2**31
@@ -28,7 +28,7 @@ def read_image(path: Path) -> Image:
     Raises:
         InputError: the file is missing, too large, or no image that OpenCV can read.
     """
-    if ordinary_size(path, "an image") > LARGEST_BYTES:
+    if regular_file_size(path, "an image") > LARGEST_BYTES:
         raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
     try:
         data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows

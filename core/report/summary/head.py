@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from ...shoot.outcomes.outcome import Outcome, Status
-from ...text import counted
+from ...text import pluralize
 from .html_text import duration, isolated, percent
 from .verdict import Verdict, result
 
@@ -35,7 +35,7 @@ def first_things(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str
         found.get(verdict, ()) for verdict in (Verdict.FAILED, Verdict.POOR, Verdict.FAIR, Verdict.WAITING)
     )
     if failed:
-        said.append(f"{counted(len(failed), 'take')} failed: {_named(failed, number)}.{_shared(failed)}")
+        said.append(f"{pluralize(len(failed), 'take')} failed: {_named(failed, number)}.{_shared(failed)}")
     if poor:
         said.append(f"{_are(poor, 'poor, in need of keyframes')}: {_named(poor, number)}.")
     if fair:
@@ -51,7 +51,7 @@ def first_things(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str
 
 
 def _are(outcomes: Sequence[Outcome], what: str) -> str:
-    return f"{counted(len(outcomes), 'take')} {'is' if len(outcomes) == 1 else 'are'} {what}"
+    return f"{pluralize(len(outcomes), 'take')} {'is' if len(outcomes) == 1 else 'are'} {what}"
 
 
 def _named(outcomes: Sequence[Outcome], number: Mapping[str, int]) -> str:

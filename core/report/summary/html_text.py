@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from urllib.parse import quote
 
-from ...files.control_characters import seen
+from ...files.control_characters import escape_control_characters
 
 LONGEST = 1000
 """Characters that are shown of one text."""
@@ -21,7 +21,7 @@ def visible(text: str) -> str:
     marks that turn the direction of writing. The longest are cut.
     """
     shown = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
-    return seen(shown)
+    return escape_control_characters(shown)
 
 
 def escaped(text: str) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...shoot.outcomes.outcome import Outcome, Status
-from ...text import counted
+from ...text import pluralize
 from .head import counts, first_things
 from .html_text import escaped, isolated, percent
 from .row import COLUMNS, SIGNS, kind, row
@@ -59,7 +59,7 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
         _legend(),
         _by_name(named[:MOST_ROWS], number),
     )
-    return _document(f"{title}: {counted(len(outcomes), 'take')}", "\n".join(parts))
+    return _document(f"{title}: {pluralize(len(outcomes), 'take')}", "\n".join(parts))
 
 
 def _document(title: str, body: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path, PurePosixPath
 
 from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
-from ...text import counted
+from ...text import pluralize
 from ..film_strip import PICTURES as STRIP_FRAMES
 from ..film_strip import SIZE as STRIP_SIZE
 from ..pictures import STRIP
@@ -68,12 +68,12 @@ def _name(outcome: Outcome, way: str) -> str:
 
 
 def _footage(way: str, record: ConversionRecord) -> str:
-    length = f"{counted(record.frames, 'frame')}, {duration(record.frames / record.fps)}"
+    length = f"{pluralize(record.frames, 'frame')}, {duration(record.frames / record.fps)}"
     words = f"<small>{length} at {record.fps:g} frames a second; {_made_from(record)}</small>"
     name = f"{REPORT}{STRIP}"
     if name not in record.files:
         return words
-    shown = counted(min(STRIP_FRAMES, record.frames), "frame")
+    shown = pluralize(min(STRIP_FRAMES, record.frames), "frame")
     width, height = (pixels // 2 for pixels in STRIP_SIZE)
     picture = (
         f'<img src="{address(way, name)}" width="{width}" height="{height}" loading="lazy" decoding="async" '

@@ -1,4 +1,4 @@
-"""What is found wrong with a take, so that one thing that is wrong does not hide the next."""
+"""Findings of a check: problems and warnings, collected so that one does not hide the next."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,7 +7,7 @@ from ...errors import KeymarkError
 
 
 class Findings:
-    """Sentences on a take: why it would not convert, and what is likely to go wrong."""
+    """Sentences on a take: problems stop its conversion, warnings are what is likely to go wrong."""
 
     def __init__(self) -> None:
         self._problems: dict[str, None] = {}
@@ -15,7 +15,7 @@ class Findings:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Why it would not convert."""
+        """Reasons why it would not convert."""
         return tuple(self._problems)
 
     @property
@@ -24,16 +24,16 @@ class Findings:
         return tuple(self._warnings)
 
     def problem(self, *sentences: str) -> None:
-        """Take note of why it would not convert; what is said already is not said again."""
+        """Add problems; the same sentence is kept once."""
         self._problems.update(dict.fromkeys(sentences))
 
     def warn(self, *sentences: str) -> None:
-        """Take note of what is likely to go wrong."""
+        """Add warnings; the same sentence is kept once."""
         self._warnings.update(dict.fromkeys(sentences))
 
     @contextmanager
-    def noting(self) -> Iterator[None]:
-        """Take what is raised inside for a problem."""
+    def catching(self) -> Iterator[None]:
+        """Turn an error raised inside into a problem."""
         try:
             yield
         except KeymarkError as error:

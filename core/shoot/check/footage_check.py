@@ -1,4 +1,4 @@
-"""What a glance at a take's clip tells: its frames, its light, and how well the markers are seen."""
+"""The check of a take's clip from a few frames: frame count, light, and how well the markers are seen."""
 
 import numpy as np
 
@@ -11,90 +11,94 @@ from ...footage.clips.spread_frames import glance
 from ...footage.clips.video_file import VideoFile
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
+from ...take.clip_check import check_size
+from ...take.clip_notes import rate_note
 from ...take.read_footage import expected_regions
-from ...take.take import Take, check_size, rate_note
+from ...take.take import Take
 from .findings import Findings
 
-ENOUGH = SAMPLED_FRAMES // 2
-"""So many frames without a marker's color tell that the conversion will not find it either."""
+ENOUGH_FRAMES = SAMPLED_FRAMES // 2
+"""Sampled frames without a marker's color from which on the conversion will not find it either."""
 MOST_EXPECTED = 5000
-"""Frames of the longest clip for which it is worked out where keyframes put the markers."""
+"""Frames of the longest clip for which the markers' expected regions are computed."""
 ASTRAY = 0.8
-"""Share of a marker's frames, near where keyframes put it, below which something is wrong."""
+"""Share of a marker's regions near where keyframes put it, below which a warning is given."""
 BLACK, DARK = 16.0, 40.0
 """Brightest tenth of a picture that is black, or dark, in levels of 255."""
-FEW = 0.25
-"""Share of the frames that must be dark for a word."""
+DARK_SHARE = 0.25
+"""Share of the sampled frames that must be dark for a warning."""
 
 
-def count_frames(clip: Clip, said: Findings) -> int:
-    """Frames that a clip holds, as far as that is told without decoding it.
+def count_frames(clip: Clip, findings: Findings) -> int:
+    """Number of frames of a clip, as far as known without decoding it.
 
     Args:
         clip: The clip.
-        said: Takes the sentences on what is odd.
+        findings: Receives sentences on gaps, missing frames and uneven times.
     """
     if isinstance(clip.source, ImageSequence):
-        said.warn(*clip.source.notes)
+        findings.warn(*clip.source.notes)
     packets = read_packets(clip.path) if isinstance(clip.source, VideoFile) else None
     if packets is None:
         return clip.frame_count
     held = len(packets.time_s)
     if packets.complete and held < clip.frame_count:
-        said.warn(
+        findings.warn(
             f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; it may be "
             "cut off"
         )
         return held
     if is_variable_frame_rate(packets.time_s):
-        said.warn("the clip has a variable frame rate: keys will lie at the true times, between whole frames")
+        findings.warn(
+            "the clip has a variable frame rate: keys will lie at the true times, between whole frames"
+        )
     return clip.frame_count
 
 
-def check_footage(take: Take, clip: Clip, frames: int, said: Findings) -> tuple[MarkerReadout, ...]:
-    """Look at a take's clip.
+def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tuple[MarkerReadout, ...]:
+    """Check a take's clip.
 
     Args:
         take: The take, with the keyframes that a person posed.
         clip: Its clip.
-        frames: As many as it holds.
-        said: Takes the sentences.
+        frames: Its number of frames.
+        findings: Receives the sentences.
 
     Returns:
         How well each marker is seen; empty where no frame can be read.
     """
-    with said.noting():
+    with findings.catching():
         check_size(take, clip)
     rate = rate_note(take, clip) if clip.knows_its_rate else None
     if rate is not None:
-        said.warn(rate)
+        findings.warn(rate)
     samples = None
-    with said.noting():
+    with findings.catching():
         samples = run(glance(clip))
     if samples is None:
         return ()
-    dark = _check_light(samples, said)
-    check = _seen_markers(take, samples, frames, said)
-    refused = _refused(check, samples)
-    if len(refused) == len(take.markers) > 1:
-        said.problem(
+    dark = _check_light(samples, findings)
+    check = _find_markers(take, samples, frames, findings)
+    missing = _missing_markers(check, samples)
+    if len(missing) == len(take.markers) > 1:
+        findings.problem(
             f"{take.clip}: the color of no marker is in any of {len(samples.images)} frames looked at; "
             + ("there is too little light" if dark else "is it a clip of this performer?")
         )
         return check.readouts
-    said.problem(*(f"{take.clip}: marker {sentence}" for sentence in refused))
+    findings.problem(*(f"{take.clip}: marker {sentence}" for sentence in missing))
     for readout in check.readouts:
-        said.warn(*(warning for warning in readout.warnings if warning not in refused))
+        findings.warn(*(warning for warning in readout.warnings if warning not in missing))
     return check.readouts
 
 
-def _check_light(samples: ClipSamples, said: Findings) -> bool:
-    """Tell whether it is too dark in many frames."""
+def _check_light(samples: ClipSamples, findings: Findings) -> bool:
+    """Whether many frames are dark; warns of them."""
     bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
     for limit, word in ((BLACK, "black"), (DARK, "dark")):
         count = int(np.count_nonzero(bright < limit))
-        if count >= max(FEW * len(bright), 1):
-            said.warn(
+        if count >= max(DARK_SHARE * len(bright), 1):
+            findings.warn(
                 f"{count} of {len(bright)} frames looked at are {word}; colors are hard to tell there, more "
                 "light is worth most"
             )
@@ -102,18 +106,18 @@ def _check_light(samples: ClipSamples, said: Findings) -> bool:
     return False
 
 
-def _refused(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
-    """Sentences on colors that are nowhere, as far as enough was looked at to know it."""
-    enough = len(samples.images) >= min(ENOUGH, samples.indices[-1] + 1)
+def _missing_markers(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
+    """Sentences on markers found in no frame; none where too few frames were sampled to tell."""
+    enough = len(samples.images) >= min(ENOUGH_FRAMES, samples.indices[-1] + 1)
     return tuple(check.missing.values()) if enough else ()
 
 
-def _seen_markers(take: Take, samples: ClipSamples, frames: int, said: Findings) -> MarkerCheck:
-    """Look for the markers, as the conversion will: where the keyframes put them; else anywhere.
+def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findings) -> MarkerCheck:
+    """Search for the markers as the conversion will: near where the keyframes put them, else anywhere.
 
-    What is found anywhere but not there is told: something is wrong with what is said of the take.
+    Markers found elsewhere only are a warning: camera, keyframes or clip do not fit each other.
     """
-    if said.problems or len(take.keyframes) < 2 or frames > MOST_EXPECTED:
+    if findings.problems or len(take.keyframes) < 2 or frames > MOST_EXPECTED:
         return run(check_markers(samples, take.markers))
     nearby = run(check_markers(samples, take.markers, expected_regions(take, frames)))
     if all(readout.found >= ASTRAY * readout.sampled for readout in nearby.readouts):
@@ -126,7 +130,7 @@ def _seen_markers(take: Take, samples: ClipSamples, frames: int, said: Findings)
     ]
     if not astray:
         return nearby
-    said.warn(
+    findings.warn(
         f"seen far from where keyframes and camera put it: {', '.join(astray)}; check that the keyframes are "
         "this clip's, where the camera stands, and which marker is on which side"
     )

@@ -1,65 +1,66 @@
-"""What seems wrong with a take's keyframes, before anything is converted."""
+"""The check of a take's keyframes: fit to the actor, place in clip and picture, gaps between them."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...take.take import Take, check_frame_count, check_in_front
+from ...take.clip_check import check_frame_count, check_in_front
+from ...take.take import Take
 from .findings import Findings
 
 LONGEST_GAP_S = 1.0
-"""Time without a keyframe that is worth a word where no library fills it: ten in 100 frames are usual."""
+"""Longest gap between keyframes without a warning where no library fills it: ten in 100 frames are usual."""
 FEWEST_IN_PICTURE = 0.5
 """Share of a keyframe's points that must lie in the picture."""
 MOST_NAMED = 3
 
 
-def check_keyframes(take: Take, frames: int, with_library: bool, said: Findings) -> None:
-    """Look at keyframes that could be read.
+def check_keyframes(take: Take, frames: int, with_library: bool, findings: Findings) -> None:
+    """Check keyframes that could be read.
 
     Args:
         take: A take.
-        frames: Frames of its clip.
-        with_library: Whether a library says what lies between them.
-        said: Takes the sentences.
+        frames: Number of frames of its clip.
+        with_library: Whether the take is matched with a library, which fills gaps.
+        findings: Receives the sentences.
     """
-    _check_fit(take, said)
-    with said.noting():
+    _check_fit(take, findings)
+    with findings.catching():
         check_frame_count(take, frames)  # first: a moving camera may lack the poses of keyframes
         check_in_front(take)
-    if said.problems or not take.keyframes:
+    if findings.problems or not take.keyframes:
         return
     if not with_library:
-        _check_gaps(take, frames, said)
-    _check_picture(take, said)
+        _check_gaps(take, frames, findings)
+    _check_picture(take, findings)
 
 
-def _check_fit(take: Take, said: Findings) -> None:
+def _check_fit(take: Take, findings: Findings) -> None:
     if len(take.notes) <= MOST_NAMED:
-        said.warn(*take.notes)
+        findings.warn(*take.notes)
         return
     residual = [keyframe.residual_m for keyframe in take.keyframes]
-    said.warn(
+    findings.warn(
         f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
         f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's lengths, "
         "and whether these are the performer's own keyframes"
     )
 
 
-def _check_gaps(take: Take, frames: int, said: Findings) -> None:
+def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
     ends = [0, *(index for index in take.keyframe_indices if index < frames), frames - 1]
     gaps = np.diff(ends)
     longest = int(np.argmax(gaps))
     seconds = gaps[longest] / take.fps
     if seconds > LONGEST_GAP_S:
         first, last = ends[longest] + take.frame_start, ends[longest + 1] + take.frame_start
-        said.warn(
+        findings.warn(
             f"{len(take.keyframes)} keyframes for {frames} frames are few: from frame {first} to {last}, "
             f"{seconds:.1f} s, there is none; pose more, or name a library to match"
         )
 
 
-def _check_picture(take: Take, said: Findings) -> None:
+def _check_picture(take: Take, findings: Findings) -> None:
     width, height = take.camera.resolution
     outside = []
     for keyframe in take.keyframes:
@@ -69,7 +70,7 @@ def _check_picture(take: Take, said: Findings) -> None:
         if inside.mean() < FEWEST_IN_PICTURE:
             outside.append(keyframe.index + take.frame_start)
     if outside:
-        said.warn(
+        findings.warn(
             f"through this camera {_frames(outside)} would be seen outside the picture for the most part; "
             "check where the camera stands and its lens"
         )

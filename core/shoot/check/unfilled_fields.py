@@ -1,10 +1,10 @@
-"""Fields of a description that a person has still to fill in: null where there must be something."""
+"""Unfilled fields of a description: null where a person has still to give a value."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from ...files.fields import Fields
-from ...files.inherited_fields import child_place
+from ...files.inherited_fields import child_location
 
 _CAMERA = {
     "lens_mm": "the focal length in millimeters",
@@ -15,33 +15,33 @@ _COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker
 _HEIGHT = "the performer's height in meters"
 
 
-def unfilled(fields: Fields) -> tuple[str, ...]:
+def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
     """A sentence on each field of a take that is null and must not be.
 
     Args:
-        fields: What is said of the take.
+        fields: The fields of its description.
     """
-    said = []
+    sentences = []
     camera = _child(fields, "camera")
     for name, valid in _CAMERA.items():
         if name in camera.values and not camera.has(name) and not camera.has(f"{name}_frames"):
-            said.append(_sentence(camera, name, valid))
+            sentences.append(_sentence(camera, name, valid))
     markers = _child(fields, "markers")
     for name in markers.values:
         marker = _child(markers, name)
         if "color_srgb" in marker.values and not marker.has("color_srgb"):
-            said.append(_sentence(marker, "color_srgb", _COLOR))
+            sentences.append(_sentence(marker, "color_srgb", _COLOR))
     actor = _child(fields, "actor")
     if "height_m" in actor.values and not actor.has("height_m") and not actor.has("segments_m"):
-        said.append(_sentence(actor, "height_m", _HEIGHT))
-    return tuple(said)
+        sentences.append(_sentence(actor, "height_m", _HEIGHT))
+    return tuple(sentences)
 
 
 def _child(fields: Fields, name: str) -> Fields:
     value: Any = fields.values.get(name)
     values: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
-    return Fields(values, child_place(fields.at(name), name))
+    return Fields(values, child_location(fields.source_of(name), name))
 
 
 def _sentence(fields: Fields, name: str, valid: str) -> str:
-    return f"{fields.at(name)}: {name} is still to be filled in: {valid}"
+    return f"{fields.source_of(name)}: {name} is still to be filled in: {valid}"

@@ -1,1 +1,1 @@
-"""What became of takes: kept beside the results, and found there again."""
+"""Outcomes of takes in a batch: results and failures, written beside each other and read again."""

@@ -1,6 +1,6 @@
 """Failures of a shoot's takes, kept beside the results until the take converts.
 
-Each is a file of its own, so that several machines may write theirs at a time.
+Each failure is a file of its own, so that several machines can write at a time.
 """
 
 import hashlib
@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...files.fields import Fields
 from ...files.json_file import read_json, write_json
 from ...take.description import clip_name
-from ..finding.take_names import RESERVED, name_of_way
+from ..discovery.take_names import RESERVED, take_name
 from ..shoot import Shoot
 
 FOLDER = Path(RESERVED[0]) / "failures"
@@ -31,15 +31,15 @@ class Failure:
     error: str
     """The reason, in a sentence."""
     kind: str
-    """`input`, `conversion`, or `crash` where the process itself came to an end."""
+    """`input`, `conversion`, or `crash` where the process itself died."""
 
 
 def write_failure(output: Path, failure: Failure) -> None:
-    """Keep a failure.
+    """Write a failure.
 
     Args:
         output: The folder of all results.
-        failure: Of one of its takes.
+        failure: The failure of one take.
 
     Raises:
         ConversionError: The file cannot be written.
@@ -47,14 +47,14 @@ def write_failure(output: Path, failure: Failure) -> None:
     write_json(_file(output, failure.take), asdict(failure), indent=1)
 
 
-def clear_failure(output: Path, take: str) -> None:
-    """Forget a take's failure, if there was one."""
+def remove_failure(output: Path, take: str) -> None:
+    """Remove a take's failure, if there is one."""
     with suppress(OSError):
         _file(output, take).unlink(missing_ok=True)
 
 
 def read_failures(output: Path) -> list[Failure]:
-    """The failures of all takes that can be read, in the order of their names."""
+    """All failures that can be read, in the order of the takes' names."""
     with suppress(OSError):
         found = [_read(file) for file in (output / FOLDER).glob("*.json")]
         return sorted((failure for failure in found if failure is not None), key=lambda one: one.take)
@@ -67,10 +67,10 @@ def read_failure(output: Path, take: str) -> Failure | None:
     return found if found is not None and found.take == take else None
 
 
-def forget_gone_takes(output: Path, shoot: Shoot) -> None:
-    """Forget failures of takes that were deleted: else every library merged from then on would lack some.
+def remove_failures_of_deleted_takes(output: Path, shoot: Shoot) -> None:
+    """Remove failures of takes that no longer exist: else every library merged later would seem incomplete.
 
-    A list or one clip says nothing of takes that it lacks.
+    A list or one clip does not tell whether other takes exist.
 
     Args:
         output: The folder of all results.
@@ -78,21 +78,21 @@ def forget_gone_takes(output: Path, shoot: Shoot) -> None:
     """
     known = {take.name for take in shoot.takes}
     for failure in read_failures(output):
-        if failure.take not in known and _is_gone(shoot.path, failure.take):
-            clear_failure(output, failure.take)
+        if failure.take not in known and _is_deleted(shoot.path, failure.take):
+            remove_failure(output, failure.take)
 
 
-def _is_gone(folder: Path, take: str) -> bool:
-    """Whether a folder of takes has lost one: there is neither its folder nor its clip."""
+def _is_deleted(folder: Path, take: str) -> bool:
+    """Whether neither the folder nor the clip of a take exists any more."""
     if not folder.is_dir():
         return False
     try:
-        inside = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
+        siblings = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
     except (FileNotFoundError, NotADirectoryError):
         return True
-    except (OSError, ValueError):  # it may be there
+    except (OSError, ValueError):  # it may exist
         return False
-    return take not in {name_of_way(way.with_name(clip_name(folder / way))) for way in inside}
+    return take not in {take_name(path.with_name(clip_name(folder / path))) for path in siblings}
 
 
 def _read(path: Path) -> Failure | None:

@@ -1,1 +1,1 @@
-"""A new description of a shoot, from what its clips tell."""
+"""A new `shoot.json`, filled in from a survey of its clips."""

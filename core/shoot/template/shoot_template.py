@@ -5,7 +5,7 @@ from typing import Any
 from ...files.fields import listed
 from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
 from ...take.shoot_file import SCHEMA_VERSION
-from ...text import counted
+from ...text import pluralize
 from .clip_survey import ClipSurvey
 
 MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
@@ -46,13 +46,13 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
 def clip_lines(survey: ClipSurvey) -> list[str]:
     """What the clips have in common and where they differ, one line each."""
     frames = sum(clip.frames for clip in survey.clips)
-    lines = [f"{counted(len(survey.clips), 'clip')}, {counted(frames, 'frame')} in all"]
+    lines = [f"{pluralize(len(survey.clips), 'clip')}, {pluralize(frames, 'frame')} in all"]
     lines += [
-        f"{counted(count, 'clip')} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
+        f"{pluralize(count, 'clip')} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
         for (width, height), count in survey.sizes.most_common()
     ]
     lines += [
-        f"{counted(count, 'clip')} {_at(fps)}{_examples(survey, fps=fps)}"
+        f"{pluralize(count, 'clip')} {_at(fps)}{_examples(survey, fps=fps)}"
         for fps, count in survey.rates.most_common()
     ]
     if survey.described:

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
-from ....core.files.json_file import write_whole
+from ....core.files.json_file import write_atomically
 
 NAME = "blender_assets.cats.txt"
 VERSION = "VERSION 1"
@@ -73,7 +73,7 @@ def ensure_catalog(file: Path, catalog: str) -> str:
         start = content.rstrip("\n") + "\n" if content.strip() else HEADER
         lines = [f"{known[path]}:{path}:{path.replace('/', '-')}\n" for path in missing]
         text = start + "".join(lines)
-        write_whole(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+        write_atomically(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
     return known[paths[-1]]
 
 

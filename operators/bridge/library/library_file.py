@@ -6,12 +6,7 @@ from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.library.library import Library
-from ....core.library.library_file import (
-    library_from_json,
-    library_to_json,
-    read_library,
-    write_library,
-)
+from ....core.library.library_file import library_from_json, library_to_json, read_library, write_library
 from .library_blend import read_library_blend, write_library_blend
 from .pose_assets import present_motions
 

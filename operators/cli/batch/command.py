@@ -12,8 +12,8 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
-from ....core.shoot.finding.open_shoot import open_shoot
-from ....core.shoot.finding.take_names import check_output
+from ....core.shoot.discovery.find_takes import open_shoot
+from ....core.shoot.discovery.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ..console import Console, arguments_console
@@ -97,7 +97,7 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
     if arguments.library is not None:
         chosen_libraries(arguments.library)
-    shoot = open_shoot(arguments.shoot, without=arguments.output)
+    shoot = open_shoot(arguments.shoot, excluded=arguments.output)
     check_output(shoot, arguments.output)
     takes = _named(shoot, arguments.take) if arguments.take else shoot.takes
     farther = ConversionSettings(

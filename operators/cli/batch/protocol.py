@@ -30,7 +30,7 @@ class Job:
         """The job as a line."""
         take, farther = self.take, self.farther
         value = {
-            "take": [take.name, str(take.place), take.nearest, take.said_in],
+            "take": [take.name, str(take.path), take.overrides, take.overrides_location],
             "folder": str(self.folder),
             "farther": {**vars(farther), "keyframes": farther.keyframes and str(farther.keyframes)},
             "again": self.again,
@@ -42,11 +42,11 @@ class Job:
     def from_line(cls, line: bytes) -> "Job":
         """The job of a line."""
         value = json.loads(line)
-        name, place, nearest, said_in = value["take"]
+        name, path, overrides, location = value["take"]
         farther = value["farther"]
         keyframes = farther["keyframes"] and Path(farther["keyframes"])
         return cls(
-            ShootTake(name, Path(place), nearest, said_in),
+            ShootTake(name, Path(path), overrides, location),
             Path(value["folder"]),
             ConversionSettings(**{**farther, "keyframes": keyframes}),
             value["again"],

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ....core.files.json_file import write_whole
+from ....core.files.json_file import write_atomically
+from ....core.files.paths import absolute_path
 from ....core.report.summary.html_text import way_to
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.verdict import result
 from ....core.shoot.outcomes.outcome import Outcome
 from ....core.shoot.shoot import Shoot
-from ....core.take.conversion_record import NAME as RECORD
-from ....core.take.shoot_file import whole_way
+from ....core.take.conversion_record import RECORD_FILE as RECORD
 
 LINES, PAGE = "summary.jsonl", "summary.html"
 
@@ -34,9 +34,9 @@ def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tu
     ordered = sorted(outcomes, key=lambda outcome: outcome.take)
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
     lines = "".join(f"{json.dumps(line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
-    page = summary_page(whole_way(shoot.path).name, ordered, output)
+    page = summary_page(absolute_path(shoot.path).name, ordered, output)
     for name, text in ((LINES, lines), (PAGE, page)):
-        write_whole(output / name, lambda beside, text=text: _write(beside, text))
+        write_atomically(output / name, lambda beside, text=text: _write(beside, text))
     return (output / LINES, output / PAGE)
 
 

@@ -11,15 +11,14 @@ from ....core.errors import KeymarkError
 from ....core.shoot.outcomes.failures import (
     CONVERSION,
     Failure,
-    clear_failure,
-    forget_gone_takes,
+    remove_failure,
+    remove_failures_of_deleted_takes,
     write_failure,
 )
-from ....core.shoot.outcomes.outcome import Outcome, Status
-from ....core.shoot.outcomes.take_outcomes import gather_outcomes, gathered
+from ....core.shoot.outcomes.outcome import Outcome, Status, read_outcome, read_outcomes
 from ....core.shoot.shoot import Shoot
-from ....core.take.conversion_record import ConversionRecord, record_if_any
-from ....core.text import counted
+from ....core.take.conversion_record import ConversionRecord, find_record
+from ....core.text import pluralize
 from ..console import Console
 from ..line_wrapping import broken, terminal_columns
 from .batch_progress import Share
@@ -46,7 +45,7 @@ class Tally:
         """
         self.shoot, self.output, self.console = shoot, output, console
         self._names = [job.take.name for job in jobs]
-        self._outcomes = {outcome.take: outcome for outcome in gather_outcomes(shoot, output)}
+        self._outcomes = {outcome.take: outcome for outcome in read_outcomes(shoot, output)}
         for name in self._names:
             self._outcomes[name] = replace(self._outcomes[name], status=Status.WAITING, error=None)
         self._counts = Counter({Status.WAITING: len(jobs)})
@@ -58,7 +57,7 @@ class Tally:
         """Of the summary."""
         self.wrong: list[str] = []
         """What of it all could not be written, in sentences."""
-        forget_gone_takes(output, shoot)
+        remove_failures_of_deleted_takes(output, shoot)
         self._show()
 
     @property
@@ -83,12 +82,12 @@ class Tally:
 
     def done(self, job: Job, done: Done) -> None:
         """A take has come to its end."""
-        name, record = job.take.name, record_if_any(job.folder)
+        name, record = job.take.name, find_record(job.folder)
         self._share.come(self._places[name], 1.0, _frames(record))
         if done.result == FAILED:
             self._keep(Failure(name, done.error or "failed", done.kind or CONVERSION))
         else:
-            clear_failure(self.output, name)
+            remove_failure(self.output, name)
         outcome = Outcome(name, job.folder, Status(done.result), record, done.error, done.seconds)
         self._outcomes[name] = outcome
         self._counts.update({outcome.status: 1, Status.WAITING: -1})
@@ -112,7 +111,9 @@ class Tally:
     def _others(self) -> dict[str, Outcome]:
         """What has become of the takes that are not converted here."""
         here = set(self._names)
-        return {take.name: gathered(take, self.output) for take in self.shoot.takes if take.name not in here}
+        return {
+            take.name: read_outcome(take, self.output) for take in self.shoot.takes if take.name not in here
+        }
 
     def summarize(self) -> None:
         """Write the summary as far as it goes."""
@@ -148,7 +149,7 @@ class Tally:
         """What has become of the takes, in lines for a person, failures with their reasons."""
         counts = ", ".join(f"{count} {name}" for name, count in self.counts.items() if count)
         failed = [outcome for outcome in self.outcomes if outcome.status is Status.FAILED]
-        lines = [f"{counted(len(self._names), 'take')}: {counts}."]
+        lines = [f"{pluralize(len(self._names), 'take')}: {counts}."]
         if failed:
             lines.append("Failed:")
             for outcome in failed:
@@ -169,7 +170,7 @@ class Tally:
 
     def _show(self) -> None:
         count, failed = len(self._names), self._counts[Status.FAILED]
-        words = f"{count - self._counts[Status.WAITING]} of {counted(count, 'take')}"
+        words = f"{count - self._counts[Status.WAITING]} of {pluralize(count, 'take')}"
         self.console.overall(self._share.value, f"{words}, {failed} failed" if failed else words)
 
     def _keep(self, failure: Failure) -> None:

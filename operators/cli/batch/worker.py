@@ -10,7 +10,7 @@ from typing import BinaryIO
 
 import cv2
 
-from ....core.errors import BusyError, InputError, KeymarkError, unexpected
+from ....core.errors import BusyError, InputError, KeymarkError, describe_unexpected
 from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
@@ -61,9 +61,9 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
         result, error, kind = FAILED, str(failed), CONVERSION
     except OSError as wrong:
         reason = wrong.strerror or wrong
-        result, error, kind = FAILED, f"{job.take.place}: cannot be converted ({reason})", CONVERSION
+        result, error, kind = FAILED, f"{job.take.path}: cannot be converted ({reason})", CONVERSION
     except Exception as unknown:
-        what = unexpected(unknown)
+        what = describe_unexpected(unknown)
         result, error, kind = FAILED, f"failed unexpectedly ({what}); convert --debug shows where", CRASH
     return Done(result, time.perf_counter() - started, error, kind, resident_bytes())
 

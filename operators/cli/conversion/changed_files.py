@@ -4,10 +4,10 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.commit import free_name
+from ....core.files.commit import backup_name
 from ....core.files.digest import content_digest
 from ....core.files.json_file import read_json, write_json
-from ....core.take.conversion_record import NAME, read_record
+from ....core.take.conversion_record import RECORD_FILE, read_record
 
 AS_MADE = ".as_made.json"
 """SHA-256 of files as they were made, beside the results; for those that differ from run to run, though
@@ -41,11 +41,16 @@ def changed_files(
     for name in names:
         there, new = output / name, place / name
         replaced = new.is_file() or (name in made and name not in worked_in)
-        if name == NAME or not replaced or not there.is_file() or not (name in made or name in worked_in):
+        if (
+            name == RECORD_FILE
+            or not replaced
+            or not there.is_file()
+            or not (name in made or name in worked_in)
+        ):
             continue
         digest = content_digest(there)
         if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
-            kept[name] = free_name(there).relative_to(output).as_posix()
+            kept[name] = backup_name(there).relative_to(output).as_posix()
     return kept
 
 

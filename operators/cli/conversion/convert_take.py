@@ -8,22 +8,24 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
-from ....core.files.output_folder import output_folder, real_path
+from ....core.files.output_folder import output_folder
+from ....core.files.paths import real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
 from ....core.matching.match_take import take_to_match
 from ....core.progress import run
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
 from ....core.take.conversion_digest import conversion_digest
-from ....core.take.conversion_record import NAME as RECORD
-from ....core.take.conversion_record import is_finished, write_record
+from ....core.take.conversion_record import RECORD_FILE as RECORD
+from ....core.take.conversion_record import is_up_to_date, write_record
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.keyframe_file import write_keyframes
 from ....core.take.methods import METHODS
 from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
-from ....core.take.take import Take, read_described
+from ....core.take.take import Take
+from ....core.take.take_file import read_described
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..version import version
@@ -79,7 +81,7 @@ def convert_if_changed(
         What was made; None where it was there.
     """
     with _work(description, output, console, settings) as work:
-        return None if is_finished(output, work.digest) else _convert(work, console, debug)
+        return None if is_up_to_date(output, work.digest) else _convert(work, console, debug)
 
 
 @dataclass(frozen=True, eq=False)

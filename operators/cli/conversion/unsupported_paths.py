@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.output_folder import real_path
+from ....core.files.paths import real_path
 from ....core.take.description import Description
 
 LONGEST_BYTES = 1023

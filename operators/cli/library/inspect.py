@@ -5,7 +5,7 @@ from collections import Counter
 from typing import Any
 
 from ....core.errors import InputError
-from ....core.files.json_file import write_whole
+from ....core.files.json_file import write_atomically
 from ....core.library.library import Library, LibraryMotion
 from ....core.library.library_file import read_library
 from ....core.library.registry import find_library, shelved
@@ -57,7 +57,7 @@ def show_command(arguments: argparse.Namespace) -> None:
 
             console.stage("Drawing the postures")
             picture = library_sheet(library)
-            write_whole(arguments.sheet, lambda beside: write_png(str(beside), picture))
+            write_atomically(arguments.sheet, lambda beside: write_png(str(beside), picture))
             lines.append(f"Picture: {arguments.sheet}")
             result["sheet"] = str(arguments.sheet)
         console.finish(result, "\n".join(lines))

@@ -23,12 +23,7 @@ from ...bridge.library.posture_transfer import as_kept
 from ...bridge.pose import read_posture
 from ...bridge.posture_curves import rewrite_posture_curves
 from .asset_updates import update_assets
-from .library_from_scene import (
-    actor_of_library,
-    library_from_scene,
-    postures_from_scene,
-    unchecked_library,
-)
+from .library_from_scene import actor_of_library, library_from_scene, postures_from_scene, unchecked_library
 from .library_to_scene import add_motion_entry, add_posture_entry
 from .scene_libraries import active_posture
 

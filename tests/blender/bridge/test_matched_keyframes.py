@@ -11,7 +11,8 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
-from keymark.core.take.take import Take, read_take, write_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take, write_take
 from keymark.operators.bridge import single_frame_fit
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body

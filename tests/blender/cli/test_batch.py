@@ -197,13 +197,13 @@ def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
     worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert worker.stdin is not None and worker.stdout is not None
     assert b"ready" in worker.stdout.readline()
-    from keymark.core.shoot.finding.find_takes import find_takes
-    from keymark.core.take.conversion_settings import NOTHING_CHOSEN
+    from keymark.core.shoot.discovery.find_takes import find_takes
+    from keymark.core.take.conversion_settings import NO_SETTINGS
     from keymark.operators.cli.batch.protocol import Job
 
     take = find_takes(shoot).takes[0]
     worker.stdout.close()
-    worker.stdin.write(Job(take, tmp_path / "out", NOTHING_CHOSEN).to_line())
+    worker.stdin.write(Job(take, tmp_path / "out", NO_SETTINGS).to_line())
     worker.stdin.flush()
     assert worker.wait() == 130
     worker.stdin.close()

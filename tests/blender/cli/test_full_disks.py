@@ -13,9 +13,9 @@ from pathlib import Path
 import bpy
 import pytest
 from _faults import tree
-from _results import blend_is_of, hidden, is_whole, same_in_every_run
+from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_synthetic_take
-from keymark.core.files.output_folder import real_path
+from keymark.core.files.paths import real_path
 from keymark.operators.cli.main import main
 
 pytestmark = pytest.mark.faults
@@ -92,7 +92,7 @@ def test_a_disk_that_fills_up_keeps_the_older_results(
         assert failed >= 6
         remount(disk, "size=16m")
         assert convert(take, out, NEWER) == 0
-        assert same_in_every_run(out) == wanted and is_whole(out) and not hidden(disk)
+        assert same_in_every_run(out) == wanted and is_whole(out) and not hidden_files(disk)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such limit")
@@ -164,7 +164,7 @@ def test_a_folder_that_is_a_disk_of_its_own_is_filled_from_within(take: Path, tm
             assert done.returncode <= 0, done.stderr
             is_whole(out)
         assert convert(take, out, NEWER) == 0
-        assert is_whole(out) and blend_is_of(out) and not hidden(out)
+        assert is_whole(out) and blend_is_of(out) and not hidden_files(out)
         assert not [name for name in os.listdir(out) if name.startswith(".") and name != ".as_made.json"]
     assert os.listdir(out.parent) == ["out"]
 

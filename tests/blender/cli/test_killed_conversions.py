@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _results import blend_is_of, hidden, is_whole, same_in_every_run
+from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_synthetic_take
 
 pytestmark = [
@@ -35,7 +35,7 @@ class Undisturbed:
     """What a run leaves that nothing disturbs, and what it takes."""
 
     results: dict[str, bytes | None]
-    touches: int
+    operations: int
     cpu_s: float
 
 
@@ -60,7 +60,7 @@ def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
     assert done.returncode == 0, done.stderr
     took = json.loads(done.stdout.splitlines()[-1])
     assert is_whole(out)
-    return Undisturbed(same_in_every_run(out.parent), took["touches"], took["cpu_s"])
+    return Undisturbed(same_in_every_run(out.parent), took["operations"], took["cpu_s"])
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undistur
     for death in range(1, KILLS + 1):
         kind = chance.choice(["newer", "older", "newer", "older", "map"])
         if death % 3:
-            when = str(chance.randint(1, undisturbed[kind].touches))
+            when = str(chance.randint(1, undisturbed[kind].operations))
         else:
             when = f"{chance.uniform(0.001, undisturbed[kind].cpu_s):.4f}s"
         done = run(take, out, kind, when)
@@ -105,7 +105,7 @@ def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undistur
         if death % TO_ITS_END == 0:
             kind = chance.choice(list(RUNS))
             assert to_the_end(take, out, kind).results == undisturbed[kind].results
-            assert not hidden(out.parent) and blend_is_of(out)
+            assert not hidden_files(out.parent) and blend_is_of(out)
             ended += 1
             if chance.random() < 0.3:
                 shutil.rmtree(out)

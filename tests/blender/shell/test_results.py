@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import keymark
 import pytest
-from keymark.core.files.store import Store
+from keymark.core.files.array_cache import ArrayCache
 from keymark.core.footage.reading import Reading
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
@@ -22,7 +22,7 @@ def loads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """A store of its own for the test, and the keys that were looked for in it."""
     keys: list[str] = []
 
-    class Counting(Store):
+    class Counting(ArrayCache):
         def load(self, key: str):  # noqa: ANN202
             keys.append(key)
             return super().load(key)

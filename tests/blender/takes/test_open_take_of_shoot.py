@@ -7,8 +7,8 @@ import bpy
 import pytest
 from _shoot import write_shoot
 from keymark.core.errors import InputError
-from keymark.core.shoot.finding.take_location import take_place
-from keymark.core.take.take import read_take
+from keymark.core.shoot.discovery.take_path import take_path
+from keymark.core.take.take_file import read_take
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -45,11 +45,11 @@ def test_the_description_beside_a_clip_can_be_dropped(clip: Path) -> None:
 
 def test_a_file_means_one_take(clip: Path) -> None:
     """`take.json` its folder, `NAME.take.json` its clip; without the clip it means nothing."""
-    assert take_place(clip) == take_place(clip.with_name("take01.take.json")) == clip
-    assert take_place(clip.parent / "take.json") == clip.parent
+    assert take_path(clip) == take_path(clip.with_name("take01.take.json")) == clip
+    assert take_path(clip.parent / "take.json") == clip.parent
     clip.unlink()
     with pytest.raises(InputError, match="0 clips beside it are called take01"):
-        take_place(clip.with_name("take01.take.json"))
+        take_path(clip.with_name("take01.take.json"))
 
 
 def test_a_take_is_never_saved_where_it_would_hide_others(clip: Path, tmp_path: Path) -> None:

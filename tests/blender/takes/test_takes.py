@@ -6,7 +6,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from keymark.core.take.take import Take, write_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import write_take
 from keymark.operators.shell.takes import active_take, unique_name
 from keymark.operators.takes.next_step import next_step
 

@@ -9,7 +9,7 @@ import pytest
 from keymark.core.estimate.consistency import coverage
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.progress import run
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 
 @pytest.mark.slow

@@ -15,7 +15,8 @@ from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstru
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 from threadpoolctl import threadpool_info, threadpool_limits
 
 

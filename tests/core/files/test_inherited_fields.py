@@ -1,4 +1,4 @@
-"""Fields that come from several files: the nearest counts, and each knows where it stands."""
+"""Fields inherited from several files: the nearest overrides, and each field has its source."""
 
 from typing import Any
 
@@ -7,16 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
-from keymark.core.files.inherited_fields import ALTERNATIVES, Inherited, child_place
+from keymark.core.files.inherited_fields import ALTERNATIVES, InheritedFields, child_location
 
 FAR, NEAR = "/shoot/shoot.json", "/shoot/take/take.json"
 
 
-def merged(*patches: dict[str, Any]) -> Inherited:
-    """Objects over each other, the farthest first; their places are `0.json`, `1.json` and so on."""
-    fields = Inherited()
+def merged(*patches: dict[str, Any]) -> InheritedFields:
+    """Objects merged over each other, the farthest first, from `0.json`, `1.json` and so on."""
+    fields = InheritedFields()
     for index, patch in enumerate(patches):
-        fields = fields.patched(patch, f"{index}.json")
+        fields = fields.overridden_by(patch, f"{index}.json")
     return fields
 
 
@@ -25,27 +25,27 @@ def test_the_nearer_field_counts_and_objects_are_merged() -> None:
     far = {"fps": 24, "camera": {"lens_mm": 35.0, "resolution": [640, 480]}}
     fields = merged(far, {"fps": 30, "camera": {"resolution": [320, 240]}})
     assert fields == {"fps": 30, "camera": {"lens_mm": 35.0, "resolution": [320, 240]}}
-    assert fields.places == {"fps": "1.json", "camera": "1.json"}
-    assert fields["camera"].places == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
+    assert fields.sources == {"fps": "1.json", "camera": "1.json"}
+    assert fields["camera"].sources == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
 
 
-def test_null_takes_an_inherited_field_away_and_is_itself_where_there_is_none() -> None:
+def test_null_removes_an_inherited_field_and_stays_where_there_is_none() -> None:
     """Then the sentence can say that it is null."""
     fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
-    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.places
+    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.sources
     with pytest.raises(InputError, match=r"^1\.json: fps is null"):
         Fields(merged({}, {"fps": None}), "1.json").number("fps", 1, 2)
 
 
-def test_what_was_taken_away_can_be_said_again() -> None:
+def test_a_removed_field_can_be_given_again() -> None:
     """By a file that is nearer still."""
     fields = merged({"method": "ekf"}, {"method": None}, {"method": "map"})
-    assert fields == {"method": "map"} and fields.places == {"method": "2.json"}
+    assert fields == {"method": "map"} and fields.sources == {"method": "2.json"}
 
 
 @pytest.mark.parametrize("pair", [*ALTERNATIVES, *(pair[::-1] for pair in ALTERNATIVES)])
 def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -> None:
-    """Whichever of the two it is; both in one place are both kept, and null takes nothing but itself."""
+    """Either of the two; both in one object are both kept, and null removes nothing but its own field."""
     one, other = pair
     assert merged({one: 1}, {other: 2}) == {other: 2}
     assert merged({one: 1}, {one: 3, other: 2}) == {one: 3, other: 2}
@@ -54,11 +54,11 @@ def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -
 
 
 def test_comments_are_left_out_at_any_level() -> None:
-    """They are no fields and take none away."""
+    """They are no fields and remove none."""
     assert merged({"//": 1, "camera": {"// lens": "?", "lens_mm": 1}}) == {"camera": {"lens_mm": 1}}
 
 
-def test_an_object_takes_the_place_of_what_is_none_and_the_other_way_round() -> None:
+def test_an_object_replaces_another_value_and_the_other_way_round() -> None:
     """As in a merge patch."""
     assert merged({"distortion": [1, 2]}, {"distortion": {"k1": 3}}) == {"distortion": {"k1": 3}}
     assert merged({"distortion": {"k1": 3}}, {"distortion": [1]}) == {"distortion": [1]}
@@ -73,18 +73,18 @@ def test_an_object_takes_the_place_of_what_is_none_and_the_other_way_round() -> 
     ],
 )
 def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) -> None:
-    """And where nobody says it, the nearest."""
-    fields = Inherited().patched({"camera": {"lens_mm": -1}}, FAR)
-    fields = fields.patched({"camera": {"sensor_width_mm": "x"}}, NEAR)
+    """And for a field that is missing everywhere, the nearest file."""
+    fields = InheritedFields().overridden_by({"camera": {"lens_mm": -1}}, FAR)
+    fields = fields.overridden_by({"camera": {"sensor_width_mm": "x"}}, NEAR)
     with pytest.raises(InputError, match=said):
         Fields(fields, NEAR).child("camera", "an object").number(field, 0, 1)
 
 
-def test_places_of_objects_read_well() -> None:
-    """The file, then the way in it."""
-    assert child_place("a.json", "camera") == "a.json: camera"
-    assert child_place("a.json: camera", "lens") == "a.json: camera.lens"
-    assert child_place("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
+def test_locations_of_objects_read_well() -> None:
+    """The file, then the path in it."""
+    assert child_location("a.json", "camera") == "a.json: camera"
+    assert child_location("a.json: camera", "lens") == "a.json: camera.lens"
+    assert child_location("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
 
 
 VALUES = st.recursive(
@@ -95,7 +95,7 @@ VALUES = st.recursive(
 OBJECTS = st.dictionaries(st.sampled_from("abc"), VALUES, max_size=3)
 
 
-def patched(target: Any, patch: Any) -> Any:
+def merge_patch(target: Any, patch: Any) -> Any:
     """JSON Merge Patch as RFC 7396 writes it, section 2."""
     if not isinstance(patch, dict):
         return patch
@@ -104,7 +104,7 @@ def patched(target: Any, patch: Any) -> Any:
         if value is None:
             result.pop(name, None)
         else:
-            result[name] = patched(result.get(name), value)
+            result[name] = merge_patch(result.get(name), value)
     return result
 
 
@@ -117,8 +117,8 @@ def without_nulls(value: Any) -> Any:
 
 @given(st.lists(OBJECTS, max_size=4))
 def test_merging_is_that_of_a_merge_patch(patches: list[dict[str, Any]]) -> None:
-    """But for nulls that take nothing away, which stay to be seen."""
+    """But for nulls that remove nothing, which stay."""
     expected: Any = {}
     for patch in patches:
-        expected = patched(expected, patch)
+        expected = merge_patch(expected, patch)
     assert without_nulls(merged(*patches)) == expected

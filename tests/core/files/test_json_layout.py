@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.files.json_file import read_json, shown
-from keymark.core.files.json_layout import WIDTH, laid_out, write_readable_json
+from keymark.core.files.json_layout import WIDTH, format_json, write_readable_json
 
 NAMES = st.text(max_size=6) | st.sampled_from(["a.b_x", "a.b_y", "a.b_z", "a.c"])
 VALUES = st.recursive(
@@ -20,9 +20,9 @@ VALUES = st.recursive(
 @given(VALUES)
 def test_the_layout_changes_nothing_but_spaces(value: object) -> None:
     """What is laid out is the same JSON."""
-    text = laid_out(value)
+    text = format_json(value)
     assert json.loads(text) == value
-    assert laid_out(json.loads(text)) == text
+    assert format_json(json.loads(text)) == text
 
 
 def test_what_is_short_stands_in_one_line() -> None:
@@ -33,7 +33,7 @@ def test_what_is_short_stands_in_one_line() -> None:
         "long": ["w" * 60, "v" * 60],
         "nested": [{"time_s": 0.0}, {"time_s": 0.1}],
     }
-    assert laid_out(value).splitlines() == [
+    assert format_json(value).splitlines() == [
         "{",
         '  "tags": ["a", "b"],',
         '  "values": {',
@@ -56,7 +56,7 @@ def test_what_is_short_stands_in_one_line() -> None:
 def test_a_list_is_broken_where_it_is_too_long(more: int) -> None:
     """Up to the width it stands in one line, its own line's beginning counted."""
     value = {"list": ["x" * (WIDTH - len('  "list": [""]') + more)]}
-    assert len(laid_out(value).splitlines()) == (5 if more else 3)
+    assert len(format_json(value).splitlines()) == (5 if more else 3)
 
 
 def test_numbers_must_be_finite(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Folders of results: whole or not at all."""
+"""Result folders: written completely or not at all."""
 
 import os
 from pathlib import Path
@@ -17,17 +17,17 @@ def tree(folder: Path) -> dict[str, str]:
     }
 
 
-def fill(place: Path, text: str) -> None:
-    """Make one file and one in a folder below."""
-    (place / "motion.json").write_text(text, encoding="utf-8")
-    (place / "report").mkdir()
-    (place / "report" / "speed.png").write_text(text, encoding="utf-8")
+def fill(folder: Path, text: str) -> None:
+    """Write a file, and one in a folder below."""
+    (folder / "motion.json").write_text(text, encoding="utf-8")
+    (folder / "report").mkdir()
+    (folder / "report" / "speed.png").write_text(text, encoding="utf-8")
 
 
 def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
     """A folder and its parents are made, and nothing is left beside it."""
-    with output_folder(tmp_path / "a" / "b" / "out") as place:
-        fill(place, "new")
+    with output_folder(tmp_path / "a" / "b" / "out") as staging_folder:
+        fill(staging_folder, "new")
         assert not (tmp_path / "a" / "b" / "out").exists()
     assert tree(tmp_path / "a" / "b" / "out") == {
         "motion.json": "new",
@@ -39,14 +39,14 @@ def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, GeneratorExit])
 def test_a_failing_block_changes_nothing(tmp_path: Path, error: type[BaseException]) -> None:
-    """Whatever ends the block, the folder is as before; a new one is not there, nor are its parents."""
+    """After any exception the folder is as before; a new one does not exist, nor do its parents."""
     for out in (tmp_path / "old", tmp_path / "not" / "there"):
         if out.name == "old":
             out.mkdir()
             (out / "motion.json").write_text("old", encoding="utf-8")
         before = tree(tmp_path)
-        with pytest.raises(error), output_folder(out) as place:
-            fill(place, "new")
+        with pytest.raises(error), output_folder(out) as staging_folder:
+            fill(staging_folder, "new")
             raise error
         assert tree(tmp_path) == before
 
@@ -54,20 +54,20 @@ def test_a_failing_block_changes_nothing(tmp_path: Path, error: type[BaseExcepti
 def test_files_of_others_stay_and_files_of_earlier_runs_go(tmp_path: Path) -> None:
     """A second run replaces its own files, removes what it no longer makes, and keeps what is not its own."""
     out = tmp_path / "out"
-    with output_folder(out) as place:
-        fill(place, "first")
+    with output_folder(out) as staging_folder:
+        fill(staging_folder, "first")
     (out / "notes.txt").write_text("mine", encoding="utf-8")
-    with output_folder(out, ["motion.json", "report/speed.png"]) as place:
-        (place / "motion.json").write_text("second", encoding="utf-8")
+    with output_folder(out, ["motion.json", "report/speed.png"]) as staging_folder:
+        (staging_folder / "motion.json").write_text("second", encoding="utf-8")
     assert tree(out) == {"motion.json": "second", "notes.txt": "mine"}
 
 
 @pytest.mark.parametrize("fails_at", [1, 2, 3, 4])
 def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """When the files cannot all be moved, those moved already go back."""
+    """Where a file cannot be moved, those moved already are rolled back."""
     out = tmp_path / "out"
-    with output_folder(out) as place:
-        fill(place, "old")
+    with output_folder(out) as staging_folder:
+        fill(staging_folder, "old")
     before, moves = tree(tmp_path), 0
     replace = os.replace
 
@@ -79,12 +79,12 @@ def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch:
         replace(source, destination)
 
     monkeypatch.setattr(module.os, "replace", fail_once)
-    with pytest.raises(ConversionError, match="No space left"), output_folder(out) as place:
-        fill(place, "new")
+    with pytest.raises(ConversionError, match="No space left"), output_folder(out) as staging_folder:
+        fill(staging_folder, "new")
     assert tree(tmp_path) == before
 
 
-def test_a_place_that_is_no_folder_is_refused(tmp_path: Path) -> None:
+def test_a_path_that_is_no_folder_is_refused(tmp_path: Path) -> None:
     """A file under the output's name, or under a parent's, is one sentence and stays."""
     (tmp_path / "file").write_text("mine", encoding="utf-8")
     with pytest.raises(InputError, match="is a file"), output_folder(tmp_path / "file"):
@@ -94,14 +94,16 @@ def test_a_place_that_is_no_folder_is_refused(tmp_path: Path) -> None:
     assert tree(tmp_path) == {"file": "mine"}
 
 
-def test_a_mounted_folder_is_filled_from_within(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the parent may not be written, the work lies in the folder itself and is gone afterwards."""
+def test_a_mounted_folder_holds_its_own_staging_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the parent may not be written, the staging folder lies in the output, and is gone afterwards."""
     out = tmp_path / "out"
     out.mkdir()
     monkeypatch.setattr(module.os, "access", lambda path, mode: Path(path) == out)
-    with output_folder(out) as place:
-        assert place.parent == out
-        fill(place, "new")
+    with output_folder(out) as staging_folder:
+        assert staging_folder.parent == out
+        fill(staging_folder, "new")
     assert sorted(tree(out)) == ["motion.json", "report", "report/speed.png"]
 
 
@@ -109,6 +111,6 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
     """Results go where the link leads."""
     (tmp_path / "disk").mkdir()
     (tmp_path / "out").symlink_to(tmp_path / "disk", target_is_directory=True)
-    with output_folder(tmp_path / "out") as place:
-        fill(place, "new")
+    with output_folder(tmp_path / "out") as staging_folder:
+        fill(staging_folder, "new")
     assert (tmp_path / "out").is_symlink() and (tmp_path / "disk" / "motion.json").read_text() == "new"

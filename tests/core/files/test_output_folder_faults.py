@@ -1,4 +1,4 @@
-"""Folders of results through deaths and full disks at every single call of the operating system."""
+"""Commits of result folders through kills and full disks at every single call of the operating system."""
 
 import json
 import os
@@ -9,49 +9,49 @@ from pathlib import Path
 import pytest
 from _faults import GROWING, Killed, disk_full, faulty_calls, killed, tree
 from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
-from keymark.core.files.commit import free_name
+from keymark.core.files.commit import backup_name
 from keymark.core.files.output_folder import output_folder
 
-SEAL = "seal.json"
-BELONGINGS = (SEAL, "a.bin", "b.bin", "pictures/one.png", "pictures/two.png", "extra/three.png")
+MANIFEST = "manifest.json"
+OWN_FILES = (MANIFEST, "a.bin", "b.bin", "pictures/one.png", "pictures/two.png", "extra/three.png")
 
 
 @pytest.fixture(autouse=True)
-def no_waiting_for_disks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not written outlives these deaths all the same; only power losses would tell."""
+def no_fsync(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unflushed files outlive a killed process all the same; only a loss of power would tell."""
     monkeypatch.setattr(os, "fsync", lambda descriptor: None)
 
 
-def write_set(place: Path, text: str, pictures: bool = True) -> None:
-    """A set of files as a conversion makes it: the seal names all others."""
+def write_set(folder: Path, text: str, pictures: bool = True) -> None:
+    """Write a set of files as a conversion makes it: the manifest lists all others."""
     names = [
         "a.bin",
         "b.bin",
         *(["pictures/one.png", "pictures/two.png"] if pictures else ["extra/three.png"]),
     ]
     for name in names:
-        (place / name).parent.mkdir(exist_ok=True)
-        (place / name).write_text(text, encoding="utf-8")
-    (place / SEAL).write_text(json.dumps({name: text for name in names}), encoding="utf-8")
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / MANIFEST).write_text(json.dumps({name: text for name in names}), encoding="utf-8")
 
 
 def run(out: Path, text: str, pictures: bool = True) -> None:
-    """One process' work."""
-    with output_folder(out, BELONGINGS, seal=SEAL) as place:
-        write_set(place, text, pictures)
+    """Commit a set of files, as one process does."""
+    with output_folder(out, OWN_FILES, manifest=MANIFEST) as staging_folder:
+        write_set(staging_folder, text, pictures)
 
 
 def is_whole(out: Path) -> bool:
-    """Whether a reader would take the folder for finished; it must be right to do so."""
-    if not (out / SEAL).exists():
+    """Whether a reader would take the folder for finished; then all files of its manifest must be there."""
+    if not (out / MANIFEST).exists():
         return False
-    for name, text in json.loads((out / SEAL).read_text(encoding="utf-8")).items():
-        assert (out / name).read_text(encoding="utf-8") == text, "the seal vouches for what is not there"
+    for name, text in json.loads((out / MANIFEST).read_text(encoding="utf-8")).items():
+        assert (out / name).read_text(encoding="utf-8") == text, "the manifest lists a file that is missing"
     return True
 
 
 def begin(folder: Path, kind: str) -> Path:
-    """A place for results: new, with an older set of other files, or with files of others alone."""
+    """An output folder: new, with an older set of other files, or with files of others alone."""
     out = folder / "deep" / "out"
     if kind == "new":
         return out
@@ -66,13 +66,13 @@ KINDS = pytest.mark.parametrize("kind", ["new", "others", "older"])
 
 
 def expected(folder: Path, kind: str) -> dict[str, bytes | None]:
-    """What an undisturbed run leaves."""
+    """The files that an undisturbed run leaves."""
     run(begin(folder, kind), "newer")
     return tree(folder)
 
 
 def calls_of(folder: Path, kind: str) -> int:
-    """How many calls a run takes that nothing disturbs."""
+    """The number of calls of an undisturbed run."""
     out = begin(folder, kind)
     with faulty_calls() as calls:
         run(out, "newer")
@@ -81,7 +81,7 @@ def calls_of(folder: Path, kind: str) -> int:
 
 @KINDS
 def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_path: Path) -> None:
-    """Wherever a process dies, what a reader finds is whole or not taken for it; the next run mends it."""
+    """Wherever a process dies, a reader finds a whole set or none; the next run recovers."""
     wanted = expected(tmp_path / "wanted", kind)
     total = calls_of(tmp_path / "counted", kind)
     assert total > 25
@@ -95,8 +95,8 @@ def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_pat
         assert is_whole(out) and tree(folder) == wanted, f"killed at call {at} of {total}"
 
 
-def test_a_run_that_makes_nothing_ends_what_a_killed_one_began(tmp_path: Path) -> None:
-    """Once a set was complete it arrives, though the next process has nothing to do but to look."""
+def test_a_run_that_makes_nothing_recovers_a_killed_one(tmp_path: Path) -> None:
+    """A journaled set is rolled forward, though the next process makes no files itself."""
     wanted = expected(tmp_path / "wanted", "older")
     total = calls_of(tmp_path / "counted", "older")
     older = tree(begin(tmp_path / "older", "older").parent)
@@ -106,17 +106,17 @@ def test_a_run_that_makes_nothing_ends_what_a_killed_one_began(tmp_path: Path) -
         out = begin(folder, "older")
         with pytest.raises(Killed), faulty_calls(at):
             run(out, "newer")
-        with output_folder(out, BELONGINGS, seal=SEAL):
+        with output_folder(out, OWN_FILES, manifest=MANIFEST):
             pass
         assert is_whole(out)
         found.append(tree(folder) == wanted)
         assert found[-1] or tree(folder / "deep") == older
-    assert found == sorted(found) and 3 < sum(found) < total  # from the moment on that it was complete
+    assert found == sorted(found) and 3 < sum(found) < total  # from the journal on
 
 
 @pytest.mark.faults
-def test_the_process_that_mends_may_be_killed_as_well(tmp_path: Path) -> None:
-    """A second death, at any call of the run after the first."""
+def test_the_process_that_recovers_may_be_killed_as_well(tmp_path: Path) -> None:
+    """A second kill, at any call of the run after the first."""
     wanted = expected(tmp_path / "wanted", "older")
     total = calls_of(tmp_path / "counted", "older")
     for at in range(1, total + 1, 2):
@@ -135,7 +135,7 @@ def test_the_process_that_mends_may_be_killed_as_well(tmp_path: Path) -> None:
 @KINDS
 @pytest.mark.parametrize("lasting", [False, True])
 def test_a_disk_that_is_full_at_any_call_changes_nothing(kind: str, lasting: bool, tmp_path: Path) -> None:
-    """One sentence, and all is as before; where even moving back needs room, nothing is lost all the same."""
+    """One sentence, and all is as before; where even rolling back needs room, nothing is lost."""
     wanted = expected(tmp_path / "wanted", kind)
     out = begin(tmp_path / "counted", kind)
     with faulty_calls(None, disk_full, names=GROWING) as calls:
@@ -155,13 +155,13 @@ def test_a_disk_that_is_full_at_any_call_changes_nothing(kind: str, lasting: boo
             assert calls.log[at - 1] == "mkdir" and tree(folder) == wanted  # of a folder that was there
             continue
         hidden = [name for name in tree(folder) if ".keymark-" in name]
-        assert tree(folder) == before or (lasting and hidden and not (out / SEAL).exists())
+        assert tree(folder) == before or (lasting and hidden and not (out / MANIFEST).exists())
         run(out, "newer")
         assert tree(folder) == wanted
 
 
 def test_a_run_interrupted_at_any_call_changes_nothing(tmp_path: Path) -> None:
-    """Ctrl-C comes at any moment, also just after a file has been moved."""
+    """Ctrl-C may come at any call, also just after a file has been moved."""
     out = begin(tmp_path / "counted", "older")
     with faulty_calls(None, disk_full) as calls:
         run(out, "newer")
@@ -181,15 +181,15 @@ def test_a_run_interrupted_at_any_call_changes_nothing(tmp_path: Path) -> None:
         assert tree(folder) == before
 
 
-def test_what_others_have_changed_is_kept_beside(tmp_path: Path) -> None:
-    """Under the name it is given, also through deaths at any call."""
+def test_files_that_others_changed_are_backed_up(tmp_path: Path) -> None:
+    """Under the name they are given, also through kills at any call."""
 
     def again(out: Path) -> None:
-        aside: dict[str, str] = {}
-        with output_folder(out, BELONGINGS, SEAL, aside) as place:
-            write_set(place, "newer")
+        backups: dict[str, str] = {}
+        with output_folder(out, OWN_FILES, MANIFEST, backups) as staging_folder:
+            write_set(staging_folder, "newer")
             if (out / "a.bin").read_text(encoding="utf-8") == "worked on":
-                aside["a.bin"] = "a (changed).bin"
+                backups["a.bin"] = "a (changed).bin"
 
     out = begin(tmp_path / "wanted", "older")
     (out / "a.bin").write_text("worked on", encoding="utf-8")
@@ -207,15 +207,15 @@ def test_what_others_have_changed_is_kept_beside(tmp_path: Path) -> None:
         assert tree(folder) == wanted
 
 
-def test_a_second_file_kept_beside_gets_a_name_of_its_own(tmp_path: Path) -> None:
-    """Nothing kept is replaced."""
+def test_a_second_backup_gets_a_name_of_its_own(tmp_path: Path) -> None:
+    """No backup is replaced."""
     for name in ("motion.blend", "motion (changed).blend"):
         (tmp_path / name).touch()
-    assert free_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
+    assert backup_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
 
 
 def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:
-    """A second thread, or process, is told so; afterwards the way is free, and no lock is left."""
+    """A second thread, or process, is refused; afterwards the folder is free, and no lock is left."""
     out = tmp_path / "out"
     said: list[KeymarkError] = []
 
@@ -225,18 +225,18 @@ def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:
         except KeymarkError as error:
             said.append(error)
 
-    with output_folder(out) as place:
+    with output_folder(out) as staging_folder:
         thread = threading.Thread(target=second)
         thread.start()
         thread.join()
-        write_set(place, "first")
+        write_set(staging_folder, "first")
     assert len(said) == 1 and isinstance(said[0], BusyError) and str(out) in str(said[0])
     second()
     assert (out / "a.bin").read_text() == "second" and os.listdir(tmp_path) == ["out"]
 
 
 def test_threads_that_race_for_a_folder_leave_one_whole_set(tmp_path: Path) -> None:
-    """Whoever comes in, the set is of one of them; the folder above comes and goes meanwhile."""
+    """The set is of one of them; the parent folder comes and goes meanwhile."""
     out = tmp_path / "above" / "out"
     ended: list[str] = []
 
@@ -259,8 +259,8 @@ def test_threads_that_race_for_a_folder_leave_one_whole_set(tmp_path: Path) -> N
     assert not [name for name in tree(tmp_path) if ".keymark-" in name]
 
 
-def test_a_paper_that_is_not_to_be_trusted_is_cleared_away(tmp_path: Path) -> None:
-    """One that names files elsewhere, or of which files are missing, moves nothing."""
+def test_a_journal_that_is_not_to_be_trusted_is_removed(tmp_path: Path) -> None:
+    """One that names paths elsewhere, or of whose set files are missing, moves nothing."""
     out = begin(tmp_path, "older")
     with faulty_calls() as calls:
         run(out, "newer")
@@ -270,25 +270,25 @@ def test_a_paper_that_is_not_to_be_trusted_is_cleared_away(tmp_path: Path) -> No
         {"gone": ["/etc/passwd"]},
         {"gone": ["..\\..\\elsewhere"]},
         {"aside": {"a.bin": "../a.bin"}},
-        {"made": "seal.json"},
+        {"made": "manifest.json"},
         {"target": "another"},
         {"seal": 5},
         {"made": ["a.bin", "lost.bin"]},
     ):
         with pytest.raises(Killed), faulty_calls(last):
             run(out, "newer")
-        (paper,) = out.parent.glob(".keymark-*.json")
-        said = json.loads(paper.read_text(encoding="utf-8"))
-        paper.write_text(json.dumps({**said, **change}), encoding="utf-8")
+        (journal,) = out.parent.glob(".keymark-*.json")
+        fields = json.loads(journal.read_text(encoding="utf-8"))
+        journal.write_text(json.dumps({**fields, **change}), encoding="utf-8")
         before = tree(out)
-        with output_folder(out, BELONGINGS, seal=SEAL):
+        with output_folder(out, OWN_FILES, manifest=MANIFEST):
             pass
         assert tree(out) == before and os.listdir(out.parent) == ["out"]
         run(out, "newer")
 
 
 def names(folder: Path) -> dict[str, Path]:
-    """Places that are hard on programs."""
+    """Folder names that are hard on programs."""
     return {
         "as long as a name may be": folder / ("n" * 255),
         "in other letters": folder / "Tänzerin 舞者" / "отснято 🎬",
@@ -301,7 +301,7 @@ def names(folder: Path) -> dict[str, Path]:
 @pytest.mark.skipif(os.name == "nt", reason="Windows forbids such names")
 @pytest.mark.parametrize("what", sorted(names(Path())))
 def test_odd_names_work(what: str, tmp_path: Path) -> None:
-    """What is hidden has short names of its own."""
+    """Hidden files have short names of their own."""
     out = names(tmp_path)[what]
     for text in ("older", "newer"):
         run(out, text)
@@ -315,7 +315,7 @@ def endless(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "place",
+    "path",
     [
         lambda folder: folder / ("n" * 256),
         lambda folder: folder.joinpath(*["n" * 200] * 30),
@@ -323,9 +323,9 @@ def endless(folder: Path) -> Path:
         endless,
     ],
 )
-def test_places_that_cannot_be_are_one_sentence(place: Callable[[Path], Path], tmp_path: Path) -> None:
-    """And nothing of the way there is left."""
-    out = place(tmp_path)
+def test_impossible_paths_are_one_sentence(path: Callable[[Path], Path], tmp_path: Path) -> None:
+    """And none of the parent folders is left."""
+    out = path(tmp_path)
     before = os.listdir(tmp_path)
     with pytest.raises(InputError, match="cannot be written"), output_folder(out):
         pass
@@ -340,5 +340,5 @@ def test_a_link_to_nowhere_leads_there(tmp_path: Path) -> None:
 
 
 def test_the_fault_is_the_one_asked_for() -> None:
-    """The stand-ins themselves: a death is nothing that is caught by accident."""
+    """The stand-ins themselves: a kill is no Exception, so that no code catches it by accident."""
     assert not isinstance(killed("open"), Exception) and isinstance(disk_full("open"), OSError)

@@ -27,9 +27,10 @@ from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.frame_checks import FrameWatch
 from keymark.core.progress import run
-from keymark.core.take import take
+from keymark.core.take import clip_check
+from keymark.core.take.clip_check import open_clip
 from keymark.core.take.read_footage import read_footage
-from keymark.core.take.take import open_clip, read_take
+from keymark.core.take.take_file import read_take
 
 LOST = 0
 """What is read from a black frame."""
@@ -256,9 +257,9 @@ def test_a_clip_of_hours_is_refused_before_it_is_read(drawn: Path, monkeypatch: 
     """By what it claims, made sure of by counting no further than needed."""
     described = read_take(drawn)
     whole = replace(described, frame_count=None)
-    monkeypatch.setattr(take, "LONGEST_FRAMES", FRAMES)
+    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", FRAMES)
     assert open_clip(whole).frame_count == FRAMES
-    monkeypatch.setattr(take, "LONGEST_FRAMES", FRAMES - 1)
+    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", FRAMES - 1)
     with pytest.raises(InputError, match=rf"more than {FRAMES - 1} frames.*ffmpeg"):
         open_clip(whole)
 

@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
-from keymark.core.files.digest import digest, file_digest
+from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.footage.clips import clip as clip_module
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arrays
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 24
 
@@ -148,8 +149,8 @@ def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
         digest({})
     file = tmp_path / "file"
     file.write_bytes(bytes(300_000))
-    before = file_digest(file)
+    before = file_fingerprint(file)
     state = file.stat()
     file.write_bytes(bytes(150_000) + b"1" + bytes(149_999))
     os.utime(file, ns=(state.st_atime_ns, state.st_mtime_ns))
-    assert file_digest(file) != before
+    assert file_fingerprint(file) != before

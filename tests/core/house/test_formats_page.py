@@ -11,8 +11,9 @@ from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
-from keymark.core.shoot.finding import find_takes, take_list
-from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take
+from keymark.core.shoot import shoot
+from keymark.core.shoot.discovery import take_list
+from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
 
 MIB = 2**20
 LIMITS = {
@@ -24,11 +25,12 @@ LIMITS = {
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
     f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
     f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
-    f"{safe_path.LONGEST} characters; {safe_path.LONGEST_PART} bytes": "a path; a name in it",
-    f"{find_takes.MOST_TAKES}": "takes of a shoot",
-    f"{take.MOST_FRAMES}": "frames of a take",
+    f"{safe_path.LONGEST_PATH} characters; {safe_path.LONGEST_NAME_BYTES} bytes": "a path; a name in it",
+    f"{shoot.MOST_TAKES}": "takes of a shoot",
+    f"{take_file.MOST_FRAMES}": "frames of a take",
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
-    f"{take.MOST_MARKERS}; {take.LONGEST_MARKER} characters": "markers of a take; a marker's name",
+    f"{take_file.MOST_MARKERS}; "
+    f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
     f"{posture_fields.FARTHEST_M:.0f} m": "places of keyframes, from the origin",

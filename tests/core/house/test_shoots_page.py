@@ -8,7 +8,7 @@ import pytest
 from _shoot import write_video
 from _synthetic_take import BODY, true_postures, write_images, write_keyframes
 from keymark.core.take.description import describe
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
 
 FRAMES = 12
@@ -66,15 +66,15 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
     assert moved.camera.lens_mm == 40.0 and moved.camera.resolution == (160, 120)
     glove = describe(folder / "shoot" / "day2" / "clip02.mp4")
     assert glove.settings.library is None and glove.settings.floor_m == 0.0
-    colors = {style.name: style.color_srgb for style in read_take(glove.place).markers}
+    colors = {style.name: style.color_srgb for style in read_take(glove.path).markers}
     assert colors["forearm.L"] == (225, 55, 55) and colors["trunk"] == (40, 150, 70)
     assert read_take(folder / "shoot" / "day2" / "jump").fps == 30.0
 
 
 def test_the_table_names_every_field(page: str) -> None:
     """Those of `shoot.json` by name, and no other ones as its own."""
-    from keymark.core.shoot.finding.take_list import KNOWN as LISTED
-    from keymark.core.take.shoot_file import KNOWN
+    from keymark.core.shoot.discovery.take_list import KNOWN_FIELDS as LISTED
+    from keymark.core.take.shoot_file import KNOWN_FIELDS
 
     fields = re.findall(r"^\| `([\w$]+)` \|", page, flags=re.MULTILINE)
-    assert set(fields) == {*KNOWN, *LISTED} - {"take"}
+    assert set(fields) == {*KNOWN_FIELDS, *LISTED} - {"take"}

@@ -10,7 +10,8 @@ from keymark.core.report import film_strip as strip
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.film_strip import film_strip
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 12
 

@@ -8,7 +8,8 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.report.match_sheet import match_sheet, shown_keyframes
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 16
 

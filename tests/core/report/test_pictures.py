@@ -16,7 +16,8 @@ from keymark.core.report.pictures import PICTURES, write_pictures
 from keymark.core.report.speed_plot import speed_plot
 from keymark.core.report.view_sheet import view_sheet
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 20
 CAMERA_AHEAD = Camera.from_dict(CAMERA)

@@ -9,7 +9,8 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.estimate.reconstruct import METHODS, reconstruct
 from keymark.core.progress import run
 from keymark.core.review.review import Review, review
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 
 def same(first: Review, second: Review) -> bool:

@@ -13,7 +13,7 @@ from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 12
 EYE_ALONG_Y = Camera.from_dict(CAMERA)

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.shoot.finding import find_takes as finding
-from keymark.core.shoot.finding import take_list
-from keymark.core.shoot.finding.find_takes import find_takes
-from keymark.core.shoot.finding.open_shoot import open_shoot
-from keymark.core.shoot.finding.take_names import check_output
+from keymark.core.shoot.discovery import find_takes as discovery
+from keymark.core.shoot.discovery import take_list
+from keymark.core.shoot.discovery.find_takes import find_takes, open_shoot
+from keymark.core.shoot.discovery.take_names import check_output
 
 
 def make(folder: Path, *ways: str) -> Path:
@@ -126,11 +125,11 @@ def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytes
 def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sentence, not a long search."""
     shoot = make(tmp_path / "shoot", "/".join(["d"] * 6) + "/take.json", "a/take.json", "b/take.json")
-    monkeypatch.setattr(finding, "DEEPEST", 4)
+    monkeypatch.setattr(discovery, "DEEPEST", 4)
     with pytest.raises(InputError, match="more than 4 folders deep"):
         find_takes(shoot)
     monkeypatch.undo()
-    monkeypatch.setattr(finding, "MOST_TAKES", 2)
+    monkeypatch.setattr(discovery, "MOST_TAKES", 2)
     with pytest.raises(InputError, match="more than 2 takes"):
         find_takes(shoot)
 
@@ -139,7 +138,7 @@ def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
     """Its results have a folder of their own."""
     shoot = make(tmp_path / "shoot", "shoot.json", "day/x.mp4", "day/y.mp4")
     (take,) = open_shoot(shoot / "day" / "x.mp4").takes
-    assert (take.name, take.place) == ("x", shoot / "day" / "x.mp4")
+    assert (take.name, take.path) == ("x", shoot / "day" / "x.mp4")
 
 
 @pytest.mark.parametrize(
@@ -181,7 +180,7 @@ def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
     shoot = open_shoot(listed)
     assert [take.name for take in shoot.takes] == ["a", "day/x"] and shoot.folder == tmp_path
     x = shoot.takes[1]
-    assert (x.place, x.said_in) == (tmp_path / "day" / "x.mp4", f"{listed}, line 1")
+    assert (x.path, x.overrides_location) == (tmp_path / "day" / "x.mp4", f"{listed}, line 1")
     assert x.describe().settings.method == "ekf"
 
 

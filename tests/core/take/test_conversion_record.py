@@ -8,7 +8,13 @@ from typing import Any
 
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.take.conversion_record import NAME, ConversionRecord, is_finished, read_record, write_record
+from keymark.core.take.conversion_record import (
+    RECORD_FILE,
+    ConversionRecord,
+    is_up_to_date,
+    read_record,
+    write_record,
+)
 
 RECORD = ConversionRecord(
     digest="ab" * 16,
@@ -42,27 +48,27 @@ def test_a_record_is_read_back_as_it_was_written(tmp_path: Path) -> None:
     """Every field, and the same bytes the second time."""
     made(tmp_path)
     assert read_record(tmp_path) == RECORD
-    before = (tmp_path / NAME).read_bytes()
+    before = (tmp_path / RECORD_FILE).read_bytes()
     write_record(tmp_path, read_record(tmp_path))
-    assert (tmp_path / NAME).read_bytes() == before
+    assert (tmp_path / RECORD_FILE).read_bytes() == before
 
 
 def test_a_result_is_finished_with_its_digest_and_all_its_files(tmp_path: Path) -> None:
     """And not with another digest, a file less, or no record."""
     made(tmp_path)
-    assert is_finished(tmp_path, RECORD.digest)
-    assert not is_finished(tmp_path, "cd" * 16)
+    assert is_up_to_date(tmp_path, RECORD.digest)
+    assert not is_up_to_date(tmp_path, "cd" * 16)
     (tmp_path / "report" / "overlay.png").unlink()
-    assert not is_finished(tmp_path, RECORD.digest)
-    assert not is_finished(tmp_path / "none", RECORD.digest)
+    assert not is_up_to_date(tmp_path, RECORD.digest)
+    assert not is_up_to_date(tmp_path / "none", RECORD.digest)
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff", b'{"schema_version": 1}'])
 def test_a_damaged_record_vouches_for_nothing(content: bytes, tmp_path: Path) -> None:
     """The take is converted anew."""
     made(tmp_path)
-    (tmp_path / NAME).write_bytes(content)
-    assert not is_finished(tmp_path, RECORD.digest)
+    (tmp_path / RECORD_FILE).write_bytes(content)
+    assert not is_up_to_date(tmp_path, RECORD.digest)
 
 
 MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
@@ -92,12 +98,12 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
 def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: str, tmp_path: Path) -> None:
     """With file, field and value."""
     made(tmp_path)
-    value = json.loads((tmp_path / NAME).read_text(encoding="utf-8"))
+    value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
     change(value)
-    (tmp_path / NAME).write_text(json.dumps(value), encoding="utf-8")
+    (tmp_path / RECORD_FILE).write_text(json.dumps(value), encoding="utf-8")
     with pytest.raises(InputError, match=said) as caught:
         read_record(tmp_path)
-    assert str(caught.value).startswith(str(tmp_path / NAME))
+    assert str(caught.value).startswith(str(tmp_path / RECORD_FILE))
 
 
 def test_what_is_written_can_be_read(tmp_path: Path) -> None:

@@ -10,7 +10,9 @@ from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth
-from keymark.core.take.take import Take, open_clip, read_take
+from keymark.core.take.clip_check import open_clip
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 LARGEST_FOLDER_BYTES = 500_000
 MARKER_ENDS = {

@@ -15,7 +15,8 @@ from keymark.core.matching.library_match import LibraryMatch
 from keymark.core.matching.match_take import NEAR_FRAMES, with_matches
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
-from keymark.core.take.take import Take, read_take
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take
 
 FRAMES = 24
 TRUTH = true_postures(FRAMES)

@@ -24,7 +24,7 @@ class Person:
     """An animator in front of Blender."""
 
     def __init__(self, take_folder: Path, folder: Path, camera: Camera) -> None:
-        self.known = keymark("core.take.take").read_take(take_folder)
+        self.known = keymark("core.take.take_file").read_take(take_folder)
         self.folder = folder
         self.camera = camera
         self.hands = Hands()

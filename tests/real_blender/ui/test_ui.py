@@ -8,7 +8,7 @@ import pytest
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
 from keymark.core.review.score import Score, read_truth, score_points
-from keymark.core.take.take import read_take
+from keymark.core.take.take_file import read_take
 
 pytestmark = pytest.mark.ui
 

@@ -1,4 +1,4 @@
-"""Locks that die with their process, and single files that are written whole under them."""
+"""Locks that end with their process, and single files that are written atomically under them."""
 
 import errno
 import os
@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from _faults import Killed, faulty_calls, tree
 from keymark.core.errors import BusyError, ConversionError
-from keymark.core.files import folder_lock as module
-from keymark.core.files.folder_lock import folder_lock, hidden_name
-from keymark.core.files.json_file import write_json, write_whole
+from keymark.core.files import file_lock as module
+from keymark.core.files.file_lock import file_lock, hidden_prefix
+from keymark.core.files.json_file import write_atomically, write_json
 
 HOLD = """
 import fcntl, os, sys
@@ -25,16 +25,16 @@ sys.stdin.read()
 
 @pytest.mark.skipif(os.name == "nt", reason="uses the other kind of lock")
 def test_a_lock_dies_with_its_process(tmp_path: Path) -> None:
-    """Another process' lock is respected until it is killed; the file it leaves means nothing."""
+    """The lock of another process is respected until that is killed; the file it leaves means nothing."""
     file = tmp_path / "a.lock"
     words = [sys.executable, "-c", HOLD, str(file)]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
         assert other.stdout is not None and other.stdout.readline() == b"held\n"
-        with pytest.raises(BusyError, match="occupied"), folder_lock(file, "occupied"):
+        with pytest.raises(BusyError, match="occupied"), file_lock(file, "occupied"):
             pass
         other.kill()
     assert file.exists()
-    with folder_lock(file, "occupied"):
+    with file_lock(file, "occupied"):
         pass
     assert os.listdir(tmp_path) == []
 
@@ -47,24 +47,24 @@ def test_where_there_are_no_locks_work_goes_on(tmp_path: Path, monkeypatch: pyte
         def lock(_descriptor: int, _wait: bool) -> None:
             raise OSError(number, os.strerror(number))
 
-        monkeypatch.setattr(module, "_take", lock)
+        monkeypatch.setattr(module, "_flock", lock)
 
     fail(errno.ENOLCK)
-    with folder_lock(tmp_path / "a.lock", "occupied"):
+    with file_lock(tmp_path / "a.lock", "occupied"):
         pass
     fail(errno.EIO)
-    with pytest.raises(OSError, match="error"), folder_lock(tmp_path / "a.lock", "occupied"):
+    with pytest.raises(OSError, match="error"), file_lock(tmp_path / "a.lock", "occupied"):
         pass
 
 
-def test_hidden_names_are_short_and_tell_places_apart() -> None:
-    """Whatever the place is called."""
-    names = [hidden_name(name) for name in ("a", "b", "n" * 255, "舞者", os.fsdecode(b"\xff"))]
+def test_hidden_prefixes_are_short_and_different() -> None:
+    """For names of any length and script."""
+    names = [hidden_prefix(name) for name in ("a", "b", "n" * 255, "舞者", os.fsdecode(b"\xff"))]
     assert len(set(names)) == len(names) and all(len(name.encode()) == len(names[0]) < 40 for name in names)
 
 
 def test_who_writes_the_same_file_waits(tmp_path: Path) -> None:
-    """Both files were written whole, one after the other; nothing is left but the later one."""
+    """Both are written completely, one after the other; nothing is left but the later one."""
     inside, order = threading.Event(), []
 
     def first(beside: Path) -> None:
@@ -76,10 +76,12 @@ def test_who_writes_the_same_file_waits(tmp_path: Path) -> None:
 
     def second() -> None:
         inside.wait()
-        write_whole(tmp_path / "a.txt", lambda beside: (order.append("second"), beside.write_text("second")))
+        write_atomically(
+            tmp_path / "a.txt", lambda beside: (order.append("second"), beside.write_text("second"))
+        )
 
     thread = threading.Thread(target=second)
-    write_whole(tmp_path / "a.txt", first)
+    write_atomically(tmp_path / "a.txt", first)
     thread.join()
     assert order == ["first begins", "first ends", "second"]
     assert tree(tmp_path) == {"a.txt": b"second"}
@@ -112,7 +114,7 @@ def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(ConversionError, match="No space left"):
-        write_whole(tmp_path / "a.txt", fail)
+        write_atomically(tmp_path / "a.txt", fail)
     assert tree(tmp_path) == {"a.txt": b"old"}
 
 
@@ -130,8 +132,8 @@ def test_an_interruption_leaves_no_lock(call: str, tmp_path: Path, monkeypatch: 
 
     with monkeypatch.context() as patched:
         patched.setattr(os, call, interrupt)
-        with pytest.raises(KeyboardInterrupt), folder_lock(tmp_path / "a.lock", "occupied"):
+        with pytest.raises(KeyboardInterrupt), file_lock(tmp_path / "a.lock", "occupied"):
             pass
     assert interrupted and os.listdir(tmp_path) == []
-    with folder_lock(tmp_path / "a.lock", "occupied"):
+    with file_lock(tmp_path / "a.lock", "occupied"):
         assert os.listdir(tmp_path) == ["a.lock"]

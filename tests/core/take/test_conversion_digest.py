@@ -11,7 +11,7 @@ import pytest
 from _shoot import write_shoot
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_settings import ConversionSettings
-from keymark.core.take.description import chosen_settings, describe
+from keymark.core.take.description import describe, effective_settings
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def shoot(pristine: Path, tmp_path: Path) -> Path:
 def digest(shoot: Path, libraries: tuple[str, ...] = (), version: str = "1", **chosen: Any) -> str:
     """Of the shoot's clip."""
     description = describe(shoot / "day1" / "take01.mp4")
-    settings = chosen_settings(description, ConversionSettings(**chosen))
+    settings = effective_settings(description, ConversionSettings(**chosen))
     return conversion_digest(description, settings, libraries, shoot.parent / "out", version)
 
 

@@ -9,9 +9,9 @@ from _shoot import write_shoot
 from _synthetic_take import write_json
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_settings import ConversionSettings
-from keymark.core.take.description import Description, chosen_settings, describe
-from keymark.core.take.shoot_file import shoot_fields, shoot_files
-from keymark.core.take.take import read_take
+from keymark.core.take.description import Description, describe, effective_settings
+from keymark.core.take.shoot_file import find_shoot_files, shoot_fields
+from keymark.core.take.take_file import read_take
 
 FRAMES = 5
 
@@ -30,9 +30,9 @@ def take_in(folder: Path, **fields: Any) -> Path:
     return folder
 
 
-def settings_of(place: Path, **nearest: Any) -> ConversionSettings:
-    """The choices that count for a take."""
-    return describe(place, nearest, "list.jsonl, line 1").settings
+def settings_of(path: Path, **overrides: Any) -> ConversionSettings:
+    """The settings of a take, some of them overridden."""
+    return describe(path, overrides, "list.jsonl, line 1").settings
 
 
 def test_the_nearest_file_counts(shoot: Path) -> None:
@@ -47,7 +47,7 @@ def test_the_nearest_file_counts(shoot: Path) -> None:
     take_in(take, method="interpolation")
     assert settings_of(take).method == "interpolation" and settings_of(take).floor_m == 1.0
     assert settings_of(take, method="map").method == "map"
-    assert describe(take).fields.at("fps") == str(shoot / "shoot.json")
+    assert describe(take).fields.source_of("fps") == str(shoot / "shoot.json")
     assert describe(take).files == (shoot / "shoot.json", shoot / "day" / "shoot.json", take / "take.json")
 
 
@@ -86,16 +86,16 @@ def test_a_shoot_file_that_is_none_is_not_passed_over(shoot: Path) -> None:
 def test_what_a_person_says_on_the_command_line_comes_last_in_a_batch(shoot: Path) -> None:
     """It counts where nothing nearer says anything."""
     take = take_in(shoot / "take", method="ekf")
-    chosen = chosen_settings(describe(take), ConversionSettings(method="map", floor_m=0.5))
+    chosen = effective_settings(describe(take), ConversionSettings(method="map", floor_m=0.5))
     assert chosen == ConversionSettings(method="ekf", floor_m=0.5)
 
 
 def test_a_library_is_used_beside_keyframes_that_are_there(shoot: Path) -> None:
     """And alone where there are none."""
     take = take_in(shoot / "take", library="walking")
-    assert chosen_settings(describe(take)).keyframes is None
+    assert effective_settings(describe(take)).keyframes is None
     write_json(take / "keyframes.json", {"keyframes": []})
-    assert chosen_settings(describe(take)).keyframes == take / "keyframes.json"
+    assert effective_settings(describe(take)).keyframes == take / "keyframes.json"
 
 
 def test_paths_are_relative_to_the_file_that_says_them(shoot: Path) -> None:
@@ -154,7 +154,7 @@ def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, 
     """What it means would be lost."""
     write_json(tmp_path / "shoot.json", content)
     with pytest.raises(InputError, match=said) as caught:
-        shoot_fields(*shoot_files(tmp_path).popitem())
+        shoot_fields(*find_shoot_files(tmp_path).popitem())
     assert str(caught.value).startswith(str(tmp_path / "shoot.json"))
 
 
@@ -162,7 +162,7 @@ def test_what_a_shoot_file_says_of_itself_is_no_field_of_a_take(tmp_path: Path) 
     """Version, root, and where an editor finds the schema."""
     said = {"$schema": "shoot.schema.json", "schema_version": 1, "root": True, "fps": 24}
     write_json(tmp_path / "shoot.json", said)
-    assert shoot_fields(*shoot_files(tmp_path).popitem()) == {"fps": 24}
+    assert shoot_fields(*find_shoot_files(tmp_path).popitem()) == {"fps": 24}
 
 
 def described(folder: Path, name: str) -> Description:
@@ -179,7 +179,7 @@ def test_a_mere_clip_is_described_by_its_shoot_and_by_files_beside_it(tmp_path: 
     assert (found.name, found.file, found.inherits) == ("take01", beside, True)
     assert found.clip == folder / "day1" / "take01.mp4"
     assert found.keyframes == folder / "day1" / "take01.keyframes.json"
-    take = read_take(found.place)
+    take = read_take(found.path)
     assert take.fps == pytest.approx(30.0) and take.frame_start == 1
     assert take.body.actor.stature_m == pytest.approx(1.6)
 

@@ -1,6 +1,6 @@
-"""Locks on places in the file system: one process and one thread at a time; a lock dies with its process.
+"""Locks on files and folders: one process and one thread at a time; a lock ends with its process.
 
-A lock is an empty hidden file beside what it guards. That it is there means nothing: only holding it does.
+A lock is held on an empty hidden file beside what it guards. The file alone means nothing; holding it does.
 """
 
 import errno
@@ -16,47 +16,50 @@ from pathlib import Path
 from ..errors import BusyError
 
 HIDDEN = ".keymark-"
+"""Beginning of all hidden names."""
 LOCK = ".lock"
+"""Ending of the names of lock files."""
 DIGITS = 16
-TRIES = 200
-PAUSE_S = 0.01
-_LACKING = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
+"""Hexadecimal digits of a hidden name."""
+ATTEMPTS = 200
+RETRY_DELAY_S = 0.01
+_NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 
 if sys.platform == "win32":
     import msvcrt
 
-    def _take(descriptor: int, wait: bool) -> None:
+    def _flock(descriptor: int, wait: bool) -> None:
         msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
 else:
     import fcntl
 
-    def _take(descriptor: int, wait: bool) -> None:
+    def _flock(descriptor: int, wait: bool) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
 
 
-def hidden_name(name: str) -> str:
-    """What the names of all hidden files of a place begin with: short, whatever its own name is."""
+def hidden_prefix(name: str) -> str:
+    """Beginning of the names of all hidden files of a file or folder: short, however long its own name is."""
     if sys.platform in ("win32", "darwin"):  # where names that differ in case are one
         name = unicodedata.normalize("NFC", name).casefold()
     return HIDDEN + hashlib.sha256(os.fsencode(name)).hexdigest()[:DIGITS]
 
 
 @contextmanager
-def folder_lock(file: Path, busy: str, wait: bool = False) -> Iterator[None]:
+def file_lock(file: Path, busy_message: str, wait: bool = False) -> Iterator[None]:
     """Hold a lock while the block runs. Where a file system has no locks, the block runs without.
 
     Args:
-        file: The lock's own file, made with its parents, and removed afterwards.
-        busy: What to say where another holds it.
-        wait: Whether to wait for it instead.
+        file: The lock's own file; it is made with its parents and removed afterwards.
+        busy_message: The error's sentence where another holds the lock.
+        wait: Whether to wait for the lock instead.
 
     Raises:
         BusyError: Another process or thread holds it.
         OSError: The file cannot be made.
     """
     try:
-        descriptor = _acquired(file, busy, wait)
-    except KeyboardInterrupt:  # perhaps between making the file and knowing of it
+        descriptor = _acquire(file, busy_message, wait)
+    except KeyboardInterrupt:  # perhaps after the file was made and before its descriptor was returned
         _remove_idle(file)
         raise
     try:
@@ -70,10 +73,10 @@ def folder_lock(file: Path, busy: str, wait: bool = False) -> Iterator[None]:
 
 
 def _release(file: Path, descriptor: int) -> None:
-    """Remove the lock's file, then let go of it; may be called again where it was interrupted."""
+    """Remove the lock's file, then release it; may be called again after an interruption."""
     if sys.platform != "win32":  # where an open file cannot be removed, and a closed one only by the last
         with suppress(OSError):
-            if _is_still(file, descriptor):
+            if _is_same_file(file, descriptor):
                 file.unlink()
     with suppress(OSError):
         os.close(descriptor)
@@ -83,39 +86,39 @@ def _release(file: Path, descriptor: int) -> None:
 
 
 def _remove_idle(file: Path) -> None:
-    """Remove the lock's file where nobody holds it."""
+    """Remove the lock's file unless another holds it."""
     with suppress(OSError):
         descriptor = os.open(file, os.O_RDWR)
-        if _locked(descriptor, wait=False) and _is_still(file, descriptor):
+        if _try_lock(descriptor, wait=False) and _is_same_file(file, descriptor):
             _release(file, descriptor)
         else:
             os.close(descriptor)
 
 
-def _acquired(file: Path, busy: str, wait: bool) -> int:
-    for tried in range(TRIES):
+def _acquire(file: Path, busy_message: str, wait: bool) -> int:
+    for attempt in range(ATTEMPTS):
         try:
-            descriptor = _opened(file)
+            descriptor = _open(file)
         except (FileNotFoundError, PermissionError) as error:
-            # Another has just removed the file, or an empty folder above; Windows then forbids both.
-            passing = sys.platform == "win32" or isinstance(error, FileNotFoundError)
-            if not passing or tried == TRIES - 1:
+            # Another has just removed the file, or an empty parent folder; Windows then forbids both.
+            transient = sys.platform == "win32" or isinstance(error, FileNotFoundError)
+            if not transient or attempt == ATTEMPTS - 1:
                 raise
-            time.sleep(PAUSE_S)
+            time.sleep(RETRY_DELAY_S)
             continue
         try:
-            if not _locked(descriptor, wait):
-                raise BusyError(busy)
-            if _is_still(file, descriptor):
+            if not _try_lock(descriptor, wait):
+                raise BusyError(busy_message)
+            if _is_same_file(file, descriptor):
                 return descriptor
         except BaseException:
             os.close(descriptor)
             raise
-        os.close(descriptor)  # who held it has removed the file: the next to come would not see this lock
-    raise BusyError(busy)
+        os.close(descriptor)  # its last holder has removed the file: others would not see this lock
+    raise BusyError(busy_message)
 
 
-def _opened(file: Path) -> int:
+def _open(file: Path) -> int:
     flags = os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
     file.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -126,11 +129,11 @@ def _opened(file: Path) -> int:
         return os.open(file, (flags & ~os.O_CREAT) | os.O_RDONLY)  # left by another user
 
 
-def _locked(descriptor: int, wait: bool) -> bool:
+def _try_lock(descriptor: int, wait: bool) -> bool:
     try:
-        _take(descriptor, wait)
+        _flock(descriptor, wait)
     except OSError as error:
-        if error.errno in _LACKING:
+        if error.errno in _NO_LOCKS:
             return True
         if error.errno in (errno.EACCES, errno.EAGAIN, errno.EDEADLK):
             return False
@@ -138,7 +141,7 @@ def _locked(descriptor: int, wait: bool) -> bool:
     return True
 
 
-def _is_still(file: Path, descriptor: int) -> bool:
+def _is_same_file(file: Path, descriptor: int) -> bool:
     try:
         return os.path.samestat(os.stat(file), os.fstat(descriptor))
     except FileNotFoundError:

@@ -1,8 +1,8 @@
 """Clips unlike the rest of their shoot, and what a shoot asks for."""
 
 import pytest
-from keymark.core.shoot.check.effort import effort
-from keymark.core.shoot.check.odd_takes import with_odd_ones
+from keymark.core.shoot.check.cost_estimate import estimate_cost
+from keymark.core.shoot.check.outlier_takes import flag_outliers
 from keymark.core.shoot.check.take_check import TakeCheck
 
 
@@ -13,7 +13,7 @@ def check(width: int | None, fps: float = 25.0) -> TakeCheck:
 
 def test_the_odd_one_among_many_is_told() -> None:
     """By size or rate; what is not known is neither usual nor odd."""
-    warned = with_odd_ones([check(320), check(320), check(640), check(320), check(320, 30.0), check(None)])
+    warned = flag_outliers([check(320), check(320), check(640), check(320), check(320, 30.0), check(None)])
     assert [len(one.warnings) for one in warned] == [0, 0, 1, 0, 1, 0]
     assert "640 x 240 pixels" in warned[2].warnings[0] and "25 frames per second" in warned[4].warnings[0]
 
@@ -21,14 +21,17 @@ def test_the_odd_one_among_many_is_told() -> None:
 @pytest.mark.parametrize("widths", [(320, 320, 320, 640), (320, 320, 320, 640, 640, 640)])
 def test_where_none_is_usual_none_is_odd(widths: tuple[int, ...]) -> None:
     """Too few to tell, or two cameras."""
-    assert all(one.warnings == () for one in with_odd_ones([check(width) for width in widths]))
+    assert all(one.warnings == () for one in flag_outliers([check(width) for width in widths]))
 
 
 def test_longer_and_larger_clips_ask_for_more() -> None:
     """And so does choosing a library."""
-    small = effort(100, (320, 240), "map", None)
-    assert effort(200, (320, 240), "map", None).seconds > small.seconds
-    assert effort(100, (1920, 1080), "map", None).seconds > small.seconds
-    named, chosen = effort(100, (320, 240), "map", "walking"), effort(100, (320, 240), "map", "auto")
+    small = estimate_cost(100, (320, 240), "map", None)
+    assert estimate_cost(200, (320, 240), "map", None).seconds > small.seconds
+    assert estimate_cost(100, (1920, 1080), "map", None).seconds > small.seconds
+    named, chosen = (
+        estimate_cost(100, (320, 240), "map", "walking"),
+        estimate_cost(100, (320, 240), "map", "auto"),
+    )
     assert small.seconds < named.seconds < chosen.seconds
-    assert effort(200, (320, 240), "map", None).size_bytes > small.size_bytes
+    assert estimate_cost(200, (320, 240), "map", None).size_bytes > small.size_bytes

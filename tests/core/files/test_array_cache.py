@@ -1,4 +1,4 @@
-"""Results kept in a folder: whole, bounded, and absent rather than wrong."""
+"""Arrays cached in a folder: whole, of bounded size, and absent rather than wrong."""
 
 import os
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.errors import ConversionError
-from keymark.core.files.folder_lock import folder_lock
-from keymark.core.files.store import Store
+from keymark.core.files.array_cache import ArrayCache
+from keymark.core.files.file_lock import file_lock
 
 ARRAYS = {
     "speed": np.array([1.0, np.nan]),
@@ -18,79 +18,79 @@ ARRAYS = {
 
 def test_what_is_saved_is_loaded_alike(tmp_path: Path) -> None:
     """Kinds and missing values included; other keys hold nothing."""
-    store = Store(tmp_path / "results")
-    store.save("reading-1a", ARRAYS)
-    found = Store(tmp_path / "results").load("reading-1a")
+    cache = ArrayCache(tmp_path / "results")
+    cache.save("reading-1a", ARRAYS)
+    found = ArrayCache(tmp_path / "results").load("reading-1a")
     assert found is not None and set(found) == set(ARRAYS)
     for name, array in ARRAYS.items():
         assert np.array_equal(found[name], array, equal_nan=name == "speed")
         assert found[name].dtype == array.dtype
-    assert store.load("reading-1b") is None
+    assert cache.load("reading-1b") is None
 
 
 def test_saving_again_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None:
     """One file a key."""
-    store = Store(tmp_path)
-    store.save("a", {"x": np.zeros(3)})
-    store.save("a", {"y": np.ones(2)})
-    assert list(store.load("a") or {}) == ["y"]
+    cache = ArrayCache(tmp_path)
+    cache.save("a", {"x": np.zeros(3)})
+    cache.save("a", {"y": np.ones(2)})
+    assert list(cache.load("a") or {}) == ["y"]
     assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
 
 
 @pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "text"])
 def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
-    """Whatever happened to it."""
-    store = Store(tmp_path)
-    store.save("a", {"x": np.arange(1000.0)})
+    """In any way."""
+    cache = ArrayCache(tmp_path)
+    cache.save("a", {"x": np.arange(1000.0)})
     file = tmp_path / "a.npz"
     whole = file.read_bytes()
     flipped = whole[:4000] + bytes([whole[4000] ^ 1]) + whole[4001:]
     file.write_bytes({"cut": whole[:-300], "flipped": flipped, "empty": b"", "text": b"{}"}[damage])
-    assert store.load("a") is None
-    store.save("a", {"x": np.zeros(1)})
-    assert store.load("a") is not None
+    assert cache.load("a") is None
+    cache.save("a", {"x": np.zeros(1)})
+    assert cache.load("a") is not None
 
 
 def test_python_objects_are_neither_kept_nor_read(tmp_path: Path) -> None:
     """A file that somebody put there runs nothing."""
-    store = Store(tmp_path)
+    cache = ArrayCache(tmp_path)
     with pytest.raises(ValueError, match="objects"):
-        store.save("a", {"x": np.array([{}], dtype=object)})
+        cache.save("a", {"x": np.array([{}], dtype=object)})
     np.savez(tmp_path / "a.npz", x=np.array([{}], dtype=object))
-    assert store.load("a") is None
+    assert cache.load("a") is None
 
 
 @pytest.mark.parametrize("key", ["../a", "", "A", "a/b", "a.npz", "-a", "a" * 200])
 def test_keys_cannot_leave_the_folder(tmp_path: Path, key: str) -> None:
     """A key may come from somebody else's scene."""
     np.savez(tmp_path / "a.npz", x=np.zeros(1))
-    store = Store(tmp_path / "inside")
-    assert store.load(key) is None
+    cache = ArrayCache(tmp_path / "inside")
+    assert cache.load(key) is None
     with pytest.raises(ValueError, match="key"):
-        store.save(key, {})
+        cache.save(key, {})
 
 
-def test_what_was_unused_for_longest_goes_first(tmp_path: Path) -> None:
+def test_the_least_recently_used_is_evicted_first(tmp_path: Path) -> None:
     """Loading counts as use; the newest always stays."""
-    store = Store(tmp_path, largest_bytes=4000)
+    cache = ArrayCache(tmp_path, largest_bytes=4000)
     for age, key in enumerate(("c", "b", "a")):
-        store.save(key, {"x": np.zeros(100)})
+        cache.save(key, {"x": np.zeros(100)})
         os.utime(tmp_path / f"{key}.npz", (1000 + age, 1000 + age))
-    assert store.load("c") is not None
-    store.save("d", {"x": np.zeros(100)})
+    assert cache.load("c") is not None
+    cache.save("d", {"x": np.zeros(100)})
     left = {path.stem for path in tmp_path.iterdir()}
     assert {"c", "d"} <= left and "b" not in left
-    store.save("e", {"x": np.zeros(1000)})
-    assert store.load("e") is None and store.load("d") is not None
+    cache.save("e", {"x": np.zeros(1000)})
+    assert cache.load("e") is None and cache.load("d") is not None
 
 
 def test_a_half_written_file_is_removed_unless_its_writer_lives(tmp_path: Path) -> None:
-    """Whatever the clock says."""
+    """Locks tell, not clocks."""
     for name in (".keymark-dead-work", ".keymark-live-work"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "a.npz").write_bytes(b"half")
-    with folder_lock(tmp_path / ".keymark-live.lock", "is being written"):
-        Store(tmp_path).save("a", {"x": np.zeros(1)})
+    with file_lock(tmp_path / ".keymark-live.lock", "is being written"):
+        ArrayCache(tmp_path).save("a", {"x": np.zeros(1)})
         assert {path.name for path in tmp_path.iterdir()} == {
             ".keymark-live-work",
             ".keymark-live.lock",
@@ -102,5 +102,5 @@ def test_a_folder_that_cannot_be_written_is_said_so(tmp_path: Path) -> None:
     """In one sentence."""
     (tmp_path / "file").write_text("")
     with pytest.raises(ConversionError, match="cannot be written"):
-        Store(tmp_path / "file" / "store").save("a", {"x": np.zeros(1)})
-    assert Store(tmp_path / "file" / "store").load("a") is None
+        ArrayCache(tmp_path / "file" / "cache").save("a", {"x": np.zeros(1)})
+    assert ArrayCache(tmp_path / "file" / "cache").load("a") is None

@@ -1,0 +1,138 @@
+"""Checks of a take against its clip: frame size, frame count, and the camera's view of the keyframes."""
+
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..footage.clips.clip import Clip
+from .take import Take
+
+LONGEST_FRAMES = 40_000
+"""Twenty minutes at 30 frames a second, for which an estimate needs about two and a half gigabytes."""
+
+
+def open_clip(take: Take) -> Clip:
+    """Open a take's clip and check `take.json` against it.
+
+    Raises:
+        InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
+            poses or a keyframe do not fit.
+    """
+    clip = open_footage(take.clip, take.fps)
+    check_size(take, clip)
+    count = clip.frame_count
+    if count > LONGEST_FRAMES or take.frame_count not in (None, count):
+        # Containers may claim a wrong number; decoding counts.
+        count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
+    check_frame_count(take, count)
+    return clip
+
+
+def open_footage(path: Path, fps: float | None) -> Clip:
+    """Open a clip without its take; `fps` is the rate of an image sequence.
+
+    Raises:
+        InputError: It is missing or unreadable.
+    """
+    try:
+        return Clip.open(path, fps=fps)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
+def check_size(take: Take, clip: Clip) -> None:
+    """Check the size of a clip's frames against the camera's resolution.
+
+    Raises:
+        InputError: They differ.
+    """
+    if clip.size != take.camera.resolution:
+        raise InputError(
+            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
+            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
+            f"{_rotation_hint(take, clip)}"
+        )
+
+
+def _rotation_hint(take: Take, clip: Clip) -> str:
+    """The rest of the sentence where width and height are swapped."""
+    if clip.size != take.camera.resolution[::-1]:
+        return ""
+    return (
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
+        "give sensor_width_mm and the pose of the camera as it was held"
+    )
+
+
+def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
+    """Check the true number of a clip's frames against the take.
+
+    Args:
+        take: The take.
+        count: Number of frames that can be decoded.
+        claimed: Number of frames that the clip's file claims.
+
+    Raises:
+        InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
+            the clip.
+    """
+    path = take.file
+    if count > LONGEST_FRAMES:
+        raise InputError(
+            f"{take.clip}: has more than {LONGEST_FRAMES} frames, {LONGEST_FRAMES / take.fps / 60.0:.0f} "
+            "minutes; a take must be shorter: cut it, as with ffmpeg -ss 0 -t 600 -i CLIP part1.mp4"
+        )
+    if take.frame_count not in (None, count):
+        raise InputError(
+            f"{path}: frame_count is {take.frame_count}; "
+            f"{take.clip.name} holds {count} frames that can be decoded{_damage_hint(count, claimed)}"
+        )
+    if take.camera.is_moving and len(take.camera.matrix_world) < count:
+        poses = len(take.camera.matrix_world)
+        raise InputError(
+            f"{path}: camera.matrix_world_frames has {poses} poses; {take.clip.name} has {count} frames, "
+            "and each needs one"
+        )
+    for keyframe in take.keyframes:
+        if keyframe.index >= count:
+            raise InputError(
+                f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
+                f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
+                f"{_damage_hint(count, claimed)}"
+            )
+
+
+def _damage_hint(count: int, claimed: int) -> str:
+    """The rest of the sentence where a file claims more frames than it has."""
+    if count >= claimed:
+        return ""
+    return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
+
+
+def check_in_front(take: Take) -> None:
+    """Check that the camera sees the keyframes.
+
+    Raises:
+        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
+    """
+    size = np.asarray(take.camera.resolution, dtype=np.float64)
+    in_picture = not take.keyframes
+    for keyframe in take.keyframes:
+        points = take.body.points(take.body.pose(keyframe.posture))
+        depth = take.camera.depth(points, keyframe.index)
+        if depth.min() <= 0.0:
+            name = take.body.skeleton.point_names[int(depth.argmin())]
+            raise InputError(
+                f"{take.file}: keyframe {keyframe.index + take.frame_start} has the point {name} "
+                f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
+                "(along its local -Z) at the performer"
+            )
+        pixels, _ = take.camera.project(points, keyframe.index)
+        in_picture = in_picture or bool(((pixels >= 0.0) & (pixels <= size)).all(axis=-1).any())
+    if not in_picture:
+        raise InputError(
+            f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
+            "its lens and the keyframes, all in meters in one world, must fit each other"
+        )
