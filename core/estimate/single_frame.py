@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
@@ -20,11 +19,9 @@ from ..prior.frame_prior import Belief
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
-from .terms.ground import GroundTerm
-from .terms.limits import LimitTerm
-from .terms.quadratic import QuadraticBuilder
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
-from .terms.term import NormalEquations, Term
+from .terms.assembly import frame_terms
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from .terms.term import NormalEquations, total_cost
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 LARGEST_STEP = 0.4
@@ -113,7 +110,7 @@ class _Descent:
     ) -> None:
         count = belief.starts.batch[0]
         self.model, self.observed = evidence.model, observed
-        body, skeleton = evidence.model.body, belief.posture.skeleton
+        body = evidence.model.body
         self.width_px = limb_widths(self.model, belief.posture.translation[None], np.array([frame]))
         self.believed = Posture.stack([belief.posture] * count)
         deviation = belief.starts.minus(self.believed)
@@ -126,17 +123,7 @@ class _Descent:
             np.linalg.solve(factor, deviation.T).T,
             np.zeros((count, len(self.model.placements) * FEATURES)),
         )
-        self.bias_std = noise.bias_std(self.width_px).reshape(1, -1)
-        repeated = observed[np.zeros(count, dtype=np.intp)]
-        width = np.repeat(self.width_px, count, axis=0)
-        self.regions = RegionTerm(self.model, repeated, noise, width, evidence.distrust, evidence.whole)
-        builder = QuadraticBuilder(count, skeleton.dof_count + self.bias_std.shape[1])
-        builder.add(slice(0, skeleton.dof_count), (1.0,), 1.0)
-        builder.add(slice(skeleton.dof_count, None), (1.0,), self.bias_std)
-        self.ground = _ground(body, belief)
-        self.terms: list[Term] = [builder.term(), self.regions, LimitTerm()]
-        if self.ground is not None:
-            self.terms.append(self.ground)
+        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px)
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
@@ -144,7 +131,7 @@ class _Descent:
             self.state,
             variation=np.zeros_like(self.state.variation),
         )
-        best, least = start, self._costs(start)
+        best, least = start, total_cost(self.terms, start)
         for temperature in TEMPERATURES:
             equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
             for term in self.terms:
@@ -153,7 +140,7 @@ class _Descent:
             self.state, moved = self.state.stepped(step, LARGEST_STEP)
             if temperature > 1.0:
                 continue
-            costs = self._costs(self.state)
+            costs = total_cost(self.terms, self.state)
             better = costs < least
             best = replace(
                 best,
@@ -172,27 +159,11 @@ class _Descent:
             posture, residual, self._distances(self.believed[0]), tuple(int(m) for m in misplaced)
         )
 
-    def _costs(self, state: ClipState) -> Array:
-        """(S,) negative logarithm of the probability of each start's state, up to a constant."""
-        excess = LimitTerm().excess(state)
-        squared = (state.variation**2).sum(-1) + ((state.bias / self.bias_std) ** 2).sum(-1)
-        costs = self.regions.misfit(state).sum(-1) + 0.5 * (squared + (excess**2).sum(-1))
-        return np.asarray(costs if self.ground is None else costs + self.ground.cost(state))
-
     def _distances(self, posture: Posture) -> Array:
         """(M,) of the centroids [px]."""
         pose = self.model.body.pose(Posture.stack([posture]))
         predicted = self.model.evaluate(pose, self.state.frame[:1])
         return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
-
-
-def _ground(body: Body, belief: Belief) -> GroundTerm | None:
-    """Where the ankles are when a foot is on the ground."""
-    if belief.grounded is None:
-        return None
-    ankles = tuple(i for i, name in enumerate(body.skeleton.point_names) if name.startswith("ankle"))
-    points = body.points(body.pose(belief.grounded))
-    return GroundTerm(ankles, float(points[:, list(ankles), 2].min()))
 
 
 def _factor(model: RegionModel, belief: Belief, frame: int) -> Array:

@@ -17,10 +17,10 @@ from scipy.ndimage import distance_transform_edt
 from ..arrays import Array, BoolArray
 from ..footage.camera import Camera
 from .calibration import PRIOR_STD, placement_values
+from .clip_problem import ClipProblem
 from .keyframe_evidence import KeyframeEvidence, keyframe_information
 from .posing_error import posing_covariance, velocities
 from .terms.regions import ObservedRegions
-from .window_problem import ClipProblem
 from .windows import Window, windows
 
 SAME = 1e-7

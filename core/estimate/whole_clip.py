@@ -21,13 +21,14 @@ from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
+from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_trust
 from .match_error import depth_std_m
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import changed_frames, held, revised_share, revised_windows, same_setting
-from .window_problem import ClipProblem
+from .window_problem import WindowProblem
 from .windows import Window, windows
 
 MARKERS_SHARE = 0.5
@@ -165,7 +166,7 @@ def _solve_windows(
     # All windows by their markers first: what is learned from the whole clip then joins them without a seam.
     states = []
     for window, begun, ended in stretches:
-        part = problem.window(window)
+        part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.bare())
     contours = None if earlier is None else earlier.contours
@@ -180,7 +181,7 @@ def _solve_windows(
     postures: list[Posture] = []
     for window, begun, ended in stretches:
         first, last = (MARKERS_SHARE + (1.0 - MARKERS_SHARE) * share for share in (begun, ended))
-        part = problem.window(window, states.pop(0))
+        part = WindowProblem(problem, window, states.pop(0))
         if contours is not None:
             yield from scaled(part.follow_contours(contours), first, last)
         inner = slice(window.keep_first, window.keep_last)

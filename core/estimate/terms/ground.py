@@ -5,6 +5,7 @@ a single picture says as well.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -25,6 +26,7 @@ class GroundTerm:
     height_m: float | Array
     """How high the lower one is while its foot is on the ground; one height or (F,)."""
     std_m: float = 0.03
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each frame."""

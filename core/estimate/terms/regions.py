@@ -6,6 +6,7 @@ angle to wrap and nothing singular when the region is round (instead of S_θ and
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -168,6 +169,7 @@ class RegionTerm:
     """(M,) factor by which each marker's regions err more than the noise says."""
     whole: Array
     """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
@@ -184,8 +186,8 @@ class RegionTerm:
             residual.reshape(shape), jacobian.reshape(*shape, -1), weight.reshape(shape)
         )
 
-    def misfit(self, state: ClipState) -> Array:
-        """(F, M) what each marker costs: the negative logarithm of Student's t, up to a constant.
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of Student's t over all markers, up to a constant.
 
         A marker that is seen where the posture hides it costs as much as one that is far off.
         """
@@ -199,7 +201,7 @@ class RegionTerm:
             size = self.noise.degrees * (group.stop - group.start)
             cost += 0.5 * size * np.log1p(squared[..., group].sum(-1) / size)
         contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
-        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost))
+        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
 
     def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
         """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
