@@ -14,7 +14,7 @@ from ..library.library import Library
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
-from .alternatives import alternatives
+from .candidates import alternatives
 from .candidate import MatchedFrame
 from .coarse_pass import FLOOR_STD_M, Glance, glance
 from .emissions import Fit, Turned, sweep, turned
