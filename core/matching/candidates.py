@@ -1,43 +1,74 @@
-"""What else a frame may show, and how probable each is."""
+"""Candidate postures of a frame, and the confidence in each."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, SingleArray
 from ..body.posture import Posture
-from .candidate import Candidate, MatchedFrame
-from .state_path import Path
+from .state_path import StatePath
 
-MOST = 6
-LOOKED_AT = 150
-"""The most probable states among which distinct ones are sought."""
+MOST_CANDIDATES = 6
+MOST_STATES = 150
+"""Candidates are chosen among this many of the most probable states."""
 DISTINCT_M = 0.08
-"""Postures whose points differ by less, the hips aligned, are the same to whoever looks."""
+"""Postures whose points differ by less on average, the hips aligned, look the same."""
 ABOUT_RIGHT_M = 0.10
 """Mean distance of the points, the hips aligned, within which a match is about right."""
-CERTAIN = 0.02, 0.98
-"""No probability is believed to be outside these."""
-BASE, SHARE_COUNTS = -3.3, 1.0 / 3.0
+PROBABILITY_BOUNDS = 0.02, 0.98
+"""Probabilities are clipped to these before their odds are taken."""
+INTERCEPT, SHARE_COEFFICIENT = -3.3, 1.0 / 3.0
 """Logistic regression, rounded, of being about right, on 23 matches of 15 takes with truth, with right and
 wrong libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 13, 40, 73 and 93 % were."""
 
 
-def alternatives(
-    path: Path, share: SingleArray, frame: int, index: int, chosen: Posture, nearest: int, explained: float
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A library's posture, placed in the world."""
+
+    posture: Posture
+    """Of the take's body, in the world."""
+    name: str
+    """Name of the library's posture nearest to it."""
+    mirrored: bool
+    """Whether left and right are exchanged."""
+    confidence: float
+    """Probability that it is about right, 0 to 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class MatchedFrame:
+    """The candidates of one frame."""
+
+    index: int
+    """Index in the clip."""
+    candidates: tuple[Candidate, ...]
+    """The chosen one first, then the alternatives, the likelier first."""
+
+
+def frame_candidates(
+    path: StatePath,
+    share: SingleArray,
+    frame: int,
+    index: int,
+    chosen: Posture,
+    nearest: int,
+    explained: float,
 ) -> MatchedFrame:
     """The chosen posture of a frame and distinct ones beside it, the likelier first.
 
     Args:
-        path: The way that was found.
+        path: The Viterbi path.
         share: (K,) probability of each of the frame's states.
         frame: Which of the path's frames.
-        index: Its position in the clip.
-        chosen: The posture that was chosen there.
-        nearest: Which of the chains' postures that is nearest to.
-        explained: How much of the frame it explains, 0 to 1.
+        index: Its index in the clip.
+        chosen: The refined posture.
+        nearest: Which of the sequences' postures that is nearest to.
+        explained: Share of the frame that it explains, 0 to 1.
     """
-    fit = path.fits[frame]
-    best = fit.row(int(path.best[frame]))
-    count = min(LOOKED_AT, len(share))
+    emission = path.emissions[frame]
+    best = emission.index_of(int(path.best[frame]))
+    count = min(MOST_STATES, len(share))
     likely = np.argpartition(-share, count - 1)[:count]
     likely = likely[np.argsort(-share[likely], kind="stable")]
     likely = np.concatenate([[best], likely[likely != best]]).astype(np.intp)
@@ -46,21 +77,21 @@ def alternatives(
     shape[0] = _shape(path, Posture.stack([chosen]))[0]
     weight = share[likely] / max(float(share[likely].sum()), 1e-12)
     kept: list[int] = []
-    for place in range(len(likely)):
-        if all(_apart(shape[place], shape[other]) > DISTINCT_M for other in kept):
-            kept.append(place)
-        if len(kept) == MOST:
+    for rank in range(len(likely)):
+        if all(_mean_distance(shape[rank], shape[other]) > DISTINCT_M for other in kept):
+            kept.append(rank)
+        if len(kept) == MOST_CANDIDATES:
             break
     found = []
-    for place in kept:
-        near = np.linalg.norm(shape - shape[place], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
-        state = int(fit.states[likely[place]])
-        posture = state // len(path.turned.heading_rad) if place else nearest
+    for rank in kept:
+        near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+        state = int(emission.states[likely[rank]])
+        posture = state // len(path.features.heading_rad) if rank else nearest
         found.append(
             Candidate(
-                chosen if place == 0 else postures[place],
-                path.chains.name(posture),
-                path.chains.is_mirrored(posture),
+                chosen if rank == 0 else postures[rank],
+                path.sequences.name(posture),
+                path.sequences.is_mirrored(posture),
                 confidence(float(weight[near].sum()), explained),
             )
         )
@@ -70,22 +101,22 @@ def alternatives(
 def confidence(share: float, explained: float) -> float:
     """Probability that a posture is about right.
 
-    Being the only one among the library's that comes into question is not enough: the library may hold none
-    that is right, and then the markers are off.
+    A posture that beats all others of the library may still be wrong: the library may hold no right one,
+    which shows in how badly the markers fit.
 
     Args:
-        share: Probability of the posture and those about like it among all of the library.
-        explained: How much of the frame the match explains, 0 to 1.
+        share: Posterior probability of the posture and of those near it, among all of the library.
+        explained: Share of the frame that the match explains, 0 to 1.
     """
-    odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *CERTAIN)]
-    return float(1.0 / (1.0 + np.exp(-(BASE + SHARE_COUNTS * odds[0] + odds[1]))))
+    odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *PROBABILITY_BOUNDS)]
+    return float(1.0 / (1.0 + np.exp(-(INTERCEPT + SHARE_COEFFICIENT * odds[0] + odds[1]))))
 
 
-def _shape(path: Path, postures: Posture) -> Array:
+def _shape(path: StatePath, postures: Posture) -> Array:
     """(N, P, 3) points relative to the hips [m]."""
-    body = path.chains.body
+    body = path.sequences.body
     return np.asarray(body.points(body.pose(postures)) - postures.translation[:, None])
 
 
-def _apart(first: Array, second: Array) -> float:
+def _mean_distance(first: Array, second: Array) -> float:
     return float(np.linalg.norm(first - second, axis=-1).mean())

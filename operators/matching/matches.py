@@ -16,7 +16,7 @@ from ..shell.takes import actor_of
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
-    from ...core.matching.candidate import Candidate
+    from ...core.matching.candidates import Candidate
     from ...core.matching.match_take import LibraryChoice
     from ...core.prior.keyframes import Keyframe, Matched
 
