@@ -1,4 +1,4 @@
-"""The whole clip's estimation problem: all that the estimate follows from, but for the pictures."""
+"""The estimation problem of a whole clip, without its pictures."""
 
 from dataclasses import dataclass
 
@@ -16,18 +16,18 @@ from .windows import Window
 
 @dataclass(frozen=True, eq=False)
 class ClipProblem:
-    """All that the estimate of a clip of F frames follows from, but for its pictures."""
+    """Everything that the estimate of a clip of F frames follows from, except its pictures."""
 
     body: Body
     camera: Camera
-    """As stated; the evidence has the lens that was found."""
+    """As stated; the evidence has the calibrated lens."""
     evidence: KeyframeEvidence
     factor: Array
     """(D, D) of the deviation's accelerations."""
     prior: Posture
     """A batch of F postures."""
     keyframes: IndexArray
-    """(K,) frames whose prior was posed."""
+    """(K,) frames of the keyframes."""
     observed: ObservedRegions
     width_px: Array
     """(F, M) half-width of each marker's limb [px]."""
@@ -35,11 +35,11 @@ class ClipProblem:
     """(F - 1,) time between frames [s]."""
     noise: RegionNoise
     matched: BoolArray
-    """(K,) which keyframes nobody posed."""
+    """(K,) which keyframes are matched."""
     depth_std_m: Array
-    """(F,) how far the prior's depths may be off [m]."""
-    footing_m: Array | None = None
-    """(F,) usual height of the lower ankle [m]; None where no floor is known of."""
+    """(F,) noise of the prior's depths [m]."""
+    ankle_height_m: Array | None = None
+    """(F,) usual height of the lower ankle [m]; None where no floor is known."""
 
     @property
     def frames(self) -> int:

@@ -1,4 +1,4 @@
-"""What a person should know of a take and its result, one sentence each."""
+"""Notes on a take and its result for people, one sentence each."""
 
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
@@ -6,20 +6,20 @@ from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
 DOUBTED_LENS = 0.03
-"""Share by which the lens found must differ from the one stated for a person to be told."""
+"""Difference of the calibrated from the stated lens, as a share, that gets a note."""
 DOUBTED_TIMING_FRAMES = 1.0
 DOUBTED_POSING = 2.0
-"""In usual errors of posing."""
+"""Size of the posing error, in usual ones, that gets a note."""
 DOUBTED_MARKER = 3.0
-"""In usual errors of regions."""
+"""Distrust of a marker that gets a note."""
 DOUBTED_MATCH = 0.6
-"""Confidence of a matched keyframe below which a person had better pose it."""
+"""Confidence below which a matched keyframe gets a note."""
 MOST_NAMED = 3
-"""So many frames are named at once."""
+"""Largest number of frames that a note names."""
 
 
 def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
-    """Sentences on what may have gone wrong with the markers."""
+    """Notes on markers: found too seldom, variable frame rate, and those of the tracks."""
     notes = list(tracks.notes)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
@@ -31,7 +31,7 @@ def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
 
 
 def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
-    """Sentences on what the footage at the keyframes says against the take."""
+    """Notes where the footage at the keyframes contradicts the take: lens, timing, posing, markers."""
     notes = []
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
@@ -49,8 +49,8 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
             "the keyframes lie far from what the footage shows, much farther than a person usually poses; "
             "check the camera, the actor's lengths and the markers' segments"
         )
-    for marker, doubt in zip(take.markers, evidence.distrust, strict=True):
-        if doubt > DOUBTED_MARKER:
+    for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
+        if distrust > DOUBTED_MARKER:
             notes.append(
                 f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
                 "something else may have its color"
@@ -59,7 +59,7 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
-    """A sentence on matched keyframes that tell less than the posed ones around them."""
+    """Note on matched keyframes left out in favor of the posed ones around them."""
     matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
     if count == 0:
         return ()
@@ -69,7 +69,7 @@ def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
 
 
 def match_notes(take: Take) -> tuple[str, ...]:
-    """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
+    """Notes on a result from matched keyframes: what it rests on, and which frames to pose."""
     matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
     if not matched:
         return ()
@@ -98,7 +98,7 @@ def match_notes(take: Take) -> tuple[str, ...]:
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:
-    """A sentence on what the paper's filter does not know of matched keyframes."""
+    """Note that the paper's filter takes matched keyframes for posed ones."""
     if all(keyframe.matched is None for keyframe in take.keyframes):
         return ()
     return (

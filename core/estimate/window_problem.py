@@ -16,18 +16,18 @@ from .terms.term import NormalEquations
 from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
-FAR_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
-"""From keyframes that nobody posed the way is longer, and has more wrong turns."""
-REFINEMENTS = (1.0, 1.0)
-"""The steps that contours join in, when the markers have brought them within reach of their edges."""
-LOOKS = 2
-"""How often contours are looked for, each time nearer to where they are."""
+MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
+"""From matched keyframes the descent is longer and has more local minima."""
+CONTOUR_TEMPERATURES = (1.0, 1.0)
+"""Of the steps with contours, once the markers have brought these within reach of their edges."""
+CONTOUR_ROUNDS = 2
+"""Times that edges are measured, each time nearer to the contours."""
 LARGEST_STEP = 0.5
-"""No unknown of the posture moves further in one step [m, rad]."""
-SETTLED = 3e-3
-"""The estimate has settled once no unknown of any posture moves further in a step [m, rad]."""
-LOOKING_SHARE = 0.5
-"""Share of following the contours that looking for them is."""
+"""Largest change of a posture's unknown in one step [m, rad]."""
+CONVERGED = 3e-3
+"""Converged once no unknown of any posture changes by more in a step [m, rad]."""
+MEASURING_SHARE = 0.5
+"""Share of following the contours that measuring their edges is."""
 
 
 @dataclass(eq=False)
@@ -44,57 +44,59 @@ class WindowProblem:
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
-        far = bool(self.clip.matched.any())
-        yield from self._descend(FAR_TEMPERATURES if far else TEMPERATURES, 0.0, 1.0)
+        matched = bool(self.clip.matched.any())
+        yield from self._gauss_newton(MATCHED_TEMPERATURES if matched else TEMPERATURES, 0.0, 1.0)
 
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
-        """Go on with the contours, looked for anew each time; yields like `follow_markers`."""
+        """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
         others = list(self.terms)
-        for look in range(LOOKS):
-            looking = contours.term(self.state.posture, self.state.frame)
-            begun, looked = look / LOOKS, (look + LOOKING_SHARE) / LOOKS
-            term = yield from scaled(looking, begun, looked)
+        for number in range(CONTOUR_ROUNDS):
+            measuring = contours.measure(self.state.posture, self.state.frame)
+            begun, measured = number / CONTOUR_ROUNDS, (number + MEASURING_SHARE) / CONTOUR_ROUNDS
+            term = yield from scaled(measuring, begun, measured)
             self.terms = with_contours(others, term)
-            yield from self._descend(REFINEMENTS, looked, (look + 1) / LOOKS)
+            yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / CONTOUR_ROUNDS)
 
-    def _descend(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
-        """Gauss-Newton steps until nothing moves any more."""
+    def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
+        """Gauss-Newton steps until convergence."""
         for i, temperature in enumerate(temperatures):
             done = begun + (ended - begun) * i / len(temperatures)
             equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
-            for _ in self._gather(equations, temperature):
+            for _ in self._assemble(equations, temperature):
                 yield done
-            step = equations.matrix.factorise().solve(-equations.gradient)
+            step = equations.matrix.factorize().solve(-equations.gradient)
             self.state, moved = self.state.stepped(step, LARGEST_STEP)
             yield begun + (ended - begun) * (i + 1) / len(temperatures)
             yield Preview(self.window.keep_first, self.state.posture[self.window.kept])
-            if temperature == 1.0 and moved < SETTLED:
+            if temperature == 1.0 and moved < CONVERGED:
                 break
 
-    def kept(self) -> Generator[None, None, tuple[Posture, Array, Array]]:
+    def solution(self) -> Generator[None, None, tuple[Posture, Array, Array]]:
         """Postures, their covariance and the centroids' residuals of the frames the window keeps.
 
-        It yields now and then, so that whoever waits can stop waiting.
+        It yields now and then, so that a job can be canceled.
         """
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
-        yield from self._gather(equations, 1.0)
-        factorised = equations.matrix.factorise()
+        yield from self._assemble(equations, 1.0)
+        factorized = equations.matrix.factorize()
         yield
-        blocks = factorised.covariance_blocks()[kept, :dofs, :dofs]
+        blocks = factorized.covariance_blocks()[kept, :dofs, :dofs]
         yield
-        chain = state.chain[kept]
-        covariance = np.asarray(chain @ blocks @ np.swapaxes(chain, -1, -2), dtype=np.float64)
+        tangent_jacobian = state.tangent_jacobian[kept]
+        covariance = np.asarray(
+            tangent_jacobian @ blocks @ np.swapaxes(tangent_jacobian, -1, -2), dtype=np.float64
+        )
         predicted = self.clip.evidence.model.evaluate(state.pose, state.frame)
         offset = predicted.centroid - self.clip.observed.centroid[self.window.frames]
         distance = np.hypot(offset[..., 0], offset[..., 1])
         distance[predicted.visible <= self.clip.noise.least_visible] = np.nan
         return state.posture[kept], covariance, distance[kept]
 
-    def _gather(self, equations: NormalEquations, temperature: float) -> Generator[None, None, None]:
+    def _assemble(self, equations: NormalEquations, temperature: float) -> Generator[None, None, None]:
         """Add the normal equations of all terms at the current state, one after the other."""
-        _ = self.state.pose, self.state.chain  # which the terms share
+        _ = self.state.pose, self.state.tangent_jacobian  # cached for all terms
         for term in self.terms:
             yield
             term.add_to(equations, self.state, temperature)

@@ -175,7 +175,7 @@ def _step(
     prior.add_combination(every, (-1.0, 1.0), steady)
     equations.add(prior)
     gradient += prior.multiply(delta)
-    return equations.factorise().solve(-gradient)
+    return equations.factorize().solve(-gradient)
 
 
 def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:

@@ -56,9 +56,7 @@ class SequenceTable:
                 sequence.ground_path_m[count : 2 * count + 1] if sequence.cyclic else sequence.ground_path_m
             )
             travel[own, :2] = ground_path_m - ground_path_m[0]
-            travel[own, 2] = (
-                self.moments.hip_height_m[rows[own]] - self.moments.hip_height_m[rows[own.start]]
-            )
+            travel[own, 2] = self.moments.hip_height_m[rows[own]] - self.moments.hip_height_m[rows[own.start]]
             if sequence.cyclic:
                 turn = about_up(np.array(sequence.turn_rad))
                 centroid[own.stop - 1] = centroid[own.stop - 1] @ turn.T

@@ -14,7 +14,7 @@ from ...body.kinematics import Body
 from ...observation import depths
 from ...prior.frame_prior import Belief
 from ...prior.variability import REFERENCE_STEP_S
-from ..ankle_height import FOOTING_STD_M
+from ..ankle_height import ANKLE_HEIGHT_STD_M
 from ..clip_problem import ClipProblem
 from ..clip_state import ClipState
 from ..keyframe_evidence import KeyframeEvidence
@@ -58,14 +58,14 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
             clip.noise,
             clip.width_px[frames],
             evidence.distrust,
-            evidence.whole,
+            evidence.area_ratio,
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None]),
         LimitTerm(),
         StillnessTerm(clip.camera, ankles, step_s),
     ]
-    if clip.footing_m is not None:
-        terms.append(GroundTerm(ankles, clip.footing_m[frames], FOOTING_STD_M))
+    if clip.ankle_height_m is not None:
+        terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
 
 
@@ -96,7 +96,7 @@ def frame_terms(
     width = np.repeat(width_px, starts, axis=0)
     terms: list[CostTerm] = [
         BeliefTerm.of(starts, belief.posture.skeleton.dof_count, bias_std),
-        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.whole),
+        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
     ]
     if belief.grounded is not None:

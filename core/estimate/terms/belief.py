@@ -1,4 +1,4 @@
-"""The belief in one frame's posture before its picture is looked at, and in the biases of its features."""
+"""Prior belief in one frame's posture and in the biases of its features."""
 
 from dataclasses import dataclass
 from typing import ClassVar

@@ -24,6 +24,6 @@ class DepthTerm:
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each point."""
         residual = depths.evaluate(state.body, self.camera, state.pose, state.frame) - self.prior_depth
-        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.chain
+        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.tangent_jacobian
         std_m = np.asarray(self.std_m)
         equations.add_rows(residual / std_m, jacobian / std_m[..., None])

@@ -33,7 +33,7 @@ class GroundTerm:
         residual, lower = self._residual(state)
         jacobian = state.body.points_jacobian(state.pose)[np.arange(state.frames), lower, 2]  # (F, D)
         weight = np.sqrt(student_weight(residual**2, DEGREES, 1))[:, None]
-        rows = (jacobian[:, None] @ state.chain) / self.std_m
+        rows = (jacobian[:, None] @ state.tangent_jacobian) / self.std_m
         equations.add_rows(residual[:, None] * weight, rows * weight[..., None])
 
     def cost(self, state: ClipState) -> Array:

@@ -22,7 +22,7 @@ class LimitTerm:
         excess = self.excess(state)
         hinges = state.prior.skeleton.hinge_dofs
         past = (excess != 0.0) / self.std_rad
-        equations.add_rows(excess, state.chain[:, hinges] * past[..., None])
+        equations.add_rows(excess, state.tangent_jacobian[:, hinges] * past[..., None])
 
     def cost(self, state: ClipState) -> Array:
         """(F,) half the sum of squares."""

@@ -54,7 +54,7 @@ class NormalEquations:
 
 
 class Term(Protocol):
-    """A term adds its linearised rows at a state; `temperature` ≥ 1 widens image noise while annealing."""
+    """A term adds its linearized rows at a state; `temperature` ≥ 1 widens image noise while annealing."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add this term's rows."""
