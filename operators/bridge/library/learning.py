@@ -35,5 +35,5 @@ def library_from_action(
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
     values = run(read_values(armature_object, action, rig, frames))
-    posture = shown_postures(armature_object, rig, rig.show(values), body)
+    posture = shown_postures(armature_object, rig, rig.pose(values), body)
     return learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
