@@ -127,6 +127,6 @@ def _occlusion(
     covering = np.where(model.adjoining, np.inf, covering)
     nearest = covering.argmin(axis=-1)
     depth = covering.min(axis=-1)
-    # A nearer part's own edge is what shows there.
+    # A nearer part shows its own edge there.
     shown &= ~joined & (depth >= predicted.depth)
     return np.where(np.isfinite(depth), nearest, -1), shown

@@ -1,8 +1,8 @@
 """Calibration on the keyframes: placement of the markers, lens, and the keyframes' posing and timing errors.
 
 All follow from the same residuals between the regions seen and those predicted, so they are found together:
-the size of the posing error and of its timing are those that make what is seen most likely whatever the
-placements and the lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and placements
+the size of the posing error and of its timing are those of the largest marginal likelihood over
+placements and lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and placements
 and lens are the most probable ones given those sizes. Regions that fit none count for less (Student's t), and
 a marker that never fits is distrusted in all frames.
 """
@@ -117,7 +117,7 @@ def read_keyframes(
     velocity = velocities(posture, frame)
     judged = evenly_spread(frame, MOST_JUDGED)
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
-    # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
+    # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
     calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
     distrust = np.ones(len(model.placements))
@@ -208,7 +208,7 @@ def _residuals(
 
 
 def _area_ratios(ratio: Array) -> Array:
-    """(M,) the upper quartile of (J, M) seen areas relative to predicted ones; 1 for what is never seen."""
+    """(M,) upper quartile of (J, M) observed areas relative to predicted ones; 1 for markers never seen."""
     filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
@@ -274,7 +274,7 @@ def _calibrate(seen: _Residuals, weight: Array, scale: float, timing: float) -> 
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:
-    """(M,) factors: each marker's median misfit against what it should be, or the others' if larger."""
+    """(M,) factors: each marker's median misfit relative to the expected one, or to the others' if larger."""
     # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
     usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
     ratio = np.ones(squared.shape[1])

@@ -36,24 +36,24 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
         notes.append(
-            f"the keyframes fit the footage through a lens of {lens:.1f} mm, not the {stated:.1f} mm stated; "
+            f"the lens is {lens:.1f} mm by keyframes and footage, not {stated:.1f} mm as stated; "
             "the estimate used the former"
         )
     if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
         notes.append(
-            f"keyframes seem to be set about {evidence.timing_frames:.0f} frames early or late; "
-            "look at them again"
+            f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the footage; "
+            "check the frames they are set at"
         )
     if evidence.posing_scale > DOUBTED_POSING:
         notes.append(
-            "the keyframes lie far from what the footage shows, much farther than a person usually poses; "
+            "the keyframes differ from the footage by much more than the usual posing error; "
             "check the camera, the actor's lengths and the markers' segments"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > DOUBTED_MARKER:
             notes.append(
-                f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
-                "something else may have its color"
+                f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
+                "check whether another thing has its color"
             )
     return tuple(notes)
 
@@ -65,7 +65,7 @@ def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
         return ()
     were = "was" if count == 1 else "were"
     which = "the library was" if count == matched else f"{count} of {matched} matched keyframes {were}"
-    return (f"{which} left out: the posed keyframes tell more where they enclose what was matched",)
+    return (f"{which} left out: interpolation between the posed keyframes is more accurate there",)
 
 
 def match_notes(take: Take) -> tuple[str, ...]:
@@ -102,6 +102,6 @@ def filter_notes(take: Take) -> tuple[str, ...]:
     if all(keyframe.matched is None for keyframe in take.keyframes):
         return ()
     return (
-        "method ekf holds on to matched keyframes as if they had been posed; method map knows how far they "
-        "may be off",
+        "method ekf takes matched keyframes for posed ones; method map allows for the larger errors of "
+        "matched keyframes",
     )

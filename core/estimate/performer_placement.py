@@ -149,9 +149,9 @@ def _relative_size(
     their errors are left out.
     """
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
-    told = known | shins
-    logarithms = 0.5 * np.log(shown_area[told] / seen_area[told])
-    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[told]
+    measured = known | shins
+    logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
+    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[measured]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]

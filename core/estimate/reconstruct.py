@@ -92,7 +92,7 @@ def reconstruct(
 
 
 def check_reconstructible(take: Take, method: str) -> None:
-    """Check what does not depend on the clip.
+    """Check method and keyframes, which do not depend on the clip.
 
     Raises:
         InputError: The method is unknown, or there are too few keyframes.

@@ -117,7 +117,7 @@ def _observations_differ(one: ObservedRegions, other: ObservedRegions) -> BoolAr
 
 
 def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
-    """Windows around changed frames (F,), in order; none overlaps another in what it keeps.
+    """Windows around changed frames (F,), in order; their kept frames do not overlap.
 
     Args:
         changed: The frames.

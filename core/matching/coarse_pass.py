@@ -24,7 +24,7 @@ UNKNOWN_FLOOR_STD_M = 2.0
 
 @dataclass(frozen=True)
 class CoarsePass:
-    """What the coarse pass finds."""
+    """Result of the coarse pass."""
 
     floor_m: float
     """Height of the floor, by the markers' sizes and the feet; 0 where that is about right."""

@@ -42,7 +42,7 @@ class HiddenMarkovModel:
     """(T,)."""
     _steps: list[Step] = field(default_factory=list)
 
-    # Long clips have thousands of steps: what goes through them yields, so that a job can be canceled.
+    # Long clips have thousands of steps: each recursion yields, so that a job can be canceled.
 
     def add_transitions(self) -> Generator[None, None, None]:
         """Find the transitions from each frame to the next."""

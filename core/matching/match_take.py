@@ -90,11 +90,11 @@ def match_take(
 
     Args:
         take: The take; posed keyframes tell where the performer is there, matched ones are not used.
-        reading: What `read_footage` has read of its clip.
-        libraries: One library, which is matched however badly it fits, or several, of which the one that fits
-            best is chosen.
+        reading: The clip as `read_footage` has read it.
+        libraries: One library, which is matched even where it fits badly, or several, of which the one that
+            fits best is chosen.
         floor_m: Height of the floor in the world [m]; None where it is not known.
-        keyframe_count: How many frames to be told the posture of; 10 per 100 frames where None.
+        keyframe_count: Number of frames to match keyframes at; 10 per 100 frames where None.
 
     Yields:
         Progress.
@@ -172,8 +172,8 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     """
     if reading.sightings is None or match.fit > WELL_EXPLAINED:
         return None
-    told = with_matches(replace(take, keyframes=()), match)
-    again = yield from read_footage(told, reading)
+    matched = with_matches(replace(take, keyframes=()), match)
+    again = yield from read_footage(matched, reading)
     first, second = reading.tracks, again.tracks
     apart = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
     elsewhere = (apart > ELSEWHERE_SIZES * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > ELSEWHERE_SHARE

@@ -1,7 +1,7 @@
 """Score of a motion against the truth, in the measures of the field.
 
 MPJPE, the mean per joint position error: Ionescu et al. (2014), *Human3.6M*, eq. 8. The split along and
-across the line of sight is what a single camera makes interesting: across it the image helps, along it not.
+across the line of sight matters with a single camera: across it the image helps, along it not.
 """
 
 from collections.abc import Collection
@@ -79,7 +79,7 @@ def score_points(
     free = np.ones(len(truth), dtype=bool)
     free[list(keyframe_indices)] = False
     if not free.any():
-        raise InputError("every frame is a keyframe; at least one other is needed to score what lies between")
+        raise InputError("every frame is a keyframe; a score needs at least one frame without a keyframe")
     error = points - truth  # (F, P, 3)
     distance = np.linalg.norm(error, axis=-1)  # (F, P)
     along, across = _along_and_across(error, truth, camera)

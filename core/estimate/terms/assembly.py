@@ -32,7 +32,8 @@ from .term import CostTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
 LARGEST_VARIATION = 20.0
-"""Usual size of the deviation itself, in usual accelerations: weak, for what nothing else determines."""
+"""Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else
+determines."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -86,7 +87,7 @@ def frame_terms(
     Args:
         evidence: The markers' model, as calibrated on keyframes or of average proportions.
         observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: What is believed before.
+        belief: Prior belief in the posture.
         noise: Noise of the regions' features.
         width_px: (1, M) half-width of each marker's limb [px].
     """

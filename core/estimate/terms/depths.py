@@ -1,4 +1,4 @@
-"""Depths of the principal points near those of the prior (paper, eq. 9): what the image cannot say."""
+"""Depths of the principal points near those of the prior (paper, eq. 9), which the image tells little of."""
 
 from dataclasses import dataclass
 
