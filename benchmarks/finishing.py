@@ -22,7 +22,7 @@ from keymark.core.arrays import Array, IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.finish.hermite import fit_keys  # noqa: E402
 from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys  # noqa: E402
-from keymark.core.finish.planted_feet import plant_feet, tolerances  # noqa: E402
+from keymark.core.finish.planted_feet import plant_feet, point_tolerances  # noqa: E402
 from keymark.core.finish.rig import Rig  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
@@ -78,12 +78,12 @@ def with_planted_feet(trial: Trial, posture: Posture, rig: Rig) -> Row:
     """Errors [mm] of the motion, of the same with planted feet, and of that in few keys."""
     body, times = trial.take.body, np.arange(len(trial.truth), dtype=np.float64)
     planted = run(plant_feet(body, posture, trial.tracks.time_s))
-    allowed = tolerances(rig, len(times), BAKED_MM * 1e-3, planted.contacts)
+    allowed = point_tolerances(rig, len(times), BAKED_MM * 1e-3, planted.contacts)
     values = rig_values(rig, planted.posture, body)
     posed = np.array(trial.take.keyframe_indices, dtype=np.intp)
     keys = run(reduce_keys(rig, times, values, allowed, posed))
     places = point_places(rig, trial)
-    baked = rig.show([spline.evaluate(times, 0, len(times) - 1) for spline in keys.splines]).points
+    baked = rig.pose([spline.evaluate(times, 0, len(times) - 1) for spline in keys.splines]).points
     row: Row = {"rests": len(planted.contacts)}
     for name, points in {
         "": body.points(body.pose(posture)),
@@ -100,7 +100,7 @@ def point_places(rig: Rig, trial: Trial) -> IndexArray:
     """(13,) which of the rig's joints and ends is each principal point."""
     body = trial.take.body
     rest = Posture.stack([keyframe.posture for keyframe in trial.take.keyframes])
-    shown = rig.show(rig_values(rig, rest, body)).points
+    shown = rig.pose(rig_values(rig, rest, body)).points
     apart = np.linalg.norm(shown[:, :, None] - body.points(body.pose(rest))[:, None], axis=-1).max(axis=0)
     return np.asarray(apart.argmin(axis=0))
 
@@ -115,7 +115,7 @@ def even_keys(rig: Rig, times: Array, values: list[Array], posed: IndexArray, to
 
     Found by halving, as if more keys never made it worse.
     """
-    goal, last = rig.show(values).points, len(times) - 1
+    goal, last = rig.pose(values).points, len(times) - 1
 
     def keys_of(count: int) -> IndexArray:
         even = np.round(np.linspace(0, last, count)).astype(np.intp)
@@ -123,7 +123,7 @@ def even_keys(rig: Rig, times: Array, values: list[Array], posed: IndexArray, to
 
     def holds(count: int) -> bool:
         fits = [fit_keys(times, data, keys_of(count), posed).evaluate(times, 0, last) for data in values]
-        return bool(np.linalg.norm(rig.show(fits).points - goal, axis=-1).max() <= tolerance_m)
+        return bool(np.linalg.norm(rig.pose(fits).points - goal, axis=-1).max() <= tolerance_m)
 
     low, high = 1, len(times)
     while high - low > 1:

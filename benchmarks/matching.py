@@ -127,7 +127,7 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
         both = replace(both, reading=known.reading)
     return Measured(
         library.identifier,
-        trial.score(body.points(body.pose(match.course))),
+        trial.score(body.points(body.pose(match.postures))),
         estimated(unposed),
         estimated(two),
         two.best_interpolation(),

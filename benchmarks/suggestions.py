@@ -24,7 +24,7 @@ from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.confidence import TOLERANCE_SHARE  # noqa: E402
 from keymark.core.review.review import review  # noqa: E402
-from keymark.core.review.weak_frames import NEAREST  # noqa: E402
+from keymark.core.review.weak_frames import NEAREST_FRAMES  # noqa: E402
 
 PER_100_FRAMES = (4, 8)
 """So few that another helps much, and nearly as many as a finished take has."""
@@ -108,7 +108,7 @@ def random_frames(trial: Trial, frames: IndexArray) -> list[int]:
     """Some frames no nearer to a keyframe than those that are suggested, as far as there are any."""
     every = np.arange(len(trial.truth))
     distance = np.abs(every[:, None] - frames).min(axis=1)
-    far = every[distance >= min(NEAREST, int(distance.max()))]
+    far = every[distance >= min(NEAREST_FRAMES, int(distance.max()))]
     return random_source(trial).choice(far, min(RANDOM_FRAMES, len(far)), replace=False).tolist()
 
 

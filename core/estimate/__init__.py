@@ -1,1 +1,1 @@
-"""What follows from observations and prior: the filter, the whole-clip estimate, their consistency."""
+"""Posture estimation from observations and prior: the whole-clip estimate, the filter, single frames."""

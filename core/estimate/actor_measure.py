@@ -2,9 +2,10 @@
 
 The height between crown and ground fixes distance and place. What the markers show beyond that is weighed
 against average proportions, which vary by four to five percent between people: maximum a posteriori over
-posture, lengths and the markers' places on their segments at once, with the height held. A sleeve may begin
-anywhere on its segment, so a region's own extent says little of the segment's length; where the regions lie
-to each other says more. Arms that point anywhere say nothing of their lengths; stretched sideways, they do.
+posture, lengths and the markers' placements on their segments at once, with the height held. A sleeve may
+begin anywhere on its segment, so a region's own extent says little of the segment's length; where the regions
+lie to each other says more. Arms that point anywhere say nothing of their lengths; stretched sideways, they
+do.
 """
 
 from dataclasses import dataclass
@@ -27,7 +28,7 @@ from .calibration import (
     PRIOR_STD,
     SMALLEST,
     KnownFrames,
-    placement_slopes,
+    placement_jacobian,
     placement_values,
     placements_from,
 )
@@ -36,13 +37,13 @@ from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows,
 from .terms.term import student_weight
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
-"""Lengths that are found, left and right alike; hands and feet follow from the height."""
+"""Lengths that are measured, left and right alike; hands and feet follow from the height."""
 PROPORTION_STD = 0.045
 """Spread of the logarithm of a person's proportions about the average (Gordon et al. 2014)."""
 HEIGHT_STD = 0.005
-"""The lengths add up to the height within this share while they are sought; in the end they do exactly."""
+"""Share within which the lengths add up to the height during the descent; the result does so exactly."""
 LENGTH_DIFFERENCE = 1e-3
-# How far someone who stands is from the standing posture [m, rad]; arms may be anywhere.
+# Standard deviation of a standing person from the standing posture [m, rad]; arms may be anywhere.
 STANDING_STD = {
     "pelvis.location": 0.04,
     "pelvis.rotation_z": 0.30,
@@ -61,26 +62,26 @@ STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
 """The same for arms that are held out sideways as well as one can."""
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
 MOST_DEVIATIONS = 3.0
-"""Someone whose trunk or legs deviate by more standard deviations does not stand."""
+"""Largest deviation of trunk or legs, in standard deviations, of someone who stands."""
 MISPLACED_WIDTHS, MISPLACED_PX = 1.5, 4.0
-"""Nor does someone whose markers lie farther than this from where they can be explained."""
+"""Largest distance of a standing person's marker from its prediction, in limb half-widths or pixels."""
 ARMS_RAISED_RAD = (0.0, 0.65, 1.3)
-"""The arms are looked for hanging, half raised and stretched out."""
+"""Starts of the descent: arms hanging, half raised and stretched out."""
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
 LARGEST_STEP = 0.4
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredActor:
-    """What one frame tells of a performer."""
+    """Lengths and place of a performer, measured from one frame."""
 
     body: Body
     posture: Posture
     """A single posture: how the performer stands in that frame."""
     spread: dict[str, float]
-    """How far each of the lengths `MEASURED` may still be off, as a share of it."""
+    """Standard deviation of each of the lengths `MEASURED`, as a share of it."""
     stands: bool
-    """Whether the markers are where those of someone who stands can be."""
+    """Whether the markers fit someone who stands."""
     distance_m: float
     """From the camera to the ground between the feet [m]."""
 
@@ -95,11 +96,11 @@ def measure_standing(
     segments: tuple[str, ...] = (),
     arms_stretched: bool = False,
 ) -> MeasuredActor:
-    """Lengths and place of a performer who stands.
+    """Measure the lengths and the place of a performer who stands.
 
     Args:
         camera: The camera.
-        frame: The frame's place in the clip, for a moving camera.
+        frame: The frame's index in the clip, for a moving camera.
         stature_m: Body height [m].
         crown_px: (2,) top of the head in the picture [px].
         ground_px: (2,) the ground between the feet [px].
@@ -109,7 +110,7 @@ def measure_standing(
         arms_stretched: Whether the performer holds the arms out sideways, across the view.
 
     Raises:
-        InputError: The height is out of range, or the two places cannot be a person's.
+        InputError: The height is out of range, or the two points cannot be a person's.
     """
     average = Actor.from_stature(stature_m)
     place = ground_place(camera, frame, stature_m, crown_px, ground_px)
@@ -139,7 +140,7 @@ class _Problem:
     """The estimation problem.
 
     Its unknowns x are a tangent step from the standing posture (D) [m, rad], the logarithms of the measured
-    lengths relative to average ones (L), and the markers' places relative to average ones (M * P).
+    lengths relative to average ones (L), and the markers' placements relative to average ones (M * P).
     """
 
     camera: Camera
@@ -154,7 +155,7 @@ class _Problem:
 
     @property
     def std(self) -> Array:
-        """Belief in each unknown."""
+        """(N,) prior standard deviation of each unknown."""
         steps = []
         believed = {**STANDING_STD, **(STRETCHED_STD if self.arms_stretched else {})}
         for name in HUMAN.dof_names:
@@ -179,7 +180,7 @@ class _Problem:
         return Posture.stack([self.standing(body).plus(x[: HUMAN.dof_count])])
 
     def standing(self, body: Body) -> Posture:
-        """Where the unknown step begins, a single posture."""
+        """The posture that the unknown step starts from, a single one."""
         lowered = 0.0 if self.arms_stretched else ARMS_LOWERED_RAD
         return standing_posture(body, self.place, self.heading, lowered)
 
@@ -236,7 +237,7 @@ class _Problem:
         return model.body.pose(self.posture(x, model.body))
 
     def _residual(self, x: Array) -> tuple[Array, Array, float]:
-        """Rows (M, 5) [px], their information (M, 5), and how far the height is off in deviations."""
+        """Rows (M, 5) [px], their information (M, 5), and the height's residual in standard deviations."""
         model = self.model(x)
         pose = self._pose(x, model)
         predicted = model.evaluate(pose, self.frame)
@@ -254,32 +255,32 @@ class _Problem:
         residual, information, height = self._residual(x)
         squared = (residual**2 * information / temperature).sum(-1)
         weight = information / temperature * student_weight(squared, RegionNoise().degrees, FEATURES)[:, None]
-        by_x, height_by_x = self._slopes(x, residual, height)
+        by_x, height_by_x = self._jacobians(x, residual, height)
         rows = by_x.reshape(-1, len(x))
         normal = (rows.T * weight.ravel()) @ rows + np.diag(self.std**-2.0)
         normal += np.outer(height_by_x, height_by_x)
         gradient = rows.T @ (weight * residual).ravel() + x / self.std**2 + height_by_x * height
         return normal, gradient
 
-    def _slopes(self, x: Array, residual: Array, height: float) -> tuple[Array, Array]:
-        """Of the rows (M, 5, N) and of the height (N,)."""
+    def _jacobians(self, x: Array, residual: Array, height: float) -> tuple[Array, Array]:
+        """Jacobians of the rows (M, 5, N) and of the height (N,)."""
         model = self.model(x)
         pose = self._pose(x, model)
         predicted = model.evaluate(pose, self.frame, jacobian=True)
         _, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
-        slopes, by_height = np.zeros((*residual.shape, len(x))), np.zeros(len(x))
+        by_x, by_height = np.zeros((*residual.shape, len(x))), np.zeros(len(x))
         dofs = HUMAN.dof_count
-        slopes[..., :dofs] = jacobian[0] @ self.standing(model.body).plus_jacobian(x[:dofs])
+        by_x[..., :dofs] = jacobian[0] @ self.standing(model.body).plus_jacobian(x[:dofs])
         for column in range(dofs, dofs + len(MEASURED)):
             nudged = x.copy()
             nudged[column] += LENGTH_DIFFERENCE
             other, _, taller = self._residual(nudged)
-            slopes[..., column] = (other - residual) / LENGTH_DIFFERENCE
+            by_x[..., column] = (other - residual) / LENGTH_DIFFERENCE
             by_height[column] = (taller - height) / LENGTH_DIFFERENCE
         known = KnownFrames(pose, self.frame, self.observed)
-        by_place = placement_slopes(model.body, self.camera, known, model)[0]  # (M, 5, P)
+        by_place = placement_jacobian(model.body, self.camera, known, model)[0]  # (M, 5, P)
         for marker in range(len(by_place)):
             first = dofs + len(MEASURED) + marker * by_place.shape[-1]
-            slopes[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
-        return np.nan_to_num(slopes), by_height
+            by_x[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
+        return np.nan_to_num(by_x), by_height

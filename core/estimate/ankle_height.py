@@ -1,7 +1,7 @@
-"""How high the lower ankle is over a clip, by what a matched library says of its performer's feet.
+"""Height of the lower ankle over a clip, from the soles of matched postures.
 
-A library's postures know the floor: their lowest sole touches it but in flight. Ankles are told from it and
-not from the library's own, which are lifted by feet that cannot bend.
+The lowest sole of a library's posture touches the floor except in flight. Ankles are derived from the floor
+and not from the library's own ankles, which are raised by feet that cannot bend.
 """
 
 import numpy as np
@@ -12,10 +12,10 @@ from ..body.posture import Posture
 from ..body.soles import sole_heights_m
 
 TOUCHING_PERCENT = 30.0
-"""In at least so many of the keyframes some sole is on the floor: more than half are, but for runners."""
+"""Percentile of the lowest soles that is the floor: more than half touch it, except for runners."""
 SHOE_M = 0.012
-"""Soles of shoes, and a heel that hardly ever lies wholly on the floor."""
-FOOTING_STD_M = 0.03
+"""Thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor."""
+ANKLE_HEIGHT_STD_M = 0.03
 
 
 def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
@@ -24,7 +24,7 @@ def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) 
     Args:
         body: The actor's body.
         matched: K matched postures, as the library has them.
-        index: (K,) their places in the clip, in order.
+        index: (K,) their indices in the clip, in order.
         frames: Frames of the clip, F.
     """
     soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)

@@ -1,6 +1,6 @@
 """Symmetric systems in which each frame meets only its two neighbors on either side.
 
-LAPACK's band Cholesky factorisation solves them. A backward recursion over the factor's frames gives the
+LAPACK's band Cholesky factorization solves them. A backward recursion over the factor's frames gives the
 diagonal blocks of the inverse (the Rauch-Tung-Striebel smoother in information form; Särkkä 2013, *Bayesian
 Filtering and Smoothing*, ch. 8; Takahashi, Fagan & Chen 1973 for the selected inverse). Time and memory grow
 linearly with the clip.
@@ -20,7 +20,7 @@ REACH = 2
 
 
 class BlockBanded:
-    """A symmetric positive definite matrix of F x F blocks, and what is solved with it.
+    """A symmetric positive definite matrix of F x F blocks.
 
     Neighboring frames couple all their unknowns; frames two apart couple like unknowns only, as second
     differences do, which keeps the band narrow.
@@ -90,8 +90,8 @@ class BlockBanded:
         result[REACH:] += self.after_next * vector[:-REACH]
         return np.asarray(result)
 
-    def factorise(self) -> "Factor":
-        """The Cholesky factorisation; LinAlgError where the matrix is not positive definite."""
+    def factorize(self) -> "Factor":
+        """The Cholesky factorization; LinAlgError where the matrix is not positive definite."""
         n = self.size
         width = REACH * n
         band = np.zeros((self.frames, n, width + 1))  # (frame, column, row - column)
@@ -106,7 +106,7 @@ class BlockBanded:
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """A factorised `BlockBanded` matrix."""
+    """A factorized `BlockBanded` matrix."""
 
     frames: int
     size: int

@@ -1,7 +1,7 @@
-"""Where the markers sit and how thick the limbs are, as numbers that can be fitted.
+"""Parameters of the markers' placement and the limbs' girth, as they are fitted.
 
 A sleeve may begin anywhere along its segment, and no performer is average. Average proportions are the
-center of the belief, so that few or badly posed keyframes change little.
+mean of the prior, so that few or badly posed keyframes change little.
 """
 
 from dataclasses import dataclass, fields
@@ -47,10 +47,10 @@ def placements_from(start: tuple[MarkerPlacement, ...], values: Array) -> tuple[
     )
 
 
-def placement_slopes(body: Body, camera: Camera, known: KnownFrames, model: RegionModel) -> Array:
-    """How the residuals of `feature_rows` change with each marker's own parameters, (K, M, 5, P).
+def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: RegionModel) -> Array:
+    """Jacobian of the residuals of `feature_rows` by each marker's own parameters, (K, M, 5, P).
 
-    All the differences are taken in one go, as if each marker were worn several times.
+    All differences are evaluated at once, as if each marker were worn several times.
     """
     start, values = model.placements, placement_values(model.placements)
     variants = np.concatenate([values[None], values + np.diag(DIFFERENCE)[:, None]])  # (1 + P, M, P)

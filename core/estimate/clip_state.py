@@ -12,7 +12,7 @@ from ..body.posture import Posture
 
 @dataclass(frozen=True, eq=False)
 class ClipState:
-    """A point of the whole clip's estimation problem, with N = D + B unknowns a frame.
+    """Unknowns of a window or a frame, N = D + B in each of F frames.
 
     The first D unknowns z describe the deviation δ = L z from the prior, `posture = prior.plus(deviation)`;
     the factor L makes their accelerations independent and of unit size. The others are biases of image
@@ -23,7 +23,7 @@ class ClipState:
     prior: Posture
     """A batch of F postures."""
     frame: IndexArray
-    """(F,) their places in the clip, by which a moving camera knows its pose."""
+    """(F,) their indices in the clip, which a moving camera's pose depends on."""
     factor: Array
     """(D, D) the matrix L [m, rad]."""
     variation: Array
@@ -57,24 +57,24 @@ class ClipState:
         return self.body.pose(self.posture)
 
     @cached_property
-    def chain(self) -> Array:
-        """(F, D, D) takes Jacobians by a posture's own tangent to Jacobians by the unknowns z."""
+    def tangent_jacobian(self) -> Array:
+        """(F, D, D) Jacobian of the posture's own tangent by the unknowns z."""
         return np.asarray(self.prior.plus_jacobian(self.deviation) @ self.factor)
 
-    def bare(self) -> "ClipState":
-        """The same without what was computed from it on the way, which a long clip has no room to keep."""
+    def without_cache(self) -> "ClipState":
+        """The same state without its cached properties, for which a long clip has no room."""
         return replace(self)
 
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
-        """The state a step (F, N) away, and how far its postures moved.
+        """The state a step (F, N) away, and the largest change of its postures.
 
         Args:
             step: Step of all unknowns.
-            largest: A frame whose deviation would change by more in any component is held back to it.
+            largest: Largest change of a deviation's component; a frame's step is shortened to it.
         """
         count = self.variation.shape[1]
         moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)
-        held = np.minimum(1.0, largest / np.maximum(moved, 1e-12))
-        variation = self.variation + step[:, :count] * held[:, None]
+        shrink = np.minimum(1.0, largest / np.maximum(moved, 1e-12))
+        variation = self.variation + step[:, :count] * shrink[:, None]
         bias = self.bias + step[:, count:]
-        return replace(self, variation=variation, bias=bias), float((moved * held).max())
+        return replace(self, variation=variation, bias=bias), float((moved * shrink).max())

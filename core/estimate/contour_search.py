@@ -1,8 +1,8 @@
-"""Finding the edges of body parts in the pictures: along each contour sample's normal, where colors change.
+"""Search for the edges of body parts in the pictures: color changes along each contour sample's normal.
 
-At every place along the normal the part's colors compete with those of what lies behind it; an edge lies
-where the part wins on the inner side and loses on the outer. Over all places this gives a distribution of
-the edge's distance, and its mean and variance are the measurement (as Hanek & Beetz 2004, *The contracting
+At every pixel along the normal the part's colors compete with those of what lies behind it; an edge lies
+where the part wins on the inner side and loses on the outer. Over all pixels this gives a distribution of
+the edge's distance, whose mean and variance are the measurement (as Hanek & Beetz 2004, *The contracting
 curve density algorithm*, fit curves to two sides' statistics): colors that do not differ measure nothing.
 """
 
@@ -17,20 +17,20 @@ from ..observation.contours import ContourModel, ContourPrediction
 from ..observation.occlusion import HIDDEN_DEPTH_M, Covers, outline_depth
 
 REACH = 6
-"""How far along the normal an edge is looked for, in pixels of the pictures."""
-FARTHEST = 4.0
-"""An edge found farther off is likelier another's."""
-BELIEF = 3.0
-"""Standard deviation of the edge's distance before looking; what looking adds is the measurement."""
+"""Reach of the search along the normal, in pixels of the pictures."""
+LARGEST_DISTANCE = 4.0
+"""A more distant edge is likelier another part's."""
+PRIOR_STD = 3.0
+"""Prior standard deviation of the edge's distance; it is taken out of the measurement again."""
 INNER, OUTER = 2.0, 2.5
-"""Places inside and outside the contour that decide what is seen there."""
-MOST_EVIDENCE = 4.0
-"""No pixel's colors speak more than this for either side, as a log likelihood ratio."""
+"""Distances inside and outside the contour at which occlusion is decided."""
+LARGEST_LOG_RATIO = 4.0
+"""Bound of a single pixel's log likelihood ratio."""
 
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """What was found near N contour samples in F frames."""
+    """Edges near N contour samples in F frames."""
 
     distance: Array
     """(F, N) from the sample along its normal [px]; zero where nothing was found."""
@@ -47,39 +47,39 @@ def find_edges(
     factor: int,
     appearance: Appearance,
 ) -> Edges:
-    """Look for the edges near predicted contours.
+    """Search for the edges near predicted contours.
 
     Args:
         model: The contours' model.
         predicted: Its prediction.
         pose: Forward kinematics of the F postures it was made from.
-        frame: (F,) their places in the clip.
+        frame: (F,) their indices in the clip.
         pictures: (F, rows, columns, 3) small pictures of the frames.
         factor: Pixels of the camera to one of the pictures.
-        appearance: How parts and background look in them.
+        appearance: The look of parts and background in them.
     """
-    behind, shown = _surroundings(model, predicted, model.covers(pose, frame), factor)
+    behind, shown = _occlusion(model, predicted, model.covers(pose, frame), factor)
     offset = np.arange(-REACH, REACH + 1.0)
     rows, columns = pictures.shape[1:3]
     middle = predicted.pixel / factor
     reach = REACH * np.abs(predicted.normal)
     shown &= ((middle >= reach) & (middle + reach < [columns, rows])).all(axis=-1)
-    # From here on only what is there to be seen, E samples: about half of all.
+    # From here on only the E visible samples, about half of all.
     picture, sample = np.nonzero(shown)
     places = middle[shown][:, None] + offset[:, None] * predicted.normal[shown][:, None]
     column, row = np.moveaxis(places.astype(np.intp), -1, 0)
-    evidence, judged = _evidence(
+    evidence, comparable = _log_likelihood_ratios(
         appearance, model.part_of[sample], behind[shown], row, column, pictures[picture[:, None], row, column]
     )
     mean, variance = _edge(evidence, offset)
-    found = judged & (variance < BELIEF**2) & (np.abs(mean) < FARTHEST)
+    found = comparable & (variance < PRIOR_STD**2) & (np.abs(mean) < LARGEST_DISTANCE)
     edges = Edges(np.zeros(shown.shape), np.full(shown.shape, np.inf))
     edges.distance[picture[found], sample[found]] = mean[found] * factor
     edges.variance[picture[found], sample[found]] = variance[found] * factor**2
     return edges
 
 
-def _evidence(
+def _log_likelihood_ratios(
     appearance: Appearance,
     part: IndexArray,
     behind: IndexArray,
@@ -87,35 +87,35 @@ def _evidence(
     column: IndexArray,
     seen: Image,
 ) -> tuple[Array, BoolArray]:
-    """Log likelihood ratios (E, K) of parts to what lies behind them, and whether both are known (E,)."""
+    """Log likelihood ratios (E, K) of each part to its background, and whether both looks are known (E,)."""
     own = appearance.part(part[:, None], seen)
     other = np.empty_like(own)
     covered, free = behind >= 0, behind < 0
     other[covered] = appearance.part(behind[covered, None], seen[covered])
     other[free] = appearance.background(row[free], column[free], seen[free])
-    # What a background looks like that was never free is a guess, and a guess would draw edges outwards.
-    judged = covered | appearance.known[row, column][:, REACH + 1 :].all(axis=-1)
-    return np.clip(own - other, -MOST_EVIDENCE, MOST_EVIDENCE), judged
+    # A background that was never free is guessed, and a guess would draw edges outwards.
+    comparable = covered | appearance.known[row, column][:, REACH + 1 :].all(axis=-1)
+    return np.clip(own - other, -LARGEST_LOG_RATIO, LARGEST_LOG_RATIO), comparable
 
 
 def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
-    """Mean and variance (...) of the edge's distance that evidence (..., K) at offsets (K,) adds."""
+    """Mean and variance (...) of the edge's distance, by log ratios (..., K) at offsets (K,) alone."""
     between = offset + 0.5
-    likelihood = np.cumsum(evidence, axis=-1)  # of the edge after each place, but for a constant
-    log = likelihood - 0.5 * (between / BELIEF) ** 2
+    likelihood = np.cumsum(evidence, axis=-1)  # of the edge after each pixel, up to a constant
+    log = likelihood - 0.5 * (between / PRIOR_STD) ** 2
     weight = np.exp(log - log.max(axis=-1, keepdims=True))
     weight /= weight.sum(axis=-1, keepdims=True)
     mean = weight @ between
     # An edge lies anywhere in its pixel.
     variance = np.sum(weight * (between - mean[..., None]) ** 2, axis=-1) + 1.0 / 12.0
-    added = np.maximum(1.0 / variance - BELIEF**-2, 1e-9)
+    added = np.maximum(1.0 / variance - PRIOR_STD**-2, 1e-9)
     return mean / (variance * added), 1.0 / added
 
 
-def _surroundings(
+def _occlusion(
     model: ContourModel, predicted: ContourPrediction, parts: Covers, factor: int
 ) -> tuple[IndexArray, BoolArray]:
-    """Which part lies behind each contour sample, -1 for none, and whether its edge is there to be seen."""
+    """Index of the part behind each contour sample, -1 for none, and whether its edge is visible."""
     normal = factor * predicted.normal
     own = np.eye(len(model.parts.segments), dtype=bool)[model.part_of]
     before = (
@@ -127,6 +127,6 @@ def _surroundings(
     covering = np.where(model.adjoining, np.inf, covering)
     nearest = covering.argmin(axis=-1)
     depth = covering.min(axis=-1)
-    # A nearer part's own edge is what shows there.
+    # A nearer part shows its own edge there.
     shown &= ~joined & (depth >= predicted.depth)
     return np.where(np.isfinite(depth), nearest, -1), shown

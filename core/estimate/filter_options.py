@@ -1,4 +1,4 @@
-"""What the paper leaves open about its filter, as numbers with units."""
+"""Options of the paper's filter that the paper leaves open: noise and fuzzy sets, with units."""
 
 from dataclasses import dataclass, field, fields
 
@@ -34,7 +34,7 @@ class FilterOptions:
     far_width: float = 0.3
     """Half-width of the far rule's output set, a frame's step [natural deviations]."""
     gate_probability: float = 0.999
-    """A marker counts for less in a frame where so large a share of right observations would lie nearer."""
+    """Share of right observations that pass the gate; a marker past it counts for less in that frame."""
     memberships: Memberships = field(default_factory=Memberships)
     """The rules' input sets."""
 

@@ -37,8 +37,8 @@ from .measurement_update import normalized_innovation_squared, update
 LEAST_QUALITY = 0.05
 """Below this a region's noise grows no further; its gate still holds."""
 LEAST_ANGLE_WEIGHT = 1e-3
-PREVIEWED = 12
-"""Frames that are handed out together for watching."""
+PREVIEW_FRAMES = 12
+"""Frames in one preview."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class FilterResult:
-    """The filter's estimate of F frames, and what it says of itself."""
+    """The filter's estimate of F frames, with its own measures of consistency."""
 
     posture: Posture
     """A batch of F postures."""
@@ -64,12 +64,12 @@ class FilterResult:
     row_count: IndexArray
     """(F,) number of rows that were used."""
     gated: BoolArray
-    """(F, M) whether a marker was so unlikely that it was believed in part only."""
+    """(F, M) whether a marker was past its gate and counted in part only."""
 
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """A state after its observations."""
+    """A state corrected by its observations."""
 
     state: State
     normalized_innovation_squared: float
@@ -102,7 +102,7 @@ class FuzzyKalmanFilter:
 
     @cached_property
     def _gates(self) -> Array:
-        """(5,) largest NIS that is believed of a marker's 0 to 4 rows."""
+        """(5,) gate of the NIS for a marker's 0 to 4 rows."""
         half_rows = 0.5 * np.arange(1, 5)  # quantiles of χ² with 1 to 4 degrees of freedom
         return np.asarray([0.0, *(2.0 * gammaincinv(half_rows, self.options.gate_probability))])
 
@@ -145,7 +145,7 @@ class FuzzyKalmanFilter:
         return State(state.mean.plus(step), turn @ state.covariance @ turn.T + np.diag(variance))
 
     def correct(self, state: State, frame: int, observed: Array, quality: Array) -> Correction:
-        """Correct a predicted state by what was seen (paper, eqs. 12 and 14 to 18).
+        """Correct a predicted state by its observations (paper, eqs. 12 and 14 to 18).
 
         Args:
             state: the prediction for `frame`.
@@ -180,7 +180,7 @@ class FuzzyKalmanFilter:
         std[..., [X, Y]] = np.hypot(options.centroid_std_px, options.centroid_std_widths * width_px)[
             ..., None
         ]
-        # A direction must be there in both: seen or expected round, it says nothing.
+        # Both regions need a direction: a round one, observed or predicted, has none.
         weight = angle_weight(np.minimum(predicted[..., LOG_RATIO], observed[..., LOG_RATIO]))
         std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, LEAST_ANGLE_WEIGHT)
         std[..., LOG_RATIO] = options.log_ratio_std
@@ -189,7 +189,7 @@ class FuzzyKalmanFilter:
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array
     ) -> tuple[list[Array], list[Array], BoolArray]:
-        """Scaled rows and innovations of the markers seen; which of them are past their gate, (M,)."""
+        """Scaled rows and innovations of the visible markers; whether each is past its gate, (M,)."""
         predicted = self.line_ends.evaluate(pose, frame)
         std = self.noise_std(predicted, observed, quality, self.line_ends.width_px(pose, frame))
         scaled = residual(observed, predicted) / std
@@ -201,10 +201,10 @@ class FuzzyKalmanFilter:
             H, nu = matrix[marker, seen], scaled[marker, seen]
             if not len(nu):
                 continue
-            surprise = normalized_innovation_squared(state.covariance, H, nu)
-            gated[marker] = surprise > self._gates[len(nu)]
-            # Left out altogether, a marker could never call back an estimate that has lost it.
-            weight = (self._gates[len(nu)] / surprise) ** 0.5 if gated[marker] else 1.0
+            nis = normalized_innovation_squared(state.covariance, H, nu)
+            gated[marker] = nis > self._gates[len(nu)]
+            # Left out altogether, a marker could never recover an estimate that has lost it.
+            weight = (self._gates[len(nu)] / nis) ** 0.5 if gated[marker] else 1.0
             rows.append(H * weight)
             innovation.append(nu * weight)
         return rows, innovation, gated
@@ -257,8 +257,10 @@ def filter_clip(
         done.append(estimator.correct(state, frame, observed[frame], tracks.quality[frame]))
         state = done[-1].state
         yield (frame + 1) / frames
-        if (frame + 1) % PREVIEWED == 0:
-            yield Preview(frame + 1 - PREVIEWED, Posture.stack([one.state.mean for one in done[-PREVIEWED:]]))
+        if (frame + 1) % PREVIEW_FRAMES == 0:
+            yield Preview(
+                frame + 1 - PREVIEW_FRAMES, Posture.stack([one.state.mean for one in done[-PREVIEW_FRAMES:]])
+            )
     return FilterResult(
         posture=Posture.stack([one.state.mean for one in done]),
         covariance=np.stack([one.state.covariance for one in done]),

@@ -1,10 +1,10 @@
-"""What the footage at the keyframes tells: how markers sit, the lens, and how well the keyframes were posed.
+"""Calibration on the keyframes: placement of the markers, lens, and the keyframes' posing and timing errors.
 
-All are read from the same differences between the regions seen and those predicted, so they are found
-together: the size of the posing error and of its timing are those that make what is seen most likely
-whatever the placements and the lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*),
-and placements and lens are the most probable ones given those sizes. Regions that fit none count for less
-(Student's t), and a marker that never fits is distrusted in all frames.
+All follow from the same residuals between the regions seen and those predicted, so they are found together:
+the size of the posing error and of its timing are those of the largest marginal likelihood over
+placements and lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and placements
+and lens are the most probable ones given those sizes. Regions that fit none count for less (Student's t), and
+a marker that never fits is distrusted in all frames.
 """
 
 from collections.abc import Generator
@@ -20,7 +20,7 @@ from .calibration import (
     PRIOR_STD,
     SMALLEST,
     KnownFrames,
-    placement_slopes,
+    placement_jacobian,
     placement_values,
     placements_from,
 )
@@ -29,24 +29,24 @@ from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows,
 from .terms.term import student_weight
 
 LEAST_TRUSTED = 0.3
-"""Regions hidden or doubted further than this do not judge a keyframe."""
+"""Least visibility and quality of a region that judges a keyframe."""
 MOST_JUDGED = 60
-"""Of more keyframes, this many, evenly spread in time, are judged: enough for a few numbers."""
+"""Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters."""
 ITERATIONS = 4
 DEGREES = 4.0
 SCALES = np.geomspace(0.1, 2.5, 17)
 """Sizes of the posing error tried, relative to a person's usual one."""
 SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2
-"""A log-normal belief in the size before the footage is seen."""
+"""Log-normal prior of the size."""
 TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
 TIMING_MEAN = 0.7
-"""An exponential belief in it [frames]."""
+"""Mean of its exponential prior [frames]."""
 LENS_STD = 0.03
-"""How far a stated focal length may be off, as a share."""
+"""Standard deviation of a stated focal length, as a share."""
 LENS_DIFFERENCE = 1e-3
 UNUSED = 1e6
-"""Variance that takes a row out [px²]."""
+"""Variance of a row that does not count [px²]."""
 MOST_DISTRUST = 10.0
 
 
@@ -61,33 +61,33 @@ class KeyframeEvidence:
     timing_frames: float
     """Standard deviation of the keyframes' timing error [frames]."""
     distrust: Array
-    """(M,) factor, at least one, by which each marker's regions err more than expected."""
-    whole: Array
-    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
+    """(M,) factor, at least one, of the expected standard deviation of each marker's regions."""
+    area_ratio: Array
+    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
     information: Array
     """(K, D, D) inverse covariance of each keyframe's posing error."""
 
 
 @dataclass(frozen=True, eq=False)
-class _Differences:
-    """What is seen at J judged keyframes against the prediction, R = M * 5 rows each."""
+class _Residuals:
+    """Residuals at J judged keyframes, R = M * 5 rows each, and their derivatives."""
 
     residual: Array
-    """(J, R) predicted minus seen, at the average placements."""
-    slopes: Array
-    """(J, R, X) by what is fitted: all placements' M * P parameters and the logarithm of the focal length."""
+    """(J, R) predicted minus observed, at the average placements."""
+    parameter_jacobian: Array
+    """(J, R, X) by the fitted parameters: M * P of the placements and the logarithm of the focal length."""
     variance: Array
     """(J, R) of the rows at a perfectly posed keyframe."""
     posing: Array
     """(J, R, R) covariance that a person's usual posing error adds."""
-    moved: Array
-    """(J, R) change of the rows from one frame to the next."""
-    whole: Array
-    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
+    velocity: Array
+    """(J, R) change of the rows per frame."""
+    area_ratio: Array
+    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
 
     def noise(self, weight: Array, scale: float, timing: float) -> Array:
-        """(J, R, R) covariance of the rows but for what the placements add."""
-        total = scale**2 * self.posing + timing**2 * self.moved[:, :, None] * self.moved[:, None, :]
+        """(J, R, R) covariance of the rows without the placements' own."""
+        total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
         rows = np.arange(total.shape[-1])
         total[:, rows, rows] += self.variance / weight
         return total
@@ -103,7 +103,7 @@ def read_keyframes(
 ) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate the markers on the keyframes and judge the keyframes by the markers.
 
-    It yields now and then, so that whoever waits can stop waiting.
+    It yields now and then, so that a job can be canceled.
 
     Args:
         model: The region model with average placements.
@@ -111,22 +111,22 @@ def read_keyframes(
         observed: Regions seen at the K keyframes.
         width_px: (K, M) half-width of each marker's limb there [px].
         posture: The K posed postures.
-        frame: (K,) their places in the clip.
+        frame: (K,) their indices in the clip.
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
-    judged = evenly_chosen(frame, MOST_JUDGED)
+    judged = evenly_spread(frame, MOST_JUDGED)
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
-    # (J, M, 5); what a slow bias adds elsewhere is for the most part the placements' here.
+    # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
     calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
     distrust = np.ones(len(model.placements))
     scale, timing = SCALE_MEDIAN, 0.0
     for iteration in range(ITERATIONS):
         yield
-        seen = _differences(calibrated, model, known, variance, posing[judged], velocity[judged])
+        seen = _residuals(calibrated, model, known, variance, posing[judged], velocity[judged])
         yield
-        if iteration > 0:  # before, nothing tells a careless keyframe from a marker that is something else
+        if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
             scale, timing = yield from _most_likely_sizes(seen, weight)
         change, squared = _calibrate(seen, weight, scale, timing)
         calibrated = _changed(model, change)
@@ -134,17 +134,17 @@ def read_keyframes(
         trust = student_weight(squared / distrust**2, DEGREES, FEATURES) / distrust**2
         weight = np.repeat(trust, FEATURES, axis=1)
     information = keyframe_information(posing, velocity, scale, timing)
-    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.whole, information)
+    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.area_ratio, information)
 
 
 def uncalibrated(model: RegionModel) -> KeyframeEvidence:
-    """What is known of the markers before any keyframe is posed: average proportions."""
+    """Evidence before any keyframe is posed: average placements, full trust in all markers."""
     markers, dofs = len(model.placements), model.body.skeleton.dof_count
     return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
 
 
-def evenly_chosen(frame: IndexArray, most: int) -> IndexArray:
-    """Which of the keyframes at increasing frames speak for all: one more or less changes little of it."""
+def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
+    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
     if len(frame) <= most:
         return np.arange(len(frame))
     wanted = np.linspace(frame[0], frame[-1], most)
@@ -164,56 +164,56 @@ def _changed(model: RegionModel, change: Array) -> RegionModel:
     return RegionModel(model.body, camera, placements_from(model.placements, values))
 
 
-def _differences(
+def _residuals(
     model: RegionModel,
     average: RegionModel,
     known: KnownFrames,
     variance: Array,
     posing: Array,
     velocity: Array,
-) -> _Differences:
+) -> _Residuals:
     predicted = model.evaluate(known.pose, known.frame, jacobian=True)
     residual, jacobian = feature_rows(known.observed, predicted)
     assert jacobian is not None
-    slopes = placement_slopes(model.body, model.camera, known, model)
-    nudge = np.zeros(slopes.shape[1] * slopes.shape[-1] + 1)
+    parameter_jacobian = placement_jacobian(model.body, model.camera, known, model)
+    nudge = np.zeros(parameter_jacobian.shape[1] * parameter_jacobian.shape[-1] + 1)
     nudge[-1] = LENS_DIFFERENCE
     zoomed, _ = feature_rows(known.observed, _changed(model, nudge).evaluate(known.pose, known.frame))
     by_lens = (zoomed - residual) / LENS_DIFFERENCE
     change = placement_values(average.placements) - placement_values(model.placements)
     lens_change = np.log(average.camera.lens_mm / model.camera.lens_mm)
-    residual = residual + (slopes @ change[..., None])[..., 0] + by_lens * lens_change
+    residual = residual + (parameter_jacobian @ change[..., None])[..., 0] + by_lens * lens_change
     usable = (
         np.isfinite(residual).all(-1)
         & (predicted.visible > LEAST_TRUSTED)
         & (known.observed.quality > LEAST_TRUSTED)
     )
-    whole = _whole_areas(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
-    variance = variance + missing_variance(known.observed.area, whole, predicted)
+    area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
+    variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
     judged, markers = usable.shape
     rows = (judged, markers * FEATURES)
-    own = np.zeros((judged, markers, FEATURES, markers, slopes.shape[-1]))
+    own = np.zeros((judged, markers, FEATURES, markers, parameter_jacobian.shape[-1]))
     index = np.arange(markers)
-    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], slopes, 0.0), 1, 0)
+    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], parameter_jacobian, 0.0), 1, 0)
     by_lens = np.where(usable[..., None], by_lens, 0.0).reshape(*rows, 1)
     jacobian = np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, -1)
-    return _Differences(
+    return _Residuals(
         np.where(usable[..., None], residual, 0.0).reshape(rows),
         np.concatenate([own.reshape(*rows, -1), by_lens], axis=-1),
         np.where(usable[..., None], variance, UNUSED).reshape(rows),
         jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
         (jacobian @ velocity[..., None])[..., 0],
-        whole,
+        area_ratio,
     )
 
 
-def _whole_areas(ratio: Array) -> Array:
-    """(M,) the upper quartile of (J, M) seen areas relative to predicted ones; 1 for what is never seen."""
+def _area_ratios(ratio: Array) -> Array:
+    """(M,) upper quartile of (J, M) observed areas relative to predicted ones; 1 for markers never seen."""
     filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
-def _most_likely_sizes(seen: _Differences, weight: Array) -> Generator[None, None, tuple[float, float]]:
+def _most_likely_sizes(seen: _Residuals, weight: Array) -> Generator[None, None, tuple[float, float]]:
     """Means over the posterior of the posing error's size and of the timing error."""
     logarithm = np.empty((len(SCALES), len(TIMINGS)))
     for row, scale in zip(logarithm, SCALES, strict=True):
@@ -226,18 +226,18 @@ def _most_likely_sizes(seen: _Differences, weight: Array) -> Generator[None, Non
     return float(scale), float(probability.sum(axis=0) @ TIMINGS)
 
 
-def _log_likelihoods(seen: _Differences, noise: Array) -> Array:
-    """Of all rows with each of `TIMINGS` (T,) added to a noise without timing error, whatever is fitted.
+def _log_likelihoods(seen: _Residuals, noise: Array) -> Array:
+    """(T,) log likelihood of all rows for each of `TIMINGS`, the fitted parameters integrated out.
 
     Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
     """
     inverse, information, right = _gather(seen, noise)
     _, determinants = np.linalg.slogdet(noise)
     misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
-    moved = (inverse @ seen.moved[..., None])[..., 0]
-    gain = np.sum(seen.moved * moved, axis=-1)
-    along = (np.swapaxes(seen.slopes, -1, -2) @ moved[..., None])[..., 0]  # (J, X)
-    against = np.sum(moved * seen.residual, axis=-1)
+    weighted = (inverse @ seen.velocity[..., None])[..., 0]
+    gain = np.sum(seen.velocity * weighted, axis=-1)
+    along = (np.swapaxes(seen.parameter_jacobian, -1, -2) @ weighted[..., None])[..., 0]  # (J, X)
+    against = np.sum(weighted * seen.residual, axis=-1)
     result = np.empty(len(TIMINGS))
     for i, timing in enumerate(TIMINGS):
         share = timing**2 / (1.0 + timing**2 * gain)
@@ -249,21 +249,21 @@ def _log_likelihoods(seen: _Differences, noise: Array) -> Array:
     return result
 
 
-def _gather(seen: _Differences, noise: Array) -> tuple[Array, Array, Array]:
-    """The noise's inverse, what is known of the fitted (X, X), prior included, and their right side (X,)."""
+def _gather(seen: _Residuals, noise: Array) -> tuple[Array, Array, Array]:
+    """Inverse noise, information (X, X) of the parameters with their prior, right-hand side (X,)."""
     inverse = np.linalg.inv(noise)
-    weighted = np.swapaxes(seen.slopes, -1, -2) @ inverse
-    prior = np.append(np.tile(PRIOR_STD, seen.slopes.shape[-1] // len(PRIOR_STD)), LENS_STD) ** -2
-    information = (weighted @ seen.slopes).sum(axis=0) + np.diag(prior)
+    weighted = np.swapaxes(seen.parameter_jacobian, -1, -2) @ inverse
+    prior = np.append(np.tile(PRIOR_STD, seen.parameter_jacobian.shape[-1] // len(PRIOR_STD)), LENS_STD) ** -2
+    information = (weighted @ seen.parameter_jacobian).sum(axis=0) + np.diag(prior)
     return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
 
 
-def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (X,) of what is fitted, and squared residuals (J, M) in standard deviations."""
+def _calibrate(seen: _Residuals, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
+    """Most probable change (X,) of the parameters, squared residuals (J, M) in standard deviations."""
     noise = seen.noise(weight, scale, timing)
     _, information, right = _gather(seen, noise)
     change = -np.linalg.solve(information, right)
-    left = seen.residual + seen.slopes @ change
+    left = seen.residual + seen.parameter_jacobian @ change
     expected = seen.noise(np.ones_like(weight), scale, timing)
     judged, rows = left.shape
     by_marker = left.reshape(judged, -1, FEATURES)
@@ -274,7 +274,7 @@ def _calibrate(seen: _Differences, weight: Array, scale: float, timing: float) -
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:
-    """(M,) factors: each marker's median misfit against what it should be, or the others' if larger."""
+    """(M,) factors: each marker's median misfit relative to the expected one, or to the others' if larger."""
     # The median of χ² with n degrees of freedom is close to n (1 - 2 / 9n)³.
     usual = FEATURES * (1.0 - 2.0 / (9.0 * FEATURES)) ** 3
     ratio = np.ones(squared.shape[1])

@@ -1,10 +1,11 @@
-"""Which matched keyframes say more than the posed ones do: between two posed keyframes a library may do harm.
+"""Selection of matched keyframes: between two posed keyframes a library may do harm.
 
-Both ways of filling the time between posed keyframes show how far they are off. The library is held against
-each posed keyframe, after the others have told how the performer differs from it (leave-one-out; Rasmussen
-& Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the line of sight, where the
-footage cannot make it good. The posed keyframes' interpolation is held against the regions seen: what it
-misses across the line of sight it misses along it too. The library is left out where it does worse.
+Both ways of filling the time between posed keyframes have an error that can be measured. The library is
+compared with each posed keyframe, after the others have told how the performer differs from it
+(leave-one-out; Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the
+line of sight, where the footage cannot correct it. The posed keyframes' interpolation is compared with the
+regions seen: its error across the line of sight stands for that along it. The library is left out where its
+error is larger.
 """
 
 import numpy as np
@@ -18,22 +19,23 @@ from ..prior.keyframes import Keyframe
 from ..prior.performer_offset import unforeseen
 
 FEWEST_POSED = 2
-"""Fewer posed keyframes than these have nothing between them."""
-POOR_M = 0.12
-"""A library that is off by more than this, along the line of sight, holds another motion."""
-WORSE = 1.3
-"""So much worse than the posed keyframes' interpolation it may be, for it knows how the motion goes on."""
+"""Fewer posed keyframes enclose no frame."""
+LARGEST_LIBRARY_ERROR_M = 0.12
+"""A library with a larger error along the line of sight holds another motion."""
+LARGEST_RATIO = 1.3
+"""Largest ratio of the library's error to the interpolation's: it knows how the motion goes on."""
 LEAST_WEIGHT = 0.5
-"""With less than half a posed keyframe to judge it by, a library is not found poor."""
+"""Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes
+none."""
 LEAST_TRUSTED = 0.3
-"""Regions hidden or doubted further than this do not count."""
-FRAMES_AT_ONCE = 500
+"""Least visibility and quality of a region that counts."""
+CHUNK_FRAMES = 500
 
 
-def worthwhile(
+def select_keyframes(
     keyframes: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks, fps: float
 ) -> tuple[Keyframe, ...]:
-    """The posed keyframes, and those of the matched ones that tell more than these.
+    """The posed keyframes, and those matched ones that are better than interpolation between them.
 
     Args:
         keyframes: Posed and matched ones, in order of frame.
@@ -45,7 +47,7 @@ def worthwhile(
     if len(posed) < FEWEST_POSED or len(posed) == len(keyframes):
         return keyframes
     library_m = _library_error_m(keyframes, posed, model, fps)
-    missed = _missed_squared_m(posed, model, tracks)
+    interpolation_error = _interpolation_error_squared_m(posed, model, tracks)
     kept = []
     for keyframe in keyframes:
         before = [other.index for other in posed if other.index <= keyframe.index]
@@ -53,10 +55,10 @@ def worthwhile(
         if keyframe.matched is None or not before or not after:
             kept.append(keyframe)
             continue
-        between = missed[before[-1] : after[0] + 1]
+        between = interpolation_error[before[-1] : after[0] + 1]
         seen = between[np.isfinite(between)]
         posed_m = float(np.sqrt(seen.mean())) if len(seen) else np.inf
-        if library_m <= min(POOR_M, WORSE * posed_m):
+        if library_m <= min(LARGEST_LIBRARY_ERROR_M, LARGEST_RATIO * posed_m):
             kept.append(keyframe)
     return tuple(kept)
 
@@ -64,7 +66,7 @@ def worthwhile(
 def _library_error_m(
     keyframes: tuple[Keyframe, ...], posed: tuple[Keyframe, ...], model: RegionModel, fps: float
 ) -> float:
-    """How far the library is off at posed keyframes along the line of sight, their own word left out [m]."""
+    """Leave-one-out error of the library at the posed keyframes along the line of sight, RMS [m]."""
     body = model.body
     posture = Posture.stack([keyframe.posture for keyframe in posed])
     points = body.points(body.pose(posture))
@@ -75,15 +77,17 @@ def _library_error_m(
     return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), LEAST_WEIGHT)))
 
 
-def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks) -> Array:
-    """(F, 2 M) squares of how far the interpolated keyframes miss the regions [m²]; NaN where unseen.
+def _interpolation_error_squared_m(
+    posed: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks
+) -> Array:
+    """(F, 2 M) squared error of the interpolated keyframes against the regions [m²]; NaN where unseen.
 
-    What they miss at the posed keyframes is how the markers sit, and is taken off.
+    Their offset at the posed keyframes is how the markers sit, and is subtracted.
     """
     camera, frames = model.camera, tracks.frame_count
     prior = interpolate(posed, frames)
     offset = np.empty((frames, len(model.placements), 2))
-    for frame in chunks(np.arange(frames), FRAMES_AT_ONCE):
+    for frame in chunks(np.arange(frames), CHUNK_FRAMES):
         predicted = model.evaluate(model.body.pose(prior[frame]), frame)
         trusted = (predicted.visible > LEAST_TRUSTED) & (tracks.quality[frame] > LEAST_TRUSTED)
         meters = camera.depth(prior[frame].translation, frame) / camera.focal_px
@@ -92,5 +96,5 @@ def _missed_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, tracks: R
     flat = offset.reshape(frames, -1)
     index = np.array([keyframe.index for keyframe in posed])
     usual = np.nan_to_num(flat[index])
-    sits = [np.interp(np.arange(frames), index, column) for column in usual.T]
-    return np.asarray((flat - np.stack(sits, axis=-1)) ** 2)
+    placement = [np.interp(np.arange(frames), index, column) for column in usual.T]
+    return np.asarray((flat - np.stack(placement, axis=-1)) ** 2)

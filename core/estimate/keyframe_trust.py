@@ -1,8 +1,8 @@
-"""What is known at the keyframes of a clip: posed ones calibrate markers and lens, matched ones do not.
+"""Evidence of posed and matched keyframes together: only posed ones calibrate markers and lens.
 
-How markers sit, the lens and the posing error are read from keyframes that a person has posed. Matched ones
-are off by more than any of these, and all in the same direction: calibrated on them, sleeves would make up
-for another performer's gait.
+Placements, lens and posing error are calibrated on keyframes that a person has posed. Matched ones err by
+more than any of these, and all in the same direction: calibrated on them, sleeves would make up for another
+performer's gait.
 """
 
 from collections.abc import Generator
@@ -19,19 +19,19 @@ from .posing_error import posing_covariance
 from .terms.regions import ObservedRegions, RegionNoise
 
 FEWEST_POSED = 2
-"""Fewer posed keyframes than these calibrate nothing."""
+"""Fewer posed keyframes calibrate nothing."""
 
 
-def read_trust(
+def read_mixed_keyframes(
     model: RegionModel,
     noise: RegionNoise,
     observed: ObservedRegions,
     width_px: Array,
     posture: Posture,
     frame: IndexArray,
-    doubt: Array,
+    match_scale: Array,
 ) -> Generator[None, None, KeyframeEvidence]:
-    """The evidence of keyframes of which some may be matched; arguments as `read_keyframes`.
+    """Evidence of keyframes of which some may be matched.
 
     Args:
         model: The region model with average placements.
@@ -40,13 +40,14 @@ def read_trust(
         width_px: (K, M) half-width of each marker's limb there [px].
         posture: The K postures.
         frame: (K,) their places in the clip.
-        doubt: (K,) how far matched ones are off, in usual differences between performers; 0 for posed ones.
+        match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
+            0 for posed ones.
     """
-    if not doubt.any():
+    if not match_scale.any():
         return (yield from read_keyframes(model, noise, observed, width_px, posture, frame))
-    posed = np.flatnonzero(doubt == 0.0)
+    posed = np.flatnonzero(match_scale == 0.0)
     information = np.linalg.inv(match_covariance(posture, model.camera, frame))
-    information /= np.where(doubt > 0.0, doubt, 1.0)[:, None, None] ** 2
+    information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
     if len(posed) >= FEWEST_POSED:
         reading = read_keyframes(model, noise, observed[posed], width_px[posed], posture[posed], frame[posed])
         evidence = yield from reading

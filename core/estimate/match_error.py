@@ -1,4 +1,4 @@
-"""How far matched keyframes are off: another performer's way of moving, in another place.
+"""Error of matched keyframes: another performer's way of moving, in another place.
 
 A library's postures are another performer's, so joints differ, and what hangs on them differs along with
 them; a person who poses a keyframe errs in the joints' places instead (`posing_error`). The place across the
@@ -28,15 +28,15 @@ JOINT_STD_DEG = {
 """Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
 PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
 """Usual error of the place across and along the line of sight [m]."""
-UNDECIDED_DEPTH_M = 0.10
-"""How far points may lie off along the line of sight beyond what the estimate knows of itself [m].
+UNDETERMINED_DEPTH_M = 0.10
+"""Error of points along the line of sight beyond the estimate's own covariance [m].
 
 A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
-like one turned to the other: what a library decides there is right or wrong, and no covariance about what was
-decided tells. About what takes with truth show where nothing was posed."""
+like one turned to the other: a library's decision there is right or wrong, which a covariance about it does
+not show. About the value that takes with truth have where nothing was posed."""
 POINT_DEPTH_STD_M = 2.0
-"""What the depths of the points count as observations of their own (paper, eq. 9) near a matched posture [m]:
-next to nothing, since place and joints, which are believed as far as they deserve, tell them."""
+"""Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
+large that they count for nothing, since place and joints have errors of their own that determine them."""
 
 
 def joint_std_rad(skeleton: Skeleton) -> Array:
@@ -47,7 +47,7 @@ def joint_std_rad(skeleton: Skeleton) -> Array:
 
 
 def match_covariance(posture: Posture, camera: Camera, frame: IndexArray) -> Array:
-    """The usual error of K matched keyframes, as covariance (K, D, D) of the posture's tangent."""
+    """Usual error of K matched keyframes, as covariance (K, D, D) of the posture's tangent."""
     index = np.arange(posture.skeleton.dof_count)
     covariance = np.zeros((len(frame), len(index), len(index)))
     covariance[:, index, index] = joint_std_rad(posture.skeleton) ** 2
@@ -61,24 +61,24 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
 
     Args:
-        index: (K,) the keyframes' places in the clip, in order.
-        matched: (K,) which of them nobody posed.
+        index: (K,) the keyframes' indices in the clip, in order.
+        matched: (K,) which of them are matched.
         frames: Frames of the clip, F.
     """
     share = np.interp(np.arange(frames), index, matched.astype(np.float64))
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def undecided_covariance(points: Array, camera: Camera, index: IndexArray, doubt: Array) -> Array:
-    """What matched keyframes leave open of points (F, P, 3), as covariance (F, P, 3, 3) [m²].
+def undetermined_covariance(points: Array, camera: Camera, index: IndexArray, match_scale: Array) -> Array:
+    """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that matched keyframes leave undetermined.
 
     Args:
         points: Places in the world [m].
         camera: The camera.
-        index: (K,) the keyframes' places in the clip, in order.
-        doubt: (K,) how far matched ones are off, in usual differences; 0 for posed ones.
+        index: (K,) the keyframes' indices in the clip, in order.
+        match_scale: (K,) size of the matched ones' error, relative to a usual one; 0 for posed ones.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
-    std_m = UNDECIDED_DEPTH_M * np.interp(frame, index, doubt)
+    std_m = UNDETERMINED_DEPTH_M * np.interp(frame, index, match_scale)
     return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])

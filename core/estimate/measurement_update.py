@@ -13,7 +13,7 @@ from ..arrays import Array
 
 
 class Update(NamedTuple):
-    """What measurements say of a state."""
+    """Update of a state by measurements."""
 
     step: Array
     """(D,) change of the mean."""

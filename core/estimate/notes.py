@@ -1,4 +1,4 @@
-"""What a person should know of a take and its result, one sentence each."""
+"""Notes on a take and its result for people, one sentence each."""
 
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
@@ -6,20 +6,20 @@ from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
 DOUBTED_LENS = 0.03
-"""Share by which the lens found must differ from the one stated for a person to be told."""
+"""Difference of the calibrated from the stated lens, as a share, that gets a note."""
 DOUBTED_TIMING_FRAMES = 1.0
 DOUBTED_POSING = 2.0
-"""In usual errors of posing."""
+"""Size of the posing error, in usual ones, that gets a note."""
 DOUBTED_MARKER = 3.0
-"""In usual errors of regions."""
+"""Distrust of a marker that gets a note."""
 DOUBTED_MATCH = 0.6
-"""Confidence of a matched keyframe below which a person had better pose it."""
+"""Confidence below which a matched keyframe gets a note."""
 MOST_NAMED = 3
-"""So many frames are named at once."""
+"""Largest number of frames that a note names."""
 
 
 def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
-    """Sentences on what may have gone wrong with the markers."""
+    """Notes on markers: found too seldom, variable frame rate, and those of the tracks."""
     notes = list(tracks.notes)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
@@ -31,45 +31,45 @@ def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
 
 
 def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
-    """Sentences on what the footage at the keyframes says against the take."""
+    """Notes where the footage at the keyframes contradicts the take: lens, timing, posing, markers."""
     notes = []
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
         notes.append(
-            f"the keyframes fit the footage through a lens of {lens:.1f} mm, not the {stated:.1f} mm stated; "
+            f"the lens is {lens:.1f} mm by keyframes and footage, not {stated:.1f} mm as stated; "
             "the estimate used the former"
         )
     if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
         notes.append(
-            f"keyframes seem to be set about {evidence.timing_frames:.0f} frames early or late; "
-            "look at them again"
+            f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the footage; "
+            "check the frames they are set at"
         )
     if evidence.posing_scale > DOUBTED_POSING:
         notes.append(
-            "the keyframes lie far from what the footage shows, much farther than a person usually poses; "
+            "the keyframes differ from the footage by much more than the usual posing error; "
             "check the camera, the actor's lengths and the markers' segments"
         )
-    for marker, doubt in zip(take.markers, evidence.distrust, strict=True):
-        if doubt > DOUBTED_MARKER:
+    for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
+        if distrust > DOUBTED_MARKER:
             notes.append(
-                f"marker {marker.name} is seldom seen where the keyframes put it and counts for little; "
-                "something else may have its color"
+                f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
+                "check whether another thing has its color"
             )
     return tuple(notes)
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
-    """A sentence on matched keyframes that tell less than the posed ones around them."""
+    """Note on matched keyframes left out in favor of the posed ones around them."""
     matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
     if count == 0:
         return ()
     were = "was" if count == 1 else "were"
     which = "the library was" if count == matched else f"{count} of {matched} matched keyframes {were}"
-    return (f"{which} left out: the posed keyframes tell more where they enclose what was matched",)
+    return (f"{which} left out: interpolation between the posed keyframes is more accurate there",)
 
 
 def match_notes(take: Take) -> tuple[str, ...]:
-    """Sentences on what a result rests on whose keyframes were not all posed, and where to pose some."""
+    """Notes on a result from matched keyframes: what it rests on, and which frames to pose."""
     matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
     if not matched:
         return ()
@@ -98,10 +98,10 @@ def match_notes(take: Take) -> tuple[str, ...]:
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:
-    """A sentence on what the paper's filter does not know of matched keyframes."""
+    """Note that the paper's filter takes matched keyframes for posed ones."""
     if all(keyframe.matched is None for keyframe in take.keyframes):
         return ()
     return (
-        "method ekf holds on to matched keyframes as if they had been posed; method map knows how far they "
-        "may be off",
+        "method ekf takes matched keyframes for posed ones; method map allows for the larger errors of "
+        "matched keyframes",
     )

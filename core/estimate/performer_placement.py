@@ -1,4 +1,4 @@
-"""Where a performer stands before the camera, before any keyframe is posed.
+"""Placement of a standing performer before the camera, before any keyframe is posed.
 
 One region fixes a line of sight and, by its size, a distance good to about a tenth; a camera whose pose is
 known in a room with a floor at z = 0 says more, where it looks down on the performer. Both are weighed
@@ -18,18 +18,19 @@ from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 
 FILLED_SHARE = 0.7
-"""Share of the picture's height that a body fills of which nothing is seen."""
+"""Share of the picture's height that a body fills where no region is seen."""
 SIZE_STD = 0.08
-"""The distance read off sizes in the picture errs by this share."""
+"""Standard deviation of a distance by size in the picture, as a share."""
 TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
-"""By a region's area (bodies turn, sleeves differ), by how high the trunk is over the shins (knees bend)."""
+"""The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
+bend)."""
 AGREEING = 1.5
-"""Sizes that differ by more than so many standard deviations are not of the same distance."""
+"""Largest difference, in standard deviations, of sizes that agree on a distance."""
 TRUNK = ("trunk", "chest", "pelvis")
 FLOOR_STD_M = 0.05
-"""Height of the soles above a floor that is stood upon [m]."""
+"""Standard deviation of the soles' height above the floor [m]."""
 FLOOR_DOUBTED = 3.0
-"""Standard deviations beyond which the ground is somewhere else than at z = 0."""
+"""Standard deviations beyond which the ground is not at z = 0."""
 ROUNDS = 6
 LEAST_DEPTH_M = 0.3
 LEAST_HEIGHT_PX = 20.0
@@ -47,7 +48,7 @@ def place_standing(
     Args:
         body: The actor's body.
         camera: The camera.
-        frame: The frame's place in the clip, for a moving camera.
+        frame: The frame's index in the clip, for a moving camera.
         regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
             goes to the picture's middle.
         segments: The segment each marker is bound to.
@@ -69,7 +70,7 @@ def place_standing(
     for _ in range(ROUNDS):
         there = _at(standing, location + distance * direction)
         shown = model.evaluate(body.pose(Posture.stack([there])), np.array([frame]))
-        # The regions' center lies off the hips; what it is off by now, it is off by there as well.
+        # The regions' center lies off the hips, by the same offset there as here.
         _, ray = camera.rays(_center(shown.centroid[0], known), frame)
         offset = (ray - direction) * distance
         ratio = _relative_size(
@@ -88,13 +89,13 @@ def ground_place(
 
     Args:
         camera: The camera.
-        frame: The frame's place in the clip, for a moving camera.
+        frame: The frame's index in the clip, for a moving camera.
         stature_m: Body height [m].
         crown_px: (2,) top of the head in the picture [px].
         ground_px: (2,) the ground between the feet [px].
 
     Raises:
-        InputError: The two places in the picture cannot be a person's.
+        InputError: The two points in the picture cannot be a person's.
     """
     crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
     if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
@@ -116,7 +117,7 @@ def ground_place(
 
 
 def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> BoolArray:
-    """(M,) the markers to be placed by: the trunk and the shins, else whatever is seen."""
+    """(M,) the markers to place the body by: the trunk's, or all visible ones without it."""
     if regions is None:
         return np.zeros(len(segments), dtype=bool)
     seen = regions.visible[0] & ~regions.clipped[0]
@@ -140,16 +141,17 @@ def _relative_size(
     seen: Array,
     seen_area: Array,
 ) -> float:
-    """How much larger the body is shown than it is seen.
+    """Ratio of the body's predicted size in the picture to its observed size.
 
-    A region's area tells, and better, where they are seen, how far the shins are below the trunk: sleeves
-    and clothes do not change that. Whatever hides, bends or turns a limb away makes all of these smaller and
-    never larger than in one who stands. So what falls short of the largest by more than both err is left out.
+    Each region's area gives a ratio, and a better one, where they are seen, the distance of the shins below
+    the trunk: sleeves and clothes do not change that. Occlusion, bending or turning away makes a size
+    smaller, never larger, than in someone who stands. So sizes that fall short of the largest by more than
+    their errors are left out.
     """
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
-    told = known | shins
-    logarithms = 0.5 * np.log(shown_area[told] / seen_area[told])
-    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[told]
+    measured = known | shins
+    logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
+    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[measured]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
@@ -161,7 +163,7 @@ def _relative_size(
 
 
 def _floor_step(above_m: float, down: float, distance: float) -> float:
-    """How far to go on along the line of sight for the soles to come to the floor [m].
+    """Correction along the line of sight that brings the soles to the floor [m].
 
     Args:
         above_m: Height of the soles by the region's size [m].

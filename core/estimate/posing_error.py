@@ -1,4 +1,4 @@
-"""How far keyframes are off: the shape of the error, and what its size and the footage have to do.
+"""Posing error of keyframes: the shape of its covariance; its size is found from the footage.
 
 A person who poses a skeleton over footage puts every joint a little off, and the whole figure too; an
 error upstream is made good downstream, so joints' places err independently, not their angles. And the
@@ -17,7 +17,7 @@ POINT_STD_M = 0.014
 PLACE_STD_M = 0.009
 """Error that all points share along each axis [m]."""
 FREE_STD_RAD = 0.5
-"""Error of what no point determines: rotations about a limb's own axis [rad]."""
+"""Error of rotations that no point determines, about a limb's own axis [rad]."""
 
 
 def posing_covariance(body: Body, pose: Pose) -> Array:
@@ -32,7 +32,7 @@ def posing_covariance(body: Body, pose: Pose) -> Array:
 
 
 def velocities(keyframes: Posture, frame: IndexArray) -> Array:
-    """How K keyframes' postures move, (K, D) of the tangent per frame: the parabola through three of them."""
+    """Velocities of K keyframes' postures, (K, D) of the tangent per frame: of the parabola through three."""
     if len(frame) < 2:
         return np.zeros((len(frame), keyframes.skeleton.dof_count))
     gap = np.diff(frame)[:, None].astype(np.float64)

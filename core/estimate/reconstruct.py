@@ -1,4 +1,4 @@
-"""The whole way from a take to a motion: one generator that the operator, command line and tests share."""
+"""Reconstruction of a motion from a take: one generator shared by operator, command line and tests."""
 
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -25,34 +25,34 @@ from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_selection import worthwhile
-from .match_error import undecided_covariance
+from .keyframe_selection import select_keyframes
+from .match_error import undetermined_covariance
 from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
-from .unobserved_variance import unseen_variance
+from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6
-"""Share of the work that reading the footage usually is."""
+"""Usual share of the work of reading the footage."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reconstruction:
-    """A motion and what it came from."""
+    """A motion and the intermediate results it was made from."""
 
     motion: Motion
     interpolation: Motion
     """The keyframes interpolated without the footage, for comparison."""
     reading: Reading
-    """What was read of the clip, for another reconstruction of it."""
+    """Data read from the clip, for another reconstruction of it."""
     speed: Array
     """(F,) V_sum of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
-    """What a person should know of the result, one sentence each."""
+    """Notes on the result for people, one sentence each."""
     model: RegionModel
-    """What the motion predicts of the markers: calibrated on the keyframes, or average placements."""
+    """The markers' region model: calibrated on the keyframes, or of average placements."""
     solution: WholeClipResult | None = None
-    """What method `map` found, for another to start from."""
+    """Result of method `map`, for another to start from."""
 
     @property
     def tracks(self) -> RegionTracks:
@@ -71,9 +71,9 @@ def reconstruct(
     Args:
         take: A validated take with at least two keyframes.
         method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        reading: What `read_footage` or an earlier reconstruction has read of the same clip, which is then not
-            opened again.
-        earlier: A reconstruction to start from; what no longer holds of it is found out and not used.
+        reading: Data that `read_footage` or an earlier reconstruction has read from the same clip, which is
+            then not opened again.
+        earlier: A reconstruction to start from; parts that no longer hold are recognized and not used.
 
     Yields:
         Progress; closing the generator cancels the job, which has no effects of its own.
@@ -87,13 +87,13 @@ def reconstruct(
         ValueError: The reading is one of other markers.
     """
     check_reconstructible(take, method)
-    # The matrices are small: more threads of linear algebra wait for each other, up to twenty times as long.
+    # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
         return (yield from _reconstruct(take, method, reading, earlier))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
-    """Refuse at once what no reading of the clip could mend.
+    """Check method and keyframes, which do not depend on the clip.
 
     Raises:
         InputError: The method is unknown, or there are too few keyframes.
@@ -114,17 +114,17 @@ def _reconstruct(
     else:
         _check_tracks(take, reading.tracks)
     tracks = reading.tracks
-    worth = worthwhile(take.keyframes, average_model(take), tracks, take.fps)
+    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps)
     notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
     take = replace(take, keyframes=worth)
     notes += match_notes(take)
-    keyframes, doubt = with_style(take.keyframes, take.fps)
+    keyframes, match_scale = with_style(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
-        solution = yield from _whole_clip(take, reading, prior, doubt, begun, _usable(earlier, reading))
-        motion, model = _solved(take, tracks, solution, doubt), solution.evidence.model
+        solution = yield from _whole_clip(take, reading, prior, match_scale, begun, _usable(earlier, reading))
+        motion, model = _solved(take, tracks, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
@@ -135,7 +135,7 @@ def _reconstruct(
 
 
 def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
-    """The estimate that an earlier reconstruction made of the same pictures, if it did."""
+    """An earlier reconstruction's estimate from the same pictures; None without one."""
     if earlier is None or (earlier.reading.album is None) != (reading.album is None):
         return None
     known = earlier.reading is reading or of_same_footage(earlier.reading.key, reading.key)
@@ -143,7 +143,7 @@ def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
-    """Hold tracks that were found earlier against the take."""
+    """Check tracks that were found earlier against the take."""
     names = tuple(style.name for style in take.markers)
     if tracks.names != names:
         raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
@@ -155,7 +155,7 @@ def _whole_clip(
     take: Take,
     reading: Reading,
     prior: Posture,
-    doubt: Array,
+    match_scale: Array,
     begun: float,
     earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
@@ -168,12 +168,12 @@ def _whole_clip(
         take.keyframe_indices,
         album=reading.album,
         earlier=earlier,
-        doubt=doubt,
+        match_scale=match_scale,
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
-def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Array) -> Motion:
+def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -183,11 +183,13 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, doubt: Ar
         "distrust": result.evidence.distrust,
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
-    unseen = unseen_variance(take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s)
+    unseen = unobserved_variance(
+        take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s
+    )
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
-    if not doubt.any():
+    if not match_scale.any():
         return motion
-    undecided = undecided_covariance(motion.points, take.camera, index, doubt)
+    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 
@@ -241,7 +243,7 @@ def point_covariance(body: Body, posture: Posture, covariance: Array, more: Arra
         body: The actor's body.
         posture: F postures.
         covariance: Theirs.
-        more: (F, D) variances beside it.
+        more: (F, D) variances added to it.
     """
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))

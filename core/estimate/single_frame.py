@@ -2,8 +2,8 @@
 
 Maximum a posteriori about a belief in the posture, by the same terms and steps as the whole clip's estimate.
 Five regions do not determine 34 degrees of freedom, and the image is ambiguous in depth; so several starts
-descend side by side, each as if it were a frame of its own, and the most probable end is taken. What was
-believed is among the candidates, so the markers never make the posture less probable than it was.
+descend side by side, each as if it were a frame of its own, and the most probable result is taken. The
+believed posture is among the candidates, so the result is never less probable than it.
 """
 
 from dataclasses import dataclass, replace
@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
@@ -20,22 +19,20 @@ from ..prior.frame_prior import Belief
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
-from .terms.ground import GroundTerm
-from .terms.limits import LimitTerm
-from .terms.quadratic import QuadraticBuilder
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, RegionTerm, limb_widths
-from .terms.term import NormalEquations, Term
+from .terms.assembly import frame_terms
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from .terms.term import NormalEquations, total_cost
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 LARGEST_STEP = 0.4
-"""No unknown of the posture moves further in one step [m, rad]."""
-SETTLED = 2e-3
+"""Largest change of a posture's unknown in one step [m, rad]."""
+CONVERGED = 2e-3
 CALIBRATED_FROM = 5
-"""So many keyframes tell more of where the markers sit than they err."""
+"""Fewest keyframes that calibrate: their placements are better than average ones."""
 EXPECTED_RADIUS_M = 0.9
-"""How far a marker may lie from where it is believed to be."""
+"""Largest distance of a marker from where it is believed to be."""
 MISPLACED_WIDTHS = 1.5
-"""A marker farther off than this many of its limb's half-widths is one the posture does not explain ..."""
+"""A marker farther off than this many of its limb's half-widths is misplaced ..."""
 MISPLACED_PX = 4.0
 """... unless it is nearer than this [px]."""
 
@@ -47,11 +44,11 @@ class FrameFit:
     posture: Posture
     """A single posture."""
     residual_px: Array
-    """(M,) distance of each marker's predicted centroid from the seen one [px]; NaN where it is not seen."""
+    """(M,) distance between each marker's predicted and observed centroid [px]; NaN where it is hidden."""
     before_px: Array
-    """(M,) the same for what was believed."""
+    """(M,) the same for the believed posture."""
     misplaced: tuple[int, ...]
-    """Markers that the posture does not explain."""
+    """Indices of the markers that the posture does not explain."""
 
 
 def fit_frame(
@@ -67,8 +64,8 @@ def fit_frame(
         evidence: The markers' model, as calibrated on keyframes or of average proportions
             (`uncalibrated`).
         observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: What is believed before.
-        frame: The frame's place in the clip, by which a moving camera knows its pose.
+        belief: Prior belief in the posture.
+        frame: The frame's index in the clip, which a moving camera's pose depends on.
         noise: Noise of the regions' features.
     """
     descent = _Descent(evidence, observed, belief, frame, noise or RegionNoise())
@@ -78,13 +75,13 @@ def fit_frame(
 def calibrated(
     model: RegionModel, observed: ObservedRegions, keyframes: Posture, frame: IndexArray
 ) -> KeyframeEvidence:
-    """What keyframes tell of the markers, where there are enough of them to tell.
+    """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
     Args:
         model: The region model with average placements.
-        observed: Regions seen at the K keyframes.
+        observed: Regions observed at the K keyframes.
         keyframes: The K postures.
-        frame: (K,) their poses of a moving camera.
+        frame: (K,) their indices in the clip.
     """
     if len(frame) < CALIBRATED_FROM:
         return uncalibrated(model)
@@ -93,7 +90,7 @@ def calibrated(
 
 
 def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> ExpectedRegions:
-    """Where a belief puts each marker, (1, M), with a generous radius."""
+    """Each marker's place in the picture by a belief, (1, M), with a generous radius."""
     predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
     depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
     radius = EXPECTED_RADIUS_M * model.camera.focal_px / depth
@@ -101,7 +98,7 @@ def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> Expecte
 
 
 class _Descent:
-    """Several starts of one frame, side by side."""
+    """Gauss-Newton from several starts of one frame, side by side."""
 
     def __init__(
         self,
@@ -113,7 +110,7 @@ class _Descent:
     ) -> None:
         count = belief.starts.batch[0]
         self.model, self.observed = evidence.model, observed
-        body, skeleton = evidence.model.body, belief.posture.skeleton
+        body = evidence.model.body
         self.width_px = limb_widths(self.model, belief.posture.translation[None], np.array([frame]))
         self.believed = Posture.stack([belief.posture] * count)
         deviation = belief.starts.minus(self.believed)
@@ -126,17 +123,7 @@ class _Descent:
             np.linalg.solve(factor, deviation.T).T,
             np.zeros((count, len(self.model.placements) * FEATURES)),
         )
-        self.bias_std = noise.bias_std(self.width_px).reshape(1, -1)
-        repeated = observed[np.zeros(count, dtype=np.intp)]
-        width = np.repeat(self.width_px, count, axis=0)
-        self.regions = RegionTerm(self.model, repeated, noise, width, evidence.distrust, evidence.whole)
-        builder = QuadraticBuilder(count, skeleton.dof_count + self.bias_std.shape[1])
-        builder.add(slice(0, skeleton.dof_count), (1.0,), 1.0)
-        builder.add(slice(skeleton.dof_count, None), (1.0,), self.bias_std)
-        self.ground = _ground(body, belief)
-        self.terms: list[Term] = [builder.term(), self.regions, LimitTerm()]
-        if self.ground is not None:
-            self.terms.append(self.ground)
+        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px)
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
@@ -144,16 +131,16 @@ class _Descent:
             self.state,
             variation=np.zeros_like(self.state.variation),
         )
-        best, least = start, self._costs(start)
+        best, least = start, total_cost(self.terms, start)
         for temperature in TEMPERATURES:
             equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
             for term in self.terms:
                 term.add_to(equations, self.state, temperature)
-            step = equations.matrix.factorise().solve(-equations.gradient)
+            step = equations.matrix.factorize().solve(-equations.gradient)
             self.state, moved = self.state.stepped(step, LARGEST_STEP)
             if temperature > 1.0:
                 continue
-            costs = self._costs(self.state)
+            costs = total_cost(self.terms, self.state)
             better = costs < least
             best = replace(
                 best,
@@ -161,7 +148,7 @@ class _Descent:
                 bias=np.where(better[:, None], self.state.bias, best.bias),
             )
             least = np.minimum(costs, least)
-            if moved < SETTLED:
+            if moved < CONVERGED:
                 break
         chosen = int(np.argmin(least))
         posture = best.posture[chosen]
@@ -172,13 +159,6 @@ class _Descent:
             posture, residual, self._distances(self.believed[0]), tuple(int(m) for m in misplaced)
         )
 
-    def _costs(self, state: ClipState) -> Array:
-        """(S,) negative logarithm of the probability of each start's state, up to a constant."""
-        excess = LimitTerm().excess(state)
-        squared = (state.variation**2).sum(-1) + ((state.bias / self.bias_std) ** 2).sum(-1)
-        costs = self.regions.misfit(state).sum(-1) + 0.5 * (squared + (excess**2).sum(-1))
-        return np.asarray(costs if self.ground is None else costs + self.ground.cost(state))
-
     def _distances(self, posture: Posture) -> Array:
         """(M,) of the centroids [px]."""
         pose = self.model.body.pose(Posture.stack([posture]))
@@ -186,19 +166,10 @@ class _Descent:
         return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
 
 
-def _ground(body: Body, belief: Belief) -> GroundTerm | None:
-    """Where the ankles are when a foot is on the ground."""
-    if belief.grounded is None:
-        return None
-    ankles = tuple(i for i, name in enumerate(body.skeleton.point_names) if name.startswith("ankle"))
-    points = body.points(body.pose(belief.grounded))
-    return GroundTerm(ankles, float(points[:, list(ankles), 2].min()))
-
-
 def _factor(model: RegionModel, belief: Belief, frame: int) -> Array:
-    """A square root L (D, D) of the belief's covariance, in which the points keep near their depths.
+    """A square root L (D, D) of the belief's covariance, with the points' depths as observations.
 
-    The image says little of depth, so the believed depths of the points count as seen (paper, eq. 9).
+    The image tells little of depth, so the believed depths of the points count as observed (paper, eq. 9).
     """
     pose = model.body.pose(Posture.stack([belief.posture]))
     rows = depths.jacobian(model.body, model.camera, pose, np.array([frame]))[0] / belief.depth_std_m

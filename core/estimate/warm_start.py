@@ -1,9 +1,9 @@
-"""What a change of the take leaves of an earlier estimate: where to begin anew, and from where.
+"""Warm start from an earlier estimate: which frames a change of the take affects, and what stays.
 
 A keyframe that is moved, added or removed changes the prior between its neighbors and, a little, what all
 keyframes together tell. Where the latter stays within small tolerances, only the frames around the change are
-estimated again, else the whole clip is; either from the prior, as if for the first time. To begin with the
-earlier postures would save a twentieth, and hold on to earlier mistakes (measured: up to 60 mm).
+estimated again, else the whole clip is; either from the prior, as if for the first time. Starting from the
+earlier postures would save a twentieth and keep earlier mistakes (measured: up to 60 mm).
 
 Of 100 s with a keyframe moved or added, measured against estimating all anew: 0.1 to 0.2 mm apart on average,
 99 of 100 points within 1.2 mm, a few in frames that hardly anything determines by up to 14 mm.
@@ -17,28 +17,29 @@ from scipy.ndimage import distance_transform_edt
 from ..arrays import Array, BoolArray
 from ..footage.camera import Camera
 from .calibration import PRIOR_STD, placement_values
+from .clip_problem import ClipProblem
 from .keyframe_evidence import KeyframeEvidence, keyframe_information
 from .posing_error import posing_covariance, velocities
 from .terms.regions import ObservedRegions
-from .window_problem import ClipProblem
 from .windows import Window, windows
 
 SAME = 1e-7
-"""Differences of a posture's unknowns [m, rad] that come of reading it from Blender once more."""
+"""Differences of a posture's unknowns [m, rad] from reading it from Blender once more."""
 SAME_PLACEMENT = 0.06
-"""Of what is believed of the placements before, as standard deviations: 0.3 mm on average."""
+"""Difference of placements in standard deviations of their prior: 0.3 mm on average."""
 SAME_LENS = 5e-4
-"""Logarithm of the focal length."""
+"""Difference of the focal length's logarithm."""
 SAME_SIZE = 0.1
-"""Logarithms of the posing error's size, markers' distrust and areas; the timing error in frames."""
-SAME_FOOTING_M = 2e-3
-"""Of the lower ankle's usual height."""
+"""Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in
+frames."""
+SAME_ANKLE_HEIGHT_M = 2e-3
+"""Difference of the lower ankle's usual height."""
 SAME_FACTOR = 0.15
-"""Logarithm of the accelerations' covariance, in whatever direction it differs most."""
+"""Difference of the accelerations' log covariance, in the direction of the largest difference."""
 
 
-def same_setting(earlier: ClipProblem, now: ClipProblem) -> bool:
-    """Whether body, camera, markers, noise and frames' times are the same, whatever was seen and posed."""
+def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
+    """Whether body, camera, markers, noise and frames' times are the same."""
     cameras = [
         [getattr(problem.camera, field.name) for field in fields(Camera)] for problem in (earlier, now)
     ]
@@ -53,8 +54,8 @@ def same_setting(earlier: ClipProblem, now: ClipProblem) -> bool:
     )
 
 
-def held(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
-    """The problem with the earlier one's evidence, where the difference is nothing to speak of; else None."""
+def with_earlier_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
+    """The problem with the earlier one's evidence, where they agree within the tolerances; else None."""
     if not _same_evidence(earlier.evidence, now.evidence) or not _same_factor(earlier.factor, now.factor):
         return None
     posed = now.prior[now.keyframes]
@@ -71,8 +72,8 @@ def held(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
 
 def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
     placed = placement_values(one.model.placements) - placement_values(other.model.placements)
-    sizes = np.log([one.posing_scale, *one.distrust, *one.whole])
-    sizes -= np.log([other.posing_scale, *other.distrust, *other.whole])
+    sizes = np.log([one.posing_scale, *one.distrust, *one.area_ratio])
+    sizes -= np.log([other.posing_scale, *other.distrust, *other.area_ratio])
     lens = np.log(one.model.camera.lens_mm / other.model.camera.lens_mm)
     return bool(
         np.abs(placed / PRIOR_STD).max() < SAME_PLACEMENT
@@ -88,10 +89,10 @@ def _same_factor(one: Array, other: Array) -> bool:
 
 
 def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
-    """(F,) frames of which anything differs but the evidence: prior, keyframe, or what was seen."""
+    """(F,) whether a frame's prior, keyframe or observations differ."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
-    changed |= _seen_differently(earlier.observed, now.observed)
-    changed |= (earlier.depth_std_m != now.depth_std_m) | _footed_differently(earlier, now)
+    changed |= _observations_differ(earlier.observed, now.observed)
+    changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
     both, before, after = np.intersect1d(earlier.keyframes, now.keyframes, return_indices=True)
     information, other = earlier.evidence.information[before], now.evidence.information[after]
@@ -100,13 +101,13 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     return changed
 
 
-def _footed_differently(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
-    if earlier.footing_m is None or now.footing_m is None:
-        return np.full(now.frames, earlier.footing_m is not now.footing_m)
-    return np.abs(now.footing_m - earlier.footing_m) > SAME_FOOTING_M
+def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
+    if earlier.ankle_height_m is None or now.ankle_height_m is None:
+        return np.full(now.frames, earlier.ankle_height_m is not now.ankle_height_m)
+    return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME_ANKLE_HEIGHT_M
 
 
-def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> BoolArray:
+def _observations_differ(one: ObservedRegions, other: ObservedRegions) -> BoolArray:
     changed = np.zeros(len(one.quality), dtype=bool)
     for field in fields(ObservedRegions):
         a, b = getattr(one, field.name), getattr(other, field.name)
@@ -116,12 +117,12 @@ def _seen_differently(one: ObservedRegions, other: ObservedRegions) -> BoolArray
 
 
 def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
-    """Windows around changed frames (F,), in order; none overlaps another in what it keeps.
+    """Windows around changed frames (F,), in order; their kept frames do not overlap.
 
     Args:
         changed: The frames.
-        length: Most frames kept of a window.
-        margin: Frames that a change, or the end of what is worked on, may be felt over.
+        length: Largest number of frames kept of a window.
+        margin: Frames over which a change, or the end of a window, may have an effect.
     """
     count = len(changed)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
@@ -144,10 +145,10 @@ def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window
     ]
 
 
-def revised_share(changed: BoolArray, margin: int) -> Array:
-    """(F,) how much of each frame is of the new estimate, in its windows, and not of the earlier one.
+def blend_weight(changed: BoolArray, margin: int) -> Array:
+    """(F,) weight of the new estimate against the earlier one, so that they blend without a jump.
 
-    Both are right a while away from the change; from one to the other there must not be a jump.
+    Farther away from a change than the margin both are right.
 
     Args:
         changed: (F,) the changed frames.

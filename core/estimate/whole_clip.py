@@ -21,22 +21,23 @@ from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
+from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence
-from .keyframe_trust import read_trust
+from .keyframe_trust import read_mixed_keyframes
 from .match_error import depth_std_m
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .warm_start import changed_frames, held, revised_share, revised_windows, same_setting
-from .window_problem import ClipProblem
+from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
+from .window_problem import WindowProblem
 from .windows import Window, windows
 
 MARKERS_SHARE = 0.5
-"""Share of the work that is done before contours are looked for."""
+"""Share of the work before contours are measured."""
 
 
 @dataclass(frozen=True)
 class WholeClipOptions:
-    """What the whole-clip estimate believes, and how long a stretch it solves at once."""
+    """Noise of the whole-clip estimate, and the length of its windows."""
 
     regions: RegionNoise = field(default_factory=RegionNoise)
     window_s: float = 20.0
@@ -47,7 +48,7 @@ class WholeClipOptions:
 
 @dataclass(frozen=True, eq=False)
 class WholeClipResult:
-    """The estimate of F frames, and what another of the same clip can start from."""
+    """The estimate of F frames; another estimate of the same clip may start from it."""
 
     posture: Posture
     """A batch of F postures."""
@@ -56,13 +57,13 @@ class WholeClipResult:
     residual_px: Array
     """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
     problem: ClipProblem
-    """What it follows from."""
+    """The problem it solves."""
     contours: ContourEvidence | None
-    """How performer and background look; None where no background can be trusted."""
+    """The look of performer and background; None where no background can be trusted."""
 
     @property
     def evidence(self) -> KeyframeEvidence:
-        """What the footage at the keyframes told: how they were posed, how the markers sit, the lens."""
+        """Calibration from the footage at the keyframes: posing error, markers' placement, lens."""
         return self.problem.evidence
 
 
@@ -76,7 +77,7 @@ def estimate_whole_clip(
     options: WholeClipOptions | None = None,
     album: Album | None = None,
     earlier: WholeClipResult | None = None,
-    doubt: Array | None = None,
+    match_scale: Array | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -86,28 +87,30 @@ def estimate_whole_clip(
         tracks: Observed regions of F frames and M markers.
         segments: The segment each marker is bound to.
         prior: F postures that pass through the keyframes.
-        keyframe_indices: Frames whose prior was posed, at least one.
+        keyframe_indices: Frames of the keyframes, at least one.
         options: Noise, smoothness and windows.
-        album: Pictures of all frames, for contours to be looked for; None does without.
-        earlier: An estimate of the same pictures. What has not changed since is taken from it, within the
-            tolerances of `revision`.
-        doubt: (K,) of keyframes that a library was matched with and nobody posed, how far they are off, in
-            usual differences between performers; 0 for posed ones, which all are by default.
+        album: Pictures of all frames, in which contours are measured; None leaves them out.
+        earlier: An estimate of the same pictures, reused for frames that have not changed since, within the
+            tolerances of `warm_start`.
+        match_scale: (K,) size of each matched keyframe's error, relative to a usual difference between
+            performers; 0 for posed ones, which all are by default.
 
     Yields:
-        The fraction done, from 0 to 1, and what is known of a window's frames after every step.
+        The fraction done, from 0 to 1, and a preview of a window's postures after every step.
 
     Returns:
-        Postures, their covariance and what was calibrated on the way.
+        Postures, their covariance and the calibration.
     """
     options = options or WholeClipOptions()
     observed = ObservedRegions.from_tracks(tracks)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     index = np.array(keyframe_indices, dtype=np.intp)
-    doubt = np.zeros(len(index)) if doubt is None else doubt
-    matched = doubt > 0.0
-    reading = read_trust(model, options.regions, observed[index], width_px[index], prior[index], index, doubt)
+    match_scale = np.zeros(len(index)) if match_scale is None else match_scale
+    matched = match_scale > 0.0
+    reading = read_mixed_keyframes(
+        model, options.regions, observed[index], width_px[index], prior[index], index, match_scale
+    )
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = acceleration_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
@@ -133,16 +136,16 @@ def estimate_whole_clip(
 def _solve(
     problem: ClipProblem, options: WholeClipOptions, album: Album | None, earlier: WholeClipResult | None
 ) -> Part[WholeClipResult]:
-    """Estimate in windows what an earlier estimate does not tell already."""
+    """Estimate in windows all frames, or those that changed since an earlier estimate."""
     pace = float(np.median(problem.step_s)) if len(problem.step_s) else REFERENCE_STEP_S
     length, margin = round(options.window_s / pace), round(options.margin_s / pace)
-    if earlier is not None and same_setting(earlier.problem, problem):
-        same = held(earlier.problem, problem)
+    if earlier is not None and same_setup(earlier.problem, problem):
+        same = with_earlier_evidence(earlier.problem, problem)
         if same is not None:
             changed = changed_frames(earlier.problem, same)
             spans = revised_windows(changed, length, margin // 2)
             result = yield from _solve_windows(same, spans, album, earlier)
-            share = revised_share(changed, margin // 2)[:, None]
+            share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
             return replace(result, posture=earlier.posture.plus(step))
     return (yield from _solve_windows(problem, list(windows(problem.frames, length, margin)), album, None))
@@ -151,23 +154,23 @@ def _solve(
 def _solve_windows(
     problem: ClipProblem, spans: list[Window], album: Album | None, earlier: WholeClipResult | None
 ) -> Part[WholeClipResult]:
-    """Estimate the frames that some windows keep.
+    """Estimate the frames that windows keep.
 
     Args:
-        problem: What the estimate follows from.
+        problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
         album: Pictures of all frames.
-        earlier: An estimate that holds in all other frames.
+        earlier: An estimate of all other frames.
     """
     total = max(sum(window.keep_last - window.keep_first for window in spans), 1)
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])
     stretches = list(zip(spans, shares[:-1], shares[1:], strict=True))
-    # All windows by their markers first: what is learned from the whole clip then joins them without a seam.
+    # All windows by their markers first: contours learned from the whole clip then join them without a seam.
     states = []
     for window, begun, ended in stretches:
-        part = problem.window(window)
+        part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
-        states.append(part.state.bare())
+        states.append(part.state.without_cache())
     contours = None if earlier is None else earlier.contours
     if earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
@@ -180,11 +183,11 @@ def _solve_windows(
     postures: list[Posture] = []
     for window, begun, ended in stretches:
         first, last = (MARKERS_SHARE + (1.0 - MARKERS_SHARE) * share for share in (begun, ended))
-        part = problem.window(window, states.pop(0))
+        part = WindowProblem(problem, window, states.pop(0))
         if contours is not None:
             yield from scaled(part.follow_contours(contours), first, last)
         inner = slice(window.keep_first, window.keep_last)
-        posture, covariance[inner], residual_px[inner] = yield from scaled(part.kept(), last, last)
+        posture, covariance[inner], residual_px[inner] = yield from scaled(part.solution(), last, last)
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
@@ -192,7 +195,7 @@ def _solve_windows(
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
-    """A batch of postures with those that windows keep replaced by pieces of their own."""
+    """A batch of postures in which the frames that windows keep are replaced."""
     translation, rotations, angles = base.translation.copy(), base.rotations.copy(), base.angles.copy()
     for window, piece in zip(spans, pieces, strict=True):
         inner = slice(window.keep_first, window.keep_last)

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Window:
-    """A stretch of frames that is worked on, and the part of it whose result is kept."""
+    """A range of frames that is solved, and the part of it whose result is kept."""
 
     first: int
     last: int
-    """One past the last frame worked on."""
+    """One past the last frame solved."""
     keep_first: int
     keep_last: int
     """One past the last frame kept."""
 
     @property
     def frames(self) -> slice:
-        """The frames worked on."""
+        """The frames solved."""
         return slice(self.first, self.last)
 
     @property
@@ -27,12 +27,12 @@ class Window:
 
 
 def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
-    """Windows whose kept parts follow each other without gap.
+    """Windows whose kept parts follow each other without a gap.
 
     Args:
         frames: Frames of the clip.
         length: Frames kept of a window; a clip up to 1.5 times as long stays whole.
-        margin: Frames worked on beyond the kept ones on either side, where the clip has them.
+        margin: Frames solved beyond the kept ones on either side, where the clip has them.
     """
     count = max(1, round(frames / length))
     edges = [frames * i // count for i in range(count + 1)]

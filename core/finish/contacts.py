@@ -1,4 +1,4 @@
-"""Where a foot rests: stretches of frames in which an ankle stays slow, low and near one place."""
+"""Contacts of feet: ranges of frames in which an ankle stays slow, low and near one place."""
 
 from dataclasses import dataclass
 
@@ -14,11 +14,11 @@ REST_HEIGHT_M = 0.05
 """A resting ankle is no higher than this above its own lowest within `NEIGHBORHOOD_S`."""
 NEIGHBORHOOD_S = 1.0
 SHORTEST_S = 0.2
-"""Shorter rests are turning points of a moving foot."""
+"""Shortest rest; shorter ones are turning points of a moving foot."""
 STRAY_M = 0.025
-"""How far a resting ankle may be estimated from its place."""
+"""Largest distance of a resting ankle's estimate from its place."""
 MOST_OF_RUN = 0.6
-"""A rest is most of the time for which a foot is slow; a foot that is slow but does not stay slides."""
+"""Least share of a slow run that a rest takes; a foot that is slow but does not stay slides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,25 +26,25 @@ class Contact:
     """A foot at rest."""
 
     point: int
-    """Which of the points rests."""
+    """Index of the point that rests."""
     first: int
     """The first frame of the rest, from 0."""
     last: int
     """Its last frame, included."""
     place: Array
-    """(3,) where it rests [m]."""
+    """(3,) its place [m]."""
 
 
 def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:
-    """Find where points rest.
+    """Find the contacts of points.
 
-    No floor is assumed: a foot may rest on a step or a beam. One that sways or slides further than it may
+    No floor is assumed: a foot may rest on a step or a beam. One that sways or slides farther than it may
     stray does not rest.
 
     Args:
         places: (F, N, 3) the points, by frame [m].
         time_s: (F,) time of each frame [s].
-        stray_m: How far a resting point may be from its place [m].
+        stray_m: Largest distance of a resting point from its place [m].
 
     Returns:
         Rests in order of point and frame.
@@ -75,7 +75,7 @@ def _slow_runs(path: Array, time_s: Array) -> list[tuple[int, int]]:
 
 
 def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
-    """The longest stretch of a run that stays near its own mean place."""
+    """The longest part of a run that stays near its own mean place."""
     longest = (first, first)
     start = first
     for stop in range(first + 1, last + 1):

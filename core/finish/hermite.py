@@ -1,4 +1,4 @@
-"""Piecewise cubics through few keys, fitted to many frames: what an F-curve with Bezier handles shows.
+"""Cubic Hermite splines through few keys, fitted to many frames: the curves of F-curves with Bezier handles.
 
 A Bezier segment whose handles lie at one third and two thirds of it in time is a cubic polynomial of time:
 the Hermite cubic with the values and slopes of its two keys (Farin 2002, *Curves and Surfaces for CAGD*,
@@ -12,10 +12,10 @@ from scipy.linalg.lapack import dpbsv
 
 from ..arrays import Array, BoolArray, IndexArray
 
-SLOPE_TRUST = 0.05
-"""Weight of the frames' own slope at a key [frames]: it decides where no frame lies between two keys."""
+SLOPE_WEIGHT = 0.05
+"""Weight of the data's own slope at a key [frames]; it decides where no frame lies between two keys."""
 BAND = 3
-"""Value and slope of a key meet those of the next: unknowns three apart at most."""
+"""Bandwidth: value and slope of a key couple with those of the next."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class Spline:
     """K keys of C curves that share their frames."""
 
     keys: IndexArray
-    """(K,) positions of the keys among the frames, rising."""
+    """(K,) increasing frame indices of the keys."""
     values: Array
     """(K, C)."""
     slopes: Array
@@ -55,7 +55,7 @@ class Spline:
         return Spline(self.keys, self.values[:, first:last], self.slopes[:, first:last])
 
     def _pieces(self, frames: IndexArray) -> IndexArray:
-        """(N,) the stretch between two keys that each frame lies in."""
+        """(N,) index of the segment between two keys that each frame lies in."""
         return np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
 
     def _at(self, times: Array, frames: IndexArray) -> Array:
@@ -87,8 +87,8 @@ def fit_keys(times: Array, data: Array, keys: IndexArray, exact: IndexArray) -> 
     Args:
         times: (F,) rising times of the frames.
         data: (F, C) values at the frames.
-        keys: (K,) rising positions of at least two keys, the first and the last frame among them.
-        exact: Positions of frames at which a key takes the data's own value.
+        keys: (K,) increasing frame indices of at least two keys, the first and the last frame among them.
+        exact: Indices of frames at which a key takes the data's own value.
     """
     start = Spline(keys, data[keys], _slopes(times, data, keys))
     return refit(times, data, start, 0, len(keys) - 1, exact)
@@ -103,30 +103,30 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
         spline: The keys.
         first: The first key that may change.
         last: The last one.
-        exact: Positions of frames at which a key takes the data's own value.
+        exact: Indices of frames at which a key takes the data's own value.
     """
     low, high = max(first - 1, 0), min(last + 1, len(spline.keys) - 1)
     keys = spline.keys[low : high + 1]
     band, right = _normal_equations(times, data, keys)
     own = _slopes(times, data, keys)
-    band[BAND, 1::2] += SLOPE_TRUST**2
-    right[1::2] += SLOPE_TRUST**2 * own
-    pinned = _among(keys, exact)
+    band[BAND, 1::2] += SLOPE_WEIGHT**2
+    right[1::2] += SLOPE_WEIGHT**2 * own
+    pinned = _contains(keys, exact)
     known = np.empty_like(right)
     known[0::2] = np.where(pinned[:, None], data[keys], spline.values[low : high + 1])
     known[1::2] = spline.slopes[low : high + 1]
-    held = np.zeros(len(right), dtype=bool)
-    held[0::2] = pinned
-    held[: 2 * (first - low)] = True
-    held[len(right) - 2 * (high - last) :] = True
-    solved = _solve(band, right, held, known)
+    fixed = np.zeros(len(right), dtype=bool)
+    fixed[0::2] = pinned
+    fixed[: 2 * (first - low)] = True
+    fixed[len(right) - 2 * (high - last) :] = True
+    solved = _solve(band, right, fixed, known)
     values, slopes = spline.values.copy(), spline.slopes.copy()
     values[low : high + 1], slopes[low : high + 1] = solved[0::2], solved[1::2]
     return Spline(spline.keys, values, slopes)
 
 
 def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Array, Array]:
-    """What the frames from the first to the last of K keys ask of values and slopes in turn.
+    """Normal equations of the frames from the first to the last of K keys, values and slopes in turn.
 
     Returns:
         The matrix as upper bands (BAND + 1, 2 K), and the right-hand side (2 K, C).
@@ -148,7 +148,7 @@ def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Arra
     return band, right
 
 
-def _among(keys: IndexArray, chosen: IndexArray) -> BoolArray:
+def _contains(keys: IndexArray, chosen: IndexArray) -> BoolArray:
     """(K,) whether each key is one of the rising, chosen frames."""
     if not len(chosen):
         return np.zeros(len(keys), dtype=bool)
@@ -156,7 +156,7 @@ def _among(keys: IndexArray, chosen: IndexArray) -> BoolArray:
 
 
 def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray) -> Array:
-    """(N, 4) factors of the earlier key's value and slope and of the later one's, at each frame."""
+    """(N, 4) Hermite basis: factors of the earlier key's value and slope and of the later one's."""
     at = times[keys]
     start, length = at[piece], np.diff(at)[piece]
     s = (times[frame] - start) / length
@@ -170,21 +170,21 @@ def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray)
 
 
 def _slopes(times: Array, data: Array, keys: IndexArray) -> Array:
-    """(K, C) the data's slope at each key, from the frames beside it."""
+    """(K, C) the data's slope at each key, by the frames beside it."""
     before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
     return np.asarray((data[after] - data[before]) / (times[after] - times[before])[:, None])
 
 
-def _solve(band: Array, right: Array, held: BoolArray, known: Array) -> Array:
-    """Solve a banded system in which some unknowns are known: their rows and columns are taken out."""
-    fixed = np.where(held[:, None], known, 0.0)
+def _solve(band: Array, right: Array, fixed: BoolArray, known: Array) -> Array:
+    """Solve a banded system in which some unknowns are fixed at known values."""
+    values = np.where(fixed[:, None], known, 0.0)
     for apart in range(1, BAND + 1):
         row = band[BAND - apart, apart:]
-        right[:-apart] -= row[:, None] * fixed[apart:]
-        right[apart:] -= row[:, None] * fixed[:-apart]
-        row[held[apart:] | held[:-apart]] = 0.0
-    band[BAND, held] = 1.0
-    right[held] = known[held]
+        right[:-apart] -= row[:, None] * values[apart:]
+        right[apart:] -= row[:, None] * values[:-apart]
+        row[fixed[apart:] | fixed[:-apart]] = 0.0
+    band[BAND, fixed] = 1.0
+    right[fixed] = known[fixed]
     # A fit is solved thousands of times: the plain LAPACK call costs a tenth of `solveh_banded`.
     _, solved, failed = dpbsv(band, right)
     if failed:

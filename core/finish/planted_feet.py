@@ -1,8 +1,8 @@
-"""Feet that rest are held at one place; the legs follow, and the hips a little where a leg cannot reach.
+"""Foot planting: resting ankles are held at one place; legs follow, and hips where a leg cannot reach.
 
-A least-squares problem over the whole clip on the manifold of postures: resting ankles at their places, all
-others where they were, legs and hips changed as little and as smoothly as that allows. Around a rest the
-correction fades, so that nothing jumps and frames further away stay as they are.
+A least-squares problem over the whole clip on the manifold of postures: resting ankles at their places, the
+others unchanged, legs and hips changed as little and as smoothly as that allows. Around a rest the correction
+fades, so that nothing jumps and frames farther away keep their values.
 """
 
 from collections.abc import Generator, Sequence
@@ -19,19 +19,21 @@ from .contacts import STRAY_M, Contact, find_contacts
 from .rig import Rig
 
 FADE_S = 0.2
-"""How long a correction takes to fade on either side of a rest."""
+"""Time in which a correction fades on either side of a rest."""
 ANKLE_STD_M = 2e-4
-"""How nearly an ankle reaches its place."""
+"""Standard deviation of an ankle from its target."""
 CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
-"""How readily each degree of freedom changes [m, rad]: legs before hips, bends before twists."""
+"""Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
+twists."""
 PACE_STD_PER_S = 2.0
-"""Change of these changes in a second, in units of themselves: small, so that knees do not flicker."""
+"""Standard deviation of the changes' own change in a second, relative: small, so that knees do not
+flicker."""
 UNCHANGED_STD = 1e-6
-"""The same for frames without a correction, in units of the above."""
-HELD_M = 0.0005
-"""How far few keys may move an ankle that rests [m]: they must not make it slide again."""
-STEPS = 8
-SETTLED_M = 1e-5
+"""Factor of `CHANGE_STD` in frames without a correction."""
+RESTING_TOLERANCE_M = 0.0005
+"""Largest error that key reduction may give a resting ankle [m]: it must not slide again."""
+ITERATIONS = 8
+CONVERGED = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +44,6 @@ class PlantedFeet:
     """A batch of F postures."""
     contacts: tuple[Contact, ...]
     """Where which ankle rests; points are counted left, right."""
-    skate_before_mm: float
-    """Mean horizontal travel per frame of resting ankles before, in millimeters; 0 without any rest ..."""
-    skate_after_mm: float
-    """... and after."""
 
 
 def plant_feet(
@@ -60,7 +58,7 @@ def plant_feet(
         body: The actor's body.
         posture: A batch of F postures.
         time_s: (F,) time of each frame [s].
-        stray_m: How far a foot may be estimated from one place and still be taken to rest there [m].
+        stray_m: Largest distance of a resting foot's estimate from its place [m].
 
     Yields:
         The fraction done, from 0 to 1.
@@ -73,43 +71,42 @@ def plant_feet(
     contacts = find_contacts(places, time_s, stray_m)
     yield 0.1
     if not contacts:
-        return PlantedFeet(posture, (), 0.0, 0.0)
-    goal, touched = _goal(places, contacts, time_s)
-    dofs = _changing(body)
+        return PlantedFeet(posture, ())
+    target, touched = _targets(places, contacts, time_s)
+    dofs = _free_dofs(body)
     std = np.array([CHANGE_STD[_kind(body.skeleton.dof_names[dof])] for dof in dofs])
     delta = np.zeros((len(time_s), len(dofs)))
     planted = posture
-    for number in range(STEPS):
-        step = _step(body, planted, ankles, goal, touched, dofs, std, delta, time_s)
+    for number in range(ITERATIONS):
+        step = _gauss_newton_step(body, planted, ankles, target, touched, dofs, std, delta, time_s)
         delta += step
         full = np.zeros((len(time_s), body.skeleton.dof_count))
         full[:, dofs] = delta
         planted = _changed(posture, full, touched)
-        yield 0.1 + 0.9 * (number + 1) / STEPS
-        if np.abs(step).max() < SETTLED_M:
+        yield 0.1 + 0.9 * (number + 1) / ITERATIONS
+        if np.abs(step).max() < CONVERGED:
             break
-    after = body.points(body.pose(planted))[:, ankles]
-    return PlantedFeet(planted, contacts, _skate_mm(places, contacts), _skate_mm(after, contacts))
+    return PlantedFeet(planted, contacts)
 
 
-def tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact]) -> Array:
-    """(F, P) how far each of the rig's points may be off [m].
+def point_tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact]) -> Array:
+    """(F, P) tolerance of each of the rig's points [m].
 
     Args:
         rig: The actor.
         frame_count: F.
-        tolerance_m: What is allowed in general [m].
-        contacts: Rests of the ankles, left and right, which are allowed no more than `HELD_M`.
+        tolerance_m: The general tolerance [m].
+        contacts: Rests of the ankles, left and right, whose tolerance is at most `RESTING_TOLERANCE_M`.
     """
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
     for contact in contacts:
         ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
-        allowed[contact.first : contact.last + 1, ankle] = min(HELD_M, tolerance_m)
+        allowed[contact.first : contact.last + 1, ankle] = min(RESTING_TOLERANCE_M, tolerance_m)
     return allowed
 
 
-def _changing(body: Body) -> IndexArray:
+def _free_dofs(body: Body) -> IndexArray:
     """Degrees of freedom that may change: the hips' place and the legs."""
     names = body.skeleton.dof_names
     return np.array([i for i, name in enumerate(names) if _kind(name) in CHANGE_STD], dtype=np.intp)
@@ -121,14 +118,14 @@ def _kind(name: str) -> str:
     return f"{first}.{last.partition('_')[0]}" if first == "pelvis" else first
 
 
-def _goal(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[Array, BoolArray]:
-    """Where each ankle shall be, (F, 2, 3), and the frames in which that is elsewhere than before."""
-    goal = places.copy()
+def _targets(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[Array, BoolArray]:
+    """Target of each ankle (F, 2, 3), and the frames in which it differs from before."""
+    target = places.copy()
     touched = np.zeros(len(time_s), dtype=bool)
     for contact in contacts:
         beside = [other for other in contacts if other.point == contact.point and other is not contact]
         point, rest = contact.point, slice(contact.first, contact.last + 1)
-        goal[rest, point] = contact.place
+        target[rest, point] = contact.place
         touched[rest] = True
         for edge, way in ((contact.first, -1), (contact.last, 1)):
             near = [
@@ -142,17 +139,17 @@ def _goal(places: Array, contacts: tuple[Contact, ...], time_s: Array) -> tuple[
             frame = edge + way
             while 0 <= frame < len(time_s) and abs(time_s[frame] - time_s[edge]) < fade:
                 share = abs(time_s[frame] - time_s[edge]) / fade
-                goal[frame, point] += offset * (1.0 - share) ** 2 * (1.0 + 2.0 * share)
+                target[frame, point] += offset * (1.0 - share) ** 2 * (1.0 + 2.0 * share)
                 touched[frame] = True
                 frame += way
-    return goal, touched
+    return target, touched
 
 
-def _step(
+def _gauss_newton_step(
     body: Body,
     posture: Posture,
     ankles: list[int],
-    goal: Array,
+    target: Array,
     touched: BoolArray,
     dofs: IndexArray,
     std: Array,
@@ -162,20 +159,20 @@ def _step(
     """A Gauss-Newton step (F, n) of the changes `delta`."""
     frames, size = delta.shape
     pose = body.pose(posture)
-    residual = (body.points(pose)[:, ankles] - goal).reshape(frames, -1) / ANKLE_STD_M
+    residual = (body.points(pose)[:, ankles] - target).reshape(frames, -1) / ANKLE_STD_M
     jacobian = body.points_jacobian(pose)[:, ankles][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
     equations = BlockBanded(frames, size)
     equations.add_rows((jacobian,))
     gradient = (residual[:, None] @ jacobian)[:, 0]
     every = slice(None)
-    kept = (std * np.where(touched, 1.0, UNCHANGED_STD)[:, None]) ** -2
+    unchanged = (std * np.where(touched, 1.0, UNCHANGED_STD)[:, None]) ** -2
     steady = (std * PACE_STD_PER_S * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
     prior = BlockBanded(frames, size)
-    prior.add_combination(every, (1.0,), kept)
+    prior.add_combination(every, (1.0,), unchanged)
     prior.add_combination(every, (-1.0, 1.0), steady)
     equations.add(prior)
     gradient += prior.multiply(delta)
-    return equations.factorise().solve(-gradient)
+    return equations.factorize().solve(-gradient)
 
 
 def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:
@@ -187,10 +184,3 @@ def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:
         np.where(touched[:, None, None, None], moved.rotations, posture.rotations),
         np.where(touched[:, None], moved.angles, posture.angles),
     )
-
-
-def _skate_mm(places: Array, contacts: tuple[Contact, ...]) -> float:
-    travel = [
-        np.linalg.norm(np.diff(places[c.first : c.last + 1, c.point, :2], axis=0), axis=-1) for c in contacts
-    ]
-    return 1e3 * float(np.concatenate(travel).mean())

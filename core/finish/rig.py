@@ -1,8 +1,8 @@
-"""A body as an armature's channels show it: bones with their own rotation modes, and where their ends lie.
+"""Forward kinematics of an armature's channels: bones with their own rotation modes and their points.
 
-Reducing keys changes channels; what it does to the body shows only in the world, after the values have been
-read as Blender reads them (quaternions and axes are brought to unit length, Euler angles turn in their order)
-and passed on from parent to child.
+Reducing keys changes channels; its effect on the body is measured in the world, after the values have been
+read as Blender reads them (quaternions and axes are normalized, Euler angles turn in their order) and passed
+on from parent to child.
 """
 
 from dataclasses import dataclass
@@ -13,16 +13,16 @@ from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 
-SMALLEST_LENGTH = 1e-12
+LEAST_LENGTH = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class RigBone:
-    """A bone that turns, with what is rigidly fixed to it."""
+    """A bone that turns, with the points rigidly fixed to it."""
 
     name: str
     parent: int
-    """Position of the bone it hangs on; -1 for the root."""
+    """Index of its parent; -1 for the root."""
     mode: str
     """QUATERNION (w, x, y, z), AXIS_ANGLE (angle, x, y, z) or the order of Euler angles such as XYZ."""
     left: Array
@@ -32,7 +32,7 @@ class RigBone:
     origin: Array
     """(3,) the joint in the parent's joint's frame [m]; unused for the root."""
     points: Array
-    """(N, 3) what is fixed to the bone, in its joint's frame [m]: its end, and the ends of rigid leaves."""
+    """(N, 3) points fixed to the bone, in its joint's frame [m]: its end, and the ends of rigid leaves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +50,8 @@ class Rig:
     """(3,) ... from here [m]."""
 
     @cached_property
-    def below(self) -> tuple[tuple[int, ...], ...]:
-        """For each bone, itself and all bones that hang on it, parents first."""
+    def subtrees(self) -> tuple[tuple[int, ...], ...]:
+        """For each bone the indices of itself and all its descendants, parents first."""
         found: list[list[int]] = [[index] for index in range(len(self.bones))]
         for index in range(len(self.bones)):
             above = self.bones[index].parent
@@ -62,49 +62,49 @@ class Rig:
 
     @cached_property
     def point_slices(self) -> tuple[slice, ...]:
-        """Where each bone's joint and points lie among all."""
+        """Slice of each bone's joint and points among all points."""
         ends = np.cumsum([1 + len(bone.points) for bone in self.bones])
         starts = [0, *ends[:-1]]
         return tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True))
 
-    def show(self, values: list[Array]) -> "Shown":
+    def pose(self, values: list[Array]) -> "RigPose":
         """Forward kinematics of every bone's values."""
         frames = len(values[0])
         count = self.point_slices[-1].stop
-        shown = Shown(np.empty((len(self.bones), frames, 3, 3)), np.empty((frames, count, 3)))
-        self._fill(shown, values, range(len(self.bones)))
-        return shown
+        pose = RigPose(np.empty((len(self.bones), frames, 3, 3)), np.empty((frames, count, 3)))
+        self._fill(pose, values, range(len(self.bones)))
+        return pose
 
-    def show_changed(self, shown: "Shown", frames: slice, changed: dict[int, Array]) -> "Shown":
-        """What is shown at some frames when some bones take other values (N, C) there."""
-        part = Shown(shown.rotation[:, frames].copy(), shown.points[frames].copy())
-        touched = sorted({index for bone in changed for index in self.below[bone]})
-        local = {index: shown.local(self, index, frames) for index in touched if index not in changed}
+    def pose_changed(self, pose: "RigPose", frames: slice, changed: dict[int, Array]) -> "RigPose":
+        """The pose at some frames when some bones take other values (N, C) there."""
+        part = RigPose(pose.rotation[:, frames].copy(), pose.points[frames].copy())
+        touched = sorted({index for bone in changed for index in self.subtrees[bone]})
+        local = {index: pose.local(self, index, frames) for index in touched if index not in changed}
         for index in touched:
             turn = self._turn(index, changed[index]) if index in changed else local[index]
-            place = self._root_place(changed[index]) if index == 0 and index in changed else None
-            self._fill_bone(part, index, turn, place)
+            location = self._root_location(changed[index]) if index == 0 and index in changed else None
+            self._fill_bone(part, index, turn, location)
         return part
 
-    def _fill(self, shown: "Shown", values: list[Array], bones: range) -> None:
+    def _fill(self, pose: "RigPose", values: list[Array], bones: range) -> None:
         for index in bones:
-            place = self._root_place(values[0]) if index == 0 else None
-            self._fill_bone(shown, index, self._turn(index, values[index]), place)
+            location = self._root_location(values[0]) if index == 0 else None
+            self._fill_bone(pose, index, self._turn(index, values[index]), location)
 
-    def _fill_bone(self, shown: "Shown", index: int, turn: Array, place: Array | None) -> None:
+    def _fill_bone(self, pose: "RigPose", index: int, turn: Array, location: Array | None) -> None:
         bone, where = self.bones[index], self.point_slices[index]
         if bone.parent < 0:
-            shown.rotation[index] = turn
-            if place is not None:
-                shown.points[:, where.start] = place
+            pose.rotation[index] = turn
+            if location is not None:
+                pose.points[:, where.start] = location
         else:
-            above = shown.rotation[bone.parent]
-            shown.rotation[index] = above @ turn
-            start = shown.points[:, self.point_slices[bone.parent].start]
-            shown.points[:, where.start] = start + above @ bone.origin
-        joint = shown.points[:, where.start, None]
-        shown.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(
-            shown.rotation[index], -1, -2
+            above = pose.rotation[bone.parent]
+            pose.rotation[index] = above @ turn
+            start = pose.points[:, self.point_slices[bone.parent].start]
+            pose.points[:, where.start] = start + above @ bone.origin
+        joint = pose.points[:, where.start, None]
+        pose.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(
+            pose.rotation[index], -1, -2
         )
 
     def _turn(self, index: int, values: Array) -> Array:
@@ -113,13 +113,13 @@ class Rig:
         channels = values[:, : channel_count(bone.mode)]
         return np.asarray(bone.left @ rotation_matrices(channels, bone.mode) @ bone.right)
 
-    def _root_place(self, values: Array) -> Array:
+    def _root_location(self, values: Array) -> Array:
         return np.asarray(self.root_origin + values[:, -3:] @ self.root_turn.T)
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """What a rig shows in F frames."""
+class RigPose:
+    """Joints and points of a rig in F frames."""
 
     rotation: Array
     """(B, F, 3, 3) each bone's joint's frame in the world."""
@@ -139,12 +139,12 @@ def channel_count(mode: str) -> int:
 
 
 def rotation_matrices(channels: Array, mode: str) -> Array:
-    """Rotations (F, 3, 3) that channels (F, C) of a rotation mode show in Blender."""
+    """Rotations (F, 3, 3) of channels (F, C) in a rotation mode, as Blender evaluates them."""
     if mode == "QUATERNION":
         return np.asarray(Rotation.from_quat(channels[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
         length = np.linalg.norm(channels[:, 1:], axis=-1, keepdims=True)
-        axis = channels[:, 1:] / np.maximum(length, SMALLEST_LENGTH)
+        axis = channels[:, 1:] / np.maximum(length, LEAST_LENGTH)
         return np.asarray(Rotation.from_rotvec(channels[:, :1] * axis).as_matrix())
     order = ["XYZ".index(letter) for letter in mode]
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.

@@ -1,4 +1,4 @@
-"""A first look at some frames: how high the floor is, and how well a library's postures do one by one."""
+"""Coarse pass over a few frames: the floor's height, and how well a library's single postures fit."""
 
 from dataclasses import dataclass, replace
 
@@ -7,35 +7,36 @@ import numpy as np
 from ..arrays import IndexArray
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
-from .emissions import Fit, Turned, sweep
-from .frame_likelihood import Sight, sights
-from .noise_scales import Habits, scale
+from .emissions import FrameEmissions, StateFeatures, evaluate_emissions
+from .frame_likelihood import FrameLikelihood, frame_likelihoods
+from .noise_scales import NoiseScales, student_scales
 
 FLOOR_STD_M = 0.05
-"""A performer's hips are that much higher or lower than the library's."""
+"""Standard deviation of the hips' height between performers."""
 WORLD_FLOOR_M = 0.25
-"""A floor this near to z = 0 is at z = 0: sizes say no more, and scenes are built there."""
-WORSE = 1.5
-"""So much dearer a frame may be with the floor at z = 0 before another is believed in."""
-LOOKED_AT = 15
-UNKNOWN_STD_M = 2.0
+"""A floor found this near to z = 0 is taken to be there: sizes are no more exact, and scenes are built
+there."""
+FLOOR_COST_MARGIN = 1.5
+"""Mean cost of a frame that putting the floor at z = 0 may add before another height is preferred."""
+MOST_FRAMES = 15
+UNKNOWN_FLOOR_STD_M = 2.0
 
 
 @dataclass(frozen=True)
-class Glance:
-    """What a first look says."""
+class CoarsePass:
+    """Result of the coarse pass."""
 
     floor_m: float
     """Height of the floor, by the markers' sizes and the feet; 0 where that is about right."""
     cost: float
-    """Mean negative logarithm of the likelihood of a frame's best posture, for a performer of the habits that
-    these frames suggest: no order in time betters it much."""
+    """Mean negative log likelihood of a frame's best posture, with the noise scales that these frames
+    suggest; an order in time hardly lowers it."""
 
 
-def glance(
-    camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: IndexArray, states: Turned
-) -> Glance:
-    """Look at some frames with no floor known.
+def coarse_pass(
+    camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: IndexArray, states: StateFeatures
+) -> CoarsePass:
+    """Fit single postures to some frames without knowing the floor.
 
     Args:
         camera: The camera.
@@ -44,45 +45,58 @@ def glance(
         frames: Frames to choose from.
         states: The library's postures in all headings.
     """
-    chosen = frames[np.unique(np.linspace(0, len(frames) - 1, LOOKED_AT).astype(int))]
-    seen = sights(camera, tracks, segments, chosen, 0.0, UNKNOWN_STD_M)
-    fits = [sweep(sight, states) for sight in seen]
-    floor = _height(seen, fits, states)
+    chosen = frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
+    likelihoods = frame_likelihoods(camera, tracks, segments, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
+    emissions = [evaluate_emissions(likelihood, states) for likelihood in likelihoods]
+    floor = _floor_height_m(likelihoods, emissions, states)
     if abs(floor) > WORLD_FLOOR_M:
-        grounded = sights(camera, tracks, segments, chosen, 0.0, FLOOR_STD_M)
-        ground = [sweep(sight, states) for sight in grounded]
-        if _mean_cost(ground) - _mean_cost(fits) < WORSE:
+        on_ground = frame_likelihoods(camera, tracks, segments, chosen, 0.0, FLOOR_STD_M)
+        ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
+        if _mean_cost(ground_emissions) - _mean_cost(emissions) < FLOOR_COST_MARGIN:
             floor = 0.0
     else:
         floor = 0.0
-    habits = _habits(seen, fits, states)
-    again = sights(camera, tracks, segments, chosen, floor, FLOOR_STD_M, habits)
-    return Glance(floor, _mean_cost([sweep(sight, states) for sight in again]))
+    noise_scales = _noise_scales(likelihoods, emissions, states)
+    refined = frame_likelihoods(camera, tracks, segments, chosen, floor, FLOOR_STD_M, noise_scales)
+    return CoarsePass(floor, _mean_cost([evaluate_emissions(likelihood, states) for likelihood in refined]))
 
 
-def _mean_cost(fits: list[Fit]) -> float:
-    return float(np.mean([fit.cost.min() for fit in fits]))
+def _mean_cost(emissions: list[FrameEmissions]) -> float:
+    return float(np.mean([emission.cost.min() for emission in emissions]))
 
 
-def _height(seen: list[Sight], fits: list[Fit], states: Turned) -> float:
-    """The median of what the frames say of the floor's height [m], each weighed by the markers seen in it."""
-    heights, weights = np.empty(len(seen)), np.empty(len(seen))
-    for frame, (sight, fit) in enumerate(zip(seen, fits, strict=True)):
-        share = np.exp(fit.cost.min() - fit.cost)
-        heights[frame] = (share * (fit.hips[2] - states.numbers[-2, fit.states])).sum() / share.sum()
-        weights[frame] = sight.seen.sum()
+def _floor_height_m(
+    likelihoods: list[FrameLikelihood], emissions: list[FrameEmissions], states: StateFeatures
+) -> float:
+    """Median of the floor's height over the frames [m], each weighed by its number of visible markers."""
+    heights, weights = np.empty(len(likelihoods)), np.empty(len(likelihoods))
+    for frame, (likelihood, emission) in enumerate(zip(likelihoods, emissions, strict=True)):
+        share = np.exp(emission.cost.min() - emission.cost)
+        heights[frame] = (
+            share * (emission.hips[2] - states.vectors[-2, emission.states])
+        ).sum() / share.sum()
+        weights[frame] = likelihood.visible.sum()
     order = np.argsort(heights)
     half = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
     return float(heights[order[min(half, len(order) - 1)]])
 
 
-def _habits(seen: list[Sight], fits: list[Fit], states: Turned) -> Habits:
-    """How the performer holds each limb otherwise, by the best posture of each frame."""
-    off = []
-    for sight, fit in zip(seen, fits, strict=True):
-        best = int(fit.cost.argmin())
-        middle = states.numbers[:-2, fit.states[best]].reshape(-1, 3)
-        lines = np.einsum("mki,mi->mk", sight.axes, middle + fit.hips[:, best] - sight.location)
-        off.append(lines * sight.weight[:, None])
-    usual = Habits.unknown(len(seen[0].seen))
-    return replace(usual, middle=scale(np.array(off), np.array([sight.seen for sight in seen]), 1.0))
+def _noise_scales(
+    likelihoods: list[FrameLikelihood], emissions: list[FrameEmissions], states: StateFeatures
+) -> NoiseScales:
+    """Scales of the centroids' noise, from the residuals of each frame's best posture."""
+    residuals = []
+    for likelihood, emission in zip(likelihoods, emissions, strict=True):
+        best = int(emission.cost.argmin())
+        centroid = states.vectors[:-2, emission.states[best]].reshape(-1, 3)
+        residual = np.einsum(
+            "mki,mi->mk", likelihood.image_axes, centroid + emission.hips[:, best] - likelihood.location
+        )
+        residuals.append(residual * likelihood.weight[:, None])
+    unit = NoiseScales.unit(len(likelihoods[0].visible))
+    return replace(
+        unit,
+        centroid=student_scales(
+            np.array(residuals), np.array([likelihood.visible for likelihood in likelihoods]), 1.0
+        ),
+    )

@@ -1,4 +1,4 @@
-"""A library found in footage: which of its postures is seen when and where, in which heading, how surely."""
+"""Match of one library with a clip: posture, heading, place and confidence of every frame."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,31 +14,30 @@ from ..library.library import Library
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
-from .alternatives import alternatives
-from .candidate import MatchedFrame
-from .coarse_pass import FLOOR_STD_M, Glance, glance
-from .emissions import Fit, Turned, sweep, turned
-from .frame_likelihood import Sight, sights
-from .hidden_markov_model import Lattice
-from .marker_moments import Solids, marker_solids
-from .noise_scales import DEGREES, Habits
-from .posed_constraints import Anchors
-from .posture_sequences import Chains, library_chains
-from .refinement import Course, Refinement
-from .sequence_table import CourseTable
-from .state_path import Path
+from .candidates import MatchedFrame, frame_candidates
+from .coarse_pass import FLOOR_STD_M, CoarsePass, coarse_pass
+from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features
+from .frame_likelihood import FrameLikelihood, frame_likelihoods
+from .hidden_markov_model import HiddenMarkovModel
+from .marker_moments import MarkerMoments, marker_moments
+from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales
+from .posed_constraints import PosedConstraints
+from .posture_sequences import PostureSequences, library_sequences
+from .refinement import ContinuousPath, Refinement
+from .sequence_table import SequenceTable
+from .state_path import StatePath
 
 HEADINGS = 24
-SWEPT_AT_ONCE = 16
+FRAMES_A_YIELD = 16
 SAMPLES_PER_S = 15.0
-"""Frames looked at: a motion's posture is known well between two that are this near."""
+"""Rate at which a clip is sampled: between samples this near a motion's posture is well known."""
 CORRELATION_S = 0.25
-"""So long a performer is off the library's posture in the same way: frames nearer tell less each."""
+"""Time over which a performer's difference from the library stays the same: frames nearer count less each."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sought:
-    """What is looked at: everything of a take that a match needs."""
+class MatchInput:
+    """Everything of a take that a match needs."""
 
     body: Body
     camera: Camera
@@ -46,144 +45,164 @@ class Sought:
     segments: tuple[str, ...]
     """The segment of each marker."""
     keyframes: IndexArray
-    """(K,) frames to be told the posture of."""
-    anchors: Anchors
-    """What is posed."""
+    """(K,) frames whose posture is asked for."""
+    constraints: PosedConstraints
+    """Of the posed keyframes."""
 
 
 @dataclass(frozen=True, eq=False)
 class LibraryMatch:
-    """A library's way through a clip."""
+    """The most probable sequence of a library's postures in a clip."""
 
     library: Library
     frames: tuple[MatchedFrame, ...]
     """The frames proposed for keyframes, in order."""
     fit: float
-    """How well the footage is explained, 0 to 1."""
+    """Mean share of the footage that is explained, 0 to 1."""
     floor_m: float
-    """Height of the floor that the performer was placed on."""
-    course: Posture
-    """(F,) what the match says of every frame of the clip."""
+    """Height of the floor that the performer stands on."""
+    postures: Posture
+    """(F,) the match's posture in every frame of the clip."""
     log_evidence: float
-    """Logarithm of the probability of what an independent frame shows, up to a constant of the footage."""
+    """Log evidence of an independent frame, up to a constant of the footage."""
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
-    """A library on the performer's body, and a first look with it."""
+class PreparedLibrary:
+    """A library on the performer's body, after the coarse pass."""
 
     library: Library
-    chains: Chains
-    solids: Solids
-    states: Turned
+    sequences: PostureSequences
+    moments: MarkerMoments
+    states: StateFeatures
     sampled: IndexArray
-    """(T,) the frames to look at."""
-    glance: Glance
+    """(T,) the sampled frames."""
+    coarse_pass: CoarsePass
 
 
-def prepare(sought: Sought, library: Library) -> Prepared:
-    """Put a library on the performer's body and look at a few frames with it."""
-    chains = library_chains(library, sought.body)
-    solids = marker_solids(sought.body, sought.segments, chains.posture)
-    states = turned(solids, HEADINGS)
-    return Prepared(library, chains, solids, states, *_first_look(sought, states))
+def prepare_library(match_input: MatchInput, library: Library) -> PreparedLibrary:
+    """Put a library on the performer's body and do the coarse pass."""
+    sequences = library_sequences(library, match_input.body)
+    moments = marker_moments(match_input.body, match_input.segments, sequences.posture)
+    states = state_features(moments, HEADINGS)
+    return PreparedLibrary(library, sequences, moments, states, *_coarse_pass(match_input, states))
 
 
-def prepared_anew(sought: Sought, prepared: Prepared) -> Prepared:
-    """The library on the same body, with a first look at other tracks."""
-    sampled, first = _first_look(sought, prepared.states)
-    return replace(prepared, sampled=sampled, glance=first)
+def repeat_coarse_pass(match_input: MatchInput, prepared: PreparedLibrary) -> PreparedLibrary:
+    """The library on the same body, after a coarse pass over other tracks."""
+    sampled, first = _coarse_pass(match_input, prepared.states)
+    return replace(prepared, sampled=sampled, coarse_pass=first)
 
 
-def _first_look(sought: Sought, states: Turned) -> tuple[IndexArray, Glance]:
-    told = np.concatenate([sought.keyframes, sought.anchors.frames])
-    sampled = sampled_frames(sought.tracks, told)
-    return sampled, glance(sought.camera, sought.tracks, sought.segments, sampled, states)
+def _coarse_pass(match_input: MatchInput, states: StateFeatures) -> tuple[IndexArray, CoarsePass]:
+    always = np.concatenate([match_input.keyframes, match_input.constraints.frames])
+    sampled = sampled_frames(match_input.tracks, always)
+    return sampled, coarse_pass(match_input.camera, match_input.tracks, match_input.segments, sampled, states)
 
 
-def match_library(sought: Sought, prepared: Prepared, floor_m: float) -> Part[LibraryMatch]:
+def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: float) -> Part[LibraryMatch]:
     """Find a library's postures in footage.
 
     Args:
-        sought: The take.
-        prepared: The library, see `prepare`.
+        match_input: The take.
+        prepared: The library, see `prepare_library`.
         floor_m: Height of the floor.
 
     Yields:
-        The fraction that is done.
+        The fraction done.
     """
-    tracks, sampled = sought.tracks, prepared.sampled
-    chains, states = prepared.chains, prepared.states
+    tracks, sampled = match_input.tracks, prepared.sampled
+    sequences, states = prepared.sequences, prepared.states
     time_s = tracks.time_s[sampled]
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
-    table = CourseTable(chains, prepared.solids)
-    habits = Habits.unknown(len(sought.segments))
-    anchors, anchored = sought.anchors, np.searchsorted(sampled, sought.anchors.frames)
-    like = [anchors.cost(int(frame), prepared.solids.points, states.heading_rad) for frame in sampled]
-    # The footage is tempered, as frames say much the same; what is posed is said once.
-    posed = [None if cost is None else cost / np.float32(tempering) for cost in like]
-    for look in (0, 1):  # the second look knows how the performer differs from the library
-        seen = sights(sought.camera, tracks, sought.segments, sampled, floor_m, FLOOR_STD_M, habits, anchors)
-        begun = 0.45 * look
-        fits = yield from scaled(_swept(seen, states, posed), begun, begun + 0.2)
-        lattice = Lattice(chains, states, seen, fits, tempering, time_s)
-        yield from scaled(lattice.connect(), begun + 0.2, begun + 0.3)
-        best = yield from scaled(lattice.best_path(), begun + 0.3, begun + 0.35)
-        path = Path(chains, states, seen, fits, best, time_s)
-        refinement = Refinement(table, seen, time_s, tempering, floor_m, FLOOR_STD_M, anchors, anchored)
-        refined = yield from scaled(refinement.refined(path.course()), begun + 0.35, begun + 0.45)
-        if look == 0:
-            habits = refinement.habits(refined)
-    shares, evidence = yield from scaled(lattice.posterior(), 0.9, 1.0)
-    course = _every_frame(table, refined, sampled, tracks.frame_count)
-    explained = _explained(refinement, refined, habits)
-    likelihood = evidence / (len(sampled) * tempering)
-    nearest = table.nearest(refined.chain, refined.values[:, 0])
+    table = SequenceTable(sequences, prepared.moments)
+    noise_scales = NoiseScales.unit(len(match_input.segments))
+    constraints, constraint_rows = (
+        match_input.constraints,
+        np.searchsorted(sampled, match_input.constraints.frames),
+    )
+    posed_cost = [
+        constraints.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled
+    ]
+    # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
+    posed = [None if cost is None else cost / np.float32(tempering) for cost in posed_cost]
+    for iteration in (0, 1):  # the second with the noise scales that the first has found
+        likelihoods = frame_likelihoods(
+            match_input.camera,
+            tracks,
+            match_input.segments,
+            sampled,
+            floor_m,
+            FLOOR_STD_M,
+            noise_scales,
+            constraints,
+        )
+        begun = 0.45 * iteration
+        emissions = yield from scaled(_evaluate_all(likelihoods, states, posed), begun, begun + 0.2)
+        model = HiddenMarkovModel(sequences, states, likelihoods, emissions, tempering, time_s)
+        yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
+        best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
+        path = StatePath(sequences, states, likelihoods, emissions, best, time_s)
+        refinement = Refinement(
+            table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, constraints, constraint_rows
+        )
+        refined = yield from scaled(refinement.refine(path.continuous()), begun + 0.35, begun + 0.45)
+        if iteration == 0:
+            noise_scales = refinement.noise_scales(refined)
+    posteriors, evidence = yield from scaled(model.forward_backward(), 0.9, 1.0)
+    postures = _every_frame(table, refined, sampled, tracks.frame_count)
+    explained = _explained_share(refinement, refined, noise_scales)
+    log_evidence = evidence / (len(sampled) * tempering)
+    nearest = table.nearest(refined.sequence, refined.values[:, 0])
     frames = []
-    for row in np.searchsorted(sampled, sought.keyframes):
+    for row in np.searchsorted(sampled, match_input.keyframes):
         index, part = int(sampled[row]), float(explained[row])
-        chosen = course[index]
-        frames.append(alternatives(path, shares[row], int(row), index, chosen, int(nearest[row]), part))
+        chosen = postures[index]
+        frames.append(
+            frame_candidates(path, posteriors[row], int(row), index, chosen, int(nearest[row]), part)
+        )
     fit = float(explained.mean())
-    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, course, likelihood)
+    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures, log_evidence)
 
 
-def _swept(seen: Sequence[Sight], states: Turned, posed: Sequence[SingleArray | None]) -> Part[list[Fit]]:
-    """The states that explain each frame."""
-    fits = []
-    for index, (sight, cost) in enumerate(zip(seen, posed, strict=True)):
-        fits.append(sweep(sight, states, cost))
-        if index % SWEPT_AT_ONCE == 0:
-            yield index / len(seen)
-    return fits
+def _evaluate_all(
+    likelihoods: Sequence[FrameLikelihood], states: StateFeatures, posed: Sequence[SingleArray | None]
+) -> Part[list[FrameEmissions]]:
+    """Emissions of each frame."""
+    emissions = []
+    for index, (likelihood, cost) in enumerate(zip(likelihoods, posed, strict=True)):
+        emissions.append(evaluate_emissions(likelihood, states, cost))
+        if index % FRAMES_A_YIELD == 0:
+            yield index / len(likelihoods)
+    return emissions
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | IndexArray) -> IndexArray:
-    """The frames to look at: evenly spaced, the first, the last and the keyframes."""
+    """Sampled frames: evenly spaced ones, the first, the last and the keyframes."""
     count = tracks.frame_count
     duration = float(tracks.time_s[-1] - tracks.time_s[0]) / max(count - 1, 1)
     stride = max(1, round(1.0 / SAMPLES_PER_S / duration)) if duration > 0.0 else 1
     return np.unique(np.concatenate([np.arange(0, count, stride), [count - 1], keyframes])).astype(np.intp)
 
 
-def _every_frame(table: CourseTable, course: Course, frames: IndexArray, frame_count: int) -> Posture:
+def _every_frame(table: SequenceTable, path: ContinuousPath, frames: IndexArray, frame_count: int) -> Posture:
     """(F,) postures of the whole clip."""
-    time, heading, hips = course.values[:, 0], course.values[:, 1], course.values[:, 2:]
-    found = table.posture(course.chain, time, heading, hips)
+    time, heading, hips = path.values[:, 0], path.values[:, 1], path.values[:, 2:]
+    found = table.posture(path.sequence, time, heading, hips)
     keyframes = [Keyframe(int(frame), found[row]) for row, frame in enumerate(frames)]
     return interpolate(tuple(keyframes), frame_count)
 
 
-def _explained(refinement: Refinement, course: Course, habits: Habits) -> Array:
-    """(T,) mean weight of the markers' middles in each frame: one weighs less the farther it is off.
+def _explained_share(refinement: Refinement, path: ContinuousPath, noise_scales: NoiseScales) -> Array:
+    """(T,) mean weight of the markers' centroids in each frame under Student's t.
 
     Args:
-        refinement: What the course was refined by.
-        course: The course.
-        habits: Of the performer, as the refinement has them.
+        refinement: Its last refinement.
+        path: The refined path.
+        noise_scales: Those that the refinement used.
     """
-    off, _, _ = refinement.residuals(course.chain, course.values, np.ones(len(habits.size)))
-    squared = ((off * habits.middle[:, None]) ** 2).sum(axis=-1)
-    seen = np.array([sight.seen for sight in refinement.sights])
-    weight = seen / (1.0 + squared / DEGREES)
-    return np.asarray(weight.sum(axis=1) / np.maximum(seen.sum(axis=1), 1))
+    residual, _, _ = refinement.residuals(path.sequence, path.values, np.ones(len(noise_scales.size)))
+    squared = ((residual * noise_scales.centroid[:, None]) ** 2).sum(axis=-1)
+    visible = np.array([likelihood.visible for likelihood in refinement.likelihoods])
+    weight = visible / (1.0 + squared / DEGREES_OF_FREEDOM)
+    return np.asarray(weight.sum(axis=1) / np.maximum(visible.sum(axis=1), 1))

@@ -1,4 +1,4 @@
-"""From a take and libraries to the postures its footage shows: what command line and Blender share."""
+"""Matching a take with libraries: the postures its footage shows, shared by command line and Blender."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,51 +19,58 @@ from ..take.description import Description
 from ..take.read_footage import read_footage
 from ..take.take import Take
 from ..take.take_file import read_described
-from .library_match import LibraryMatch, Prepared, Sought, match_library, prepare, prepared_anew
-from .posed_constraints import Anchors
+from .library_match import (
+    LibraryMatch,
+    MatchInput,
+    PreparedLibrary,
+    match_library,
+    prepare_library,
+    repeat_coarse_pass,
+)
+from .posed_constraints import PosedConstraints
 
-TRIED = 5
-"""So many libraries at most are matched as a whole where the first look leaves several."""
-HOPELESS = 4.0
-"""How much dearer than the best a library's postures may be in the first look, a frame."""
+MOST_TRIED = 5
+"""Libraries matched in full at most, where the coarse pass leaves several."""
+COARSE_COST_MARGIN = 4.0
+"""A library whose mean cost in the coarse pass exceeds the least by more is not matched in full."""
 NONE_EVIDENCE = -11.0
-"""Logarithm of the evidence of an independent frame for footage that no library was made for."""
-FRAMES_TOLD = 1.6
-"""A performer differs from a library all along a clip, which tells as much as so many independent frames."""
-LOOKING = 0.3
-"""Share of the work that the first look is."""
-AGAIN = 0.7
-"""Share that the first round is, where the footage is then read again."""
-OTHER_REGION, OFTEN = 1.0, 0.15
-"""Another region lies this far off, in sizes; a marker that was another thing is so in so many frames."""
-WELL = 0.9
-"""Where so much of the footage is explained, no marker is another thing."""
-BETTER = 0.04
-"""So much more of the footage is explained where what was read again is right."""
+"""Log evidence of an independent frame of footage that no library was made for."""
+INDEPENDENT_FRAMES = 1.6
+"""Independent frames that a whole clip counts for, since a performer differs from a library all along it."""
+COARSE_SHARE = 0.3
+"""Share of the work that the coarse pass is."""
+FIRST_ROUND_SHARE = 0.7
+"""Share of the first round, where the footage is then read again."""
+ELSEWHERE_SIZES, ELSEWHERE_SHARE = 1.0, 0.15
+"""Distance of another region, in sizes, and the share of frames in which a mistaken marker has one."""
+WELL_EXPLAINED = 0.9
+"""Explained share of the footage above which no marker is taken for mistaken."""
+BETTER_BY = 0.04
+"""Gain in the explained share for which the second reading is kept."""
 NEAR_FRAMES = 2
-"""No matched keyframe comes so near to a posed one."""
+"""Matched keyframes keep farther than this from posed ones."""
 
 
 @dataclass(frozen=True, eq=False)
 class LibraryChoice:
-    """Which library fits footage, and how."""
+    """The library that fits footage best, and the probabilities of all."""
 
     ranking: tuple[tuple[Library, float], ...]
-    """Every library with the probability that it is the one, the likeliest first; what is missing to 1 is the
-    probability that none is."""
+    """Every library with its probability, the likeliest first; what is missing to 1 is the probability of
+    none."""
     match: LibraryMatch | None
     """The likeliest library's match; None where none fits."""
     reason: str
-    """For people: which, how sure, or why none."""
+    """Sentence for people: which library, how sure, or why none."""
     reading: Reading | None = None
-    """The clip as it was read again with the match to tell where each marker is; None where that changed
-    nothing, and what was given holds."""
+    """The clip as read again with the match telling where each marker is; None where the given reading
+    holds."""
 
 
 def take_to_match(description: Description, keyframes: Path | None) -> Take:
-    """Read a take with the keyframes that a person posed; without a file named, with none.
+    """Read a take with the keyframes that a person posed, or with none where no file is named.
 
-    What an earlier run has matched in that file is left out, since it is matched anew.
+    Keyframes that an earlier run has matched are left out, since they are matched anew.
 
     Raises:
         InputError: The take or the keyframe file is unusable.
@@ -84,11 +91,11 @@ def match_take(
 
     Args:
         take: The take; posed keyframes tell where the performer is there, matched ones are not used.
-        reading: What `read_footage` has read of its clip.
-        libraries: One library, which is matched however badly it fits, or several, of which the one that fits
-            best is chosen.
+        reading: The clip as `read_footage` has read it.
+        libraries: One library, which is matched even where it fits badly, or several, of which the one that
+            fits best is chosen.
         floor_m: Height of the floor in the world [m]; None where it is not known.
-        keyframe_count: How many frames to be told the posture of; 10 per 100 frames where None.
+        keyframe_count: Number of frames to match keyframes at; 10 per 100 frames where None.
 
     Yields:
         Progress.
@@ -106,106 +113,111 @@ def match_take(
     if not reading.tracks.visible.any():
         raise InputError(f"{take.clip}: no marker is seen in the footage, so no posture can be matched")
     with threadpool_limits(limits=1, user_api="blas"):
-        sought = _sought(take, reading, keyframe_count)
-        prepared = yield from stretch(_prepared(sought, usable), 0.0, LOOKING * AGAIN)
-        first = _matches(sought, prepared, floor_m)
-        matches = yield from stretch(first, LOOKING * AGAIN, AGAIN)
+        match_input = _match_input(take, reading, keyframe_count)
+        prepared = yield from stretch(_prepared(match_input, usable), 0.0, COARSE_SHARE * FIRST_ROUND_SHARE)
+        first = _matches(match_input, prepared, floor_m)
+        matches = yield from stretch(first, COARSE_SHARE * FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
         choice = _choice(usable, matches)
-        better = yield from stretch(_read_again(take, reading, matches[0]), AGAIN, AGAIN)
+        better = yield from stretch(
+            _read_again(take, reading, matches[0]), FIRST_ROUND_SHARE, FIRST_ROUND_SHARE
+        )
         if better is not None:
-            sought = _sought(take, better, keyframe_count)
+            match_input = _match_input(take, better, keyframe_count)
             found = [match.library for match in matches]
-            anew = [prepared_anew(sought, one) for one in prepared if one.library in found]
-            second = _matches(sought, anew, floor_m)
-            again = yield from stretch(second, AGAIN, 1.0)
-            if again[0].fit > matches[0].fit + BETTER:
+            repeated = [repeat_coarse_pass(match_input, one) for one in prepared if one.library in found]
+            second = _matches(match_input, repeated, floor_m)
+            again = yield from stretch(second, FIRST_ROUND_SHARE, 1.0)
+            if again[0].fit > matches[0].fit + BETTER_BY:
                 choice = replace(_choice(usable, again), reading=better)
     yield Progress("Done", 1.0)
     return choice
 
 
-def _sought(take: Take, reading: Reading, keyframe_count: int | None) -> Sought:
+def _match_input(take: Take, reading: Reading, keyframe_count: int | None) -> MatchInput:
     keyframes = propose_keyframes(marker_speed(reading.tracks), keyframe_count)
-    anchors = Anchors.of(take.body, take.keyframes)
-    return Sought(take.body, take.camera, reading.tracks, take.marker_segments, keyframes, anchors)
+    constraints = PosedConstraints.from_keyframes(take.body, take.keyframes)
+    return MatchInput(take.body, take.camera, reading.tracks, take.marker_segments, keyframes, constraints)
 
 
-def _prepared(sought: Sought, libraries: Sequence[Library]) -> Job[list[Prepared]]:
-    """All libraries on the performer's body, each with a first look."""
+def _prepared(match_input: MatchInput, libraries: Sequence[Library]) -> Job[list[PreparedLibrary]]:
+    """All libraries on the performer's body, after the coarse pass."""
     prepared = []
     for index, library in enumerate(libraries):
         yield Progress(f"Looking for {library.title}", index / len(libraries))
-        prepared.append(prepare(sought, library))
+        prepared.append(prepare_library(match_input, library))
     return prepared
 
 
-def _matches(sought: Sought, prepared: Sequence[Prepared], floor_m: float | None) -> Job[list[LibraryMatch]]:
-    """The matches of the libraries that are worth it, the likeliest first."""
-    tried = _worth_trying(prepared)
+def _matches(
+    match_input: MatchInput, prepared: Sequence[PreparedLibrary], floor_m: float | None
+) -> Job[list[LibraryMatch]]:
+    """Matches of the likely libraries, the likeliest first."""
+    tried = _likely_libraries(prepared)
     if floor_m is None:
-        floor_m = sought.anchors.floor_m()
+        floor_m = match_input.constraints.floor_m()
     # A floor at z = 0 is believed in as long as any likely library may stand on it.
-    floor = min((one.glance.floor_m for one in tried), key=abs) if floor_m is None else floor_m
+    floor = min((one.coarse_pass.floor_m for one in tried), key=abs) if floor_m is None else floor_m
     matches = []
     for index, one in enumerate(tried):
         share = [(index + end) / len(tried) for end in (0, 1)]
-        part = match_library(sought, one, floor)
+        part = match_library(match_input, one, floor)
         matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
     return sorted(matches, key=lambda match: -match.log_evidence)
 
 
 def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Reading | None]:
-    """The clip read once more, each marker sought where a match has it; None where that makes no difference.
+    """The clip read again with each marker looked for where a match has it; None where nothing changes.
 
-    Without keyframes a thing of a marker's color may have been taken for it. A marker that is merely lost
-    where the match has it stays what it was: an arm may do something that the library does not.
+    Without keyframes another thing of a marker's color may have been taken for it. A marker that is merely
+    lost in the second reading keeps its first: an arm may do something that the library does not.
     """
-    if reading.sightings is None or match.fit > WELL:
+    if reading.sightings is None or match.fit > WELL_EXPLAINED:
         return None
-    told = with_matches(replace(take, keyframes=()), match)
-    again = yield from read_footage(told, reading)
+    matched = with_matches(replace(take, keyframes=()), match)
+    again = yield from read_footage(matched, reading)
     first, second = reading.tracks, again.tracks
     apart = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
-    elsewhere = (apart > OTHER_REGION * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > OFTEN
+    elsewhere = (apart > ELSEWHERE_SIZES * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > ELSEWHERE_SHARE
     if not elsewhere.any():
         return None
     names = ("centroid", "second_moment", "area", "quality", "clipped")
     arrays: dict[str, Any] = {name: np.array(getattr(first, name)) for name in names}
     for name, array in arrays.items():
         array[:, elsewhere] = getattr(second, name)[:, elsewhere]
-    # Known again by both readings that it is made of.
+    # The key names both readings, so that the mixture is recognized.
     footage = again.key.rpartition("-")[0]
     key = f"{footage}-{digest(reading.key, again.key, elsewhere)}" if footage else ""
     return replace(again, tracks=replace(first, **arrays), key=key)
 
 
-def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:
-    """The libraries whose postures do about as well as the best in the first look."""
-    ranked = sorted(prepared, key=lambda one: one.glance.cost)
-    least = ranked[0].glance.cost
-    return [one for one in ranked[:TRIED] if one.glance.cost - least < HOPELESS]
+def _likely_libraries(prepared: Sequence[PreparedLibrary]) -> list[PreparedLibrary]:
+    """Libraries whose postures fit about as well as the best ones in the coarse pass."""
+    ranked = sorted(prepared, key=lambda one: one.coarse_pass.cost)
+    least = ranked[0].coarse_pass.cost
+    return [one for one in ranked[:MOST_TRIED] if one.coarse_pass.cost - least < COARSE_COST_MARGIN]
 
 
 def with_matches(take: Take, match: LibraryMatch) -> Take:
-    """The take with a match's keyframes: posed ones stay, and matched ones near them move beside them.
+    """The take with a match's keyframes: posed ones stay, matched ones near them move aside.
 
-    Beside a posed keyframe a matched one tells how the performer differs from the library (`prior/style`).
+    Beside a posed keyframe a matched one tells how the performer differs from the library
+    (`prior/performer_offset`).
     """
     posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
     keyframes = {keyframe.index: keyframe for keyframe in take.keyframes if keyframe.matched is None}
     for frame in match.frames:
-        index = _beside(frame.index, posed, match.course.batch[0])
+        index = _free_frame(frame.index, posed, match.postures.batch[0])
         if index is None or index in keyframes:
             continue
         chosen = frame.candidates[0]
-        posture = chosen.posture if index == frame.index else match.course[index]
+        posture = chosen.posture if index == frame.index else match.postures[index]
         said = Matched(match.library.identifier, chosen.name, chosen.mirrored, chosen.confidence)
         keyframes[index] = Keyframe(index, posture, matched=said)
     return replace(take, keyframes=tuple(keyframes[index] for index in sorted(keyframes)))
 
 
-def _beside(index: int, posed: Sequence[int], frames: int) -> int | None:
-    """The frame itself or, near a posed keyframe, the nearest that is not; None where there is none."""
+def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
+    """The frame itself or, near a posed keyframe, the nearest one that is far enough; None without one."""
     reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
     free = [
         index + step
@@ -221,7 +233,7 @@ def _choice(libraries: Sequence[Library], ranked: Sequence[LibraryMatch]) -> Lib
     if len(libraries) == 1:
         return LibraryChoice(((best.library, 1.0),), best, f"{title} explains {explained} of the footage")
     evidence = np.array([*(match.log_evidence for match in ranked), NONE_EVIDENCE])
-    share = np.exp(FRAMES_TOLD * (evidence - evidence.max()))
+    share = np.exp(INDEPENDENT_FRAMES * (evidence - evidence.max()))
     share /= share.sum()
     tried = [match.library for match in ranked]
     rest = [library for library in libraries if library not in tried]

@@ -1,4 +1,4 @@
-"""How one performer differs from a library through a whole clip: what the first look teaches the second."""
+"""Scales of the noise per marker: how far one performer differs from a library through a whole clip."""
 
 from dataclasses import dataclass
 
@@ -6,46 +6,46 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 
-DEGREES = 4.0
-"""Of Student's t, by which what is far off counts less."""
-LEAST, MOST = 0.6, 6.0
-"""Bounds of what deviations are multiplied by."""
-BELIEVED = 4.0
-"""The usual deviation counts for so many independent frames."""
-ROUNDS = 12
+DEGREES_OF_FREEDOM = 4.0
+"""Of Student's t distribution."""
+SMALLEST_SCALE, LARGEST_SCALE = 0.6, 6.0
+"""Bounds of the scales."""
+PRIOR_FRAMES = 4.0
+"""A scale of 1 is believed as firmly as this many independent frames tell."""
+ITERATIONS = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Habits:
-    """Of M markers."""
+class NoiseScales:
+    """Scales of the standard deviations of M markers."""
 
-    middle: Array
-    """(M,) by what the usual deviation of the middle is to be multiplied: large for an arm that waves."""
+    centroid: Array
+    """(M,) scale of each centroid's standard deviation: large for an arm that waves."""
     extent: Array
-    """(M,) the same of the extent."""
+    """(M,) scale of each extent's standard deviation."""
     size: Array
-    """(M,) how much larger the marker is than on an average body."""
+    """(M,) size of each marker relative to an average body's."""
 
     @classmethod
-    def unknown(cls, markers: int) -> "Habits":
-        """Of a performer of whom nothing is known yet."""
+    def unit(cls, markers: int) -> "NoiseScales":
+        """Scales of 1, for a performer of whom nothing is known yet."""
         return cls(np.ones(markers), np.ones(markers), np.ones(markers))
 
 
-def scale(residual: Array, seen: BoolArray, tempering: float) -> Array:
-    """(M,) by what deviations are to be multiplied to explain residuals, by Student's t.
+def student_scales(residual: Array, visible: BoolArray, tempering: float) -> Array:
+    """(M,) scales of standard deviations that explain residuals, by Student's t.
 
     Args:
-        residual: (T, M, K) in usual standard deviations.
-        seen: (T, M) which of them count.
-        tempering: What one frame counts for.
+        residual: (T, M, K) in unscaled standard deviations.
+        visible: (T, M) which of them count.
+        tempering: Weight of one frame.
     """
     squared = (residual**2).sum(axis=-1)
     dimensions = residual.shape[-1]
-    found = np.ones(residual.shape[1])
-    frames = tempering * seen.sum(axis=0)
-    for _ in range(ROUNDS):
-        weight = (DEGREES + dimensions) / (DEGREES + squared / found**2)
-        total = tempering * np.where(seen, weight * squared, 0.0).sum(axis=0) / dimensions
-        found = np.sqrt((total + BELIEVED) / (frames + BELIEVED))
-    return np.clip(found, LEAST, MOST)
+    scales = np.ones(residual.shape[1])
+    frames = tempering * visible.sum(axis=0)
+    for _ in range(ITERATIONS):
+        weight = (DEGREES_OF_FREEDOM + dimensions) / (DEGREES_OF_FREEDOM + squared / scales**2)
+        total = tempering * np.where(visible, weight * squared, 0.0).sum(axis=0) / dimensions
+        scales = np.sqrt((total + PRIOR_FRAMES) / (frames + PRIOR_FRAMES))
+    return np.clip(scales, SMALLEST_SCALE, LARGEST_SCALE)

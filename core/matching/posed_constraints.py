@@ -1,4 +1,4 @@
-"""What posed keyframes say of a match: where the performer stands there, which way, and about how."""
+"""Constraints from posed keyframes on a match: the hips' place, the heading and roughly the posture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,25 +13,25 @@ from ..body.soles import sole_heights_m
 from ..prior.keyframes import Keyframe
 
 HIPS_STD_M = 0.03
-"""Of the hips' place in a posed keyframe: what a person errs by."""
+"""Standard deviation of the hips' place in a posed keyframe: a person's error."""
 POINT_STD_M = 0.08
-"""Of a point, the hips aligned: a library's posture is another performer's."""
-POINTS_COUNT = 5.0
-"""The points of a body tell as much as so many that differ independently: one a limb, and the trunk's."""
+"""Standard deviation of a point, the hips aligned: a library's posture is another performer's."""
+INDEPENDENT_POINTS = 5.0
+"""Number of points that differ independently: one for each limb, and the trunk's."""
 
 
 @dataclass(frozen=True, eq=False)
-class Anchors:
+class PosedConstraints:
     """K posed keyframes, in order of time."""
 
     body: Body
     frames: IndexArray
-    """(K,) positions in the clip."""
+    """(K,) indices in the clip."""
     postures: tuple[Posture, ...]
 
     @classmethod
-    def of(cls, body: Body, keyframes: Sequence[Keyframe]) -> "Anchors":
-        """Those of a take's keyframes that a person has posed."""
+    def from_keyframes(cls, body: Body, keyframes: Sequence[Keyframe]) -> "PosedConstraints":
+        """Constraints from those of a take's keyframes that a person has posed."""
         posed = sorted((each for each in keyframes if each.matched is None), key=lambda each: each.index)
         frames = np.array([each.index for each in posed], dtype=np.intp)
         return cls(body, frames, tuple(each.posture for each in posed))
@@ -52,28 +52,27 @@ class Anchors:
         return np.asarray(self.body.points(self.body.pose(batch)) - self.hips[:, None])
 
     def floor_m(self) -> float | None:
-        """Height of the lowest sole of all [m]; None where nothing is posed."""
+        """Height of the lowest sole in all posed keyframes [m]; None without any."""
         if not self.postures:
             return None
         batch = Posture.stack(list(self.postures))
         return float(sole_heights_m(self.body, self.body.pose(batch)).min())
 
-    def place_at(self, frame: int) -> Array | None:
-        """(3,) the hips' place where a frame is posed."""
+    def hips_at(self, frame: int) -> Array | None:
+        """(3,) the hips' place in a posed frame; None for any other."""
         found = np.flatnonzero(self.frames == frame)
         return self.hips[found[0]] if len(found) else None
 
     def cost(self, frame: int, points: Array, heading_rad: Array) -> SingleArray | None:
-        """How unlike a posed frame the states are.
+        """Cost of each state's difference from a posed frame.
 
         Args:
-            frame: Position in the clip.
+            frame: Index in the clip.
             points: (N, P, 3) of the library's postures, relative to the hips [m].
             heading_rad: (H,).
 
         Returns:
-            (N H,) negative logarithm of the likelihood, 0 for what usually is left; None where the frame is
-            not posed.
+            (N H,) negative log likelihood, 0 for a usual difference; None where the frame is not posed.
         """
         found = np.flatnonzero(self.frames == frame)
         if not len(found):
@@ -88,19 +87,19 @@ class Anchors:
         common = level[:, None] * np.cos(heading_rad) + across[:, None] * np.sin(heading_rad)
         squared = (points**2).sum(axis=(1, 2)) + (posed**2).sum() - 2.0 * upright
         mean = (squared[:, None] - 2.0 * common) / posed.shape[0]
-        cost = 0.5 * POINTS_COUNT * (mean / POINT_STD_M**2 - 1.0)
+        cost = 0.5 * INDEPENDENT_POINTS * (mean / POINT_STD_M**2 - 1.0)
         return np.asarray(cost.ravel(), dtype=np.float32)
 
     def residuals(self, points: Array, hips: Array) -> tuple[Array, Array]:
-        """What is left at the posed frames, in standard deviations.
+        """Residuals at the posed frames, in standard deviations.
 
         Args:
-            points: (K, P, 3) of a course, relative to the hips [m].
+            points: (K, P, 3) of the match, relative to the hips [m].
             hips: (K, 3) places [m].
 
         Returns:
             (K, 3) of the hips and (K, 3 P) of the points.
         """
         count = self.points.shape[1]
-        off = (points - self.points) * (np.sqrt(POINTS_COUNT / count) / POINT_STD_M)
-        return (hips - self.hips) / HIPS_STD_M, off.reshape(len(off), -1)
+        residual = (points - self.points) * (np.sqrt(INDEPENDENT_POINTS / count) / POINT_STD_M)
+        return (hips - self.hips) / HIPS_STD_M, residual.reshape(len(residual), -1)

@@ -1,7 +1,7 @@
-"""A library's postures in a row: every motion at small steps of time, on the body of the take.
+"""A library's motions as sequences of postures at small steps of time, on the body of the take.
 
-A motion becomes a *chain* of postures so close that the one between two neighbors is well known; so does its
-mirror image, where that is another motion. A posture in no motion is a chain of its own.
+A motion becomes a *sequence* of postures so close that those between two neighbors are well known; so does
+its mirror image, where that is another motion. A posture in no motion is a sequence of its own.
 """
 
 from collections.abc import Iterator
@@ -20,35 +20,35 @@ from ..library.motion_playback import course
 from ..library.transfer import applied
 
 STEP_M = 0.045
-"""Points move about so far from one posture of a chain to the next: well below what performers differ by."""
+"""Mean distance of the points from one posture to the next: well below what performers differ by."""
 LEAST_RATE, MOST_RATE = 8.0, 25.0
 """Postures per second of a motion."""
 MOST_POSTURES = 450
-"""Of a whole library: with more the steps are widened."""
-TRAVELS_M = 0.3
-"""A cycle that leads farther may also be done on the spot, as on a treadmill."""
+"""Postures of a whole library; with more the steps are widened."""
+TRAVEL_M = 0.3
+"""A cycle that travels farther is also tried on the spot, as on a treadmill."""
 SAME_M = 0.03
-"""A mirror image whose points come this near to those of its motion half a cycle on adds nothing."""
+"""A mirror image whose points come this near to its motion's, half a cycle on, is the same motion."""
 MOST_SHIFTS = 100
 """Times of a cycle at which its mirror image is compared with it."""
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class PostureSequence:
     """One motion at equal steps of time."""
 
     posture: Posture
-    """(N,) with the floor at z = 0, the place along the motion in x and y."""
+    """(N,) with the floor at z = 0 and the motion's travel in x and y."""
     names: tuple[str, ...]
-    """N names: of the library's posture that each is nearest to in time."""
+    """N names of the library's postures nearest in time."""
     mirrored: bool
     step_s: float
-    """Time from each to the next; 0 for a single posture."""
+    """Time from each posture to the next; 0 for a single posture."""
     cyclic: bool
-    track: Array
+    ground_path_m: Array
     """(3 N, 2) the hips' place [m] in the cycle before, this one and the next; (N, 2) without cycles."""
     turn_rad: float
-    """What a cycle adds to the heading."""
+    """Change of the heading in a cycle."""
     motion: str
     """The motion's name; empty for a posture in no motion."""
 
@@ -58,112 +58,119 @@ class Chain:
 
 
 @dataclass(frozen=True, eq=False)
-class Chains:
-    """All chains of a library, their N postures one after the other."""
+class PostureSequences:
+    """All sequences of a library, their N postures one after the other."""
 
     library: Library
     body: Body
-    chains: tuple[Chain, ...]
-    start: IndexArray = field(init=False)
-    """(C + 1,) where each chain begins."""
+    sequences: tuple[PostureSequence, ...]
+    starts: IndexArray = field(init=False)
+    """(C + 1,) index of each sequence's first posture."""
 
     def __post_init__(self) -> None:
-        """Count."""
-        object.__setattr__(self, "start", np.cumsum([0, *(len(chain) for chain in self.chains)]))
+        """Count the postures."""
+        object.__setattr__(self, "starts", np.cumsum([0, *(len(sequence) for sequence in self.sequences)]))
 
     def __len__(self) -> int:
         """Number of postures N."""
-        return int(self.start[-1])
+        return int(self.starts[-1])
 
     @cached_property
     def posture(self) -> Posture:
         """(N,) all postures."""
-        return Posture.concatenate([chain.posture for chain in self.chains])
+        return Posture.concatenate([sequence.posture for sequence in self.sequences])
 
     @cached_property
-    def chain_of(self) -> IndexArray:
-        """(N,) the chain of each posture."""
-        return np.repeat(np.arange(len(self.chains)), np.diff(self.start))
+    def sequence_of(self) -> IndexArray:
+        """(N,) index of each posture's sequence."""
+        return np.repeat(np.arange(len(self.sequences)), np.diff(self.starts))
 
     @cached_property
     def step_s(self) -> Array:
-        """(N,) time from each posture to the next of its chain."""
-        return np.array([chain.step_s for chain in self.chains])[self.chain_of]
+        """(N,) time from each posture to the next of its sequence."""
+        return np.array([sequence.step_s for sequence in self.sequences])[self.sequence_of]
 
     def name(self, index: int) -> str:
-        """Name of the library's posture that one of the N is nearest to."""
-        chain = int(self.chain_of[index])
-        return self.chains[chain].names[index - int(self.start[chain])]
+        """Name of the library's posture nearest to one of the N."""
+        sequence = int(self.sequence_of[index])
+        return self.sequences[sequence].names[index - int(self.starts[sequence])]
 
     def is_mirrored(self, index: int) -> bool:
         """Whether left and right are exchanged in one of the N."""
-        return self.chains[int(self.chain_of[index])].mirrored
+        return self.sequences[int(self.sequence_of[index])].mirrored
 
-    def advanced(self, steps: int) -> tuple[IndexArray, Array, Array]:
-        """Where each posture leads.
+    def advance(self, steps: int) -> tuple[IndexArray, Array, Array]:
+        """The postures some steps later.
 
         Args:
             steps: Postures to go on by, at most a cycle; negative ones go back.
 
         Returns:
-            (N,) index of the posture that comes so many steps later, -1 where the chain has ended; (N, 2) the
-            way there [m], in the axes of the motion; (N,) what the heading of the motion's axes changes by
-            because a cycle has begun again [rad].
+            (N,) index of the posture so many steps later, -1 where the sequence has ended; (N, 2) the travel
+            there [m], in the axes of the motion; (N,) the change of the heading of these axes, where a new
+            cycle has begun [rad].
         """
         index = np.full(len(self), -1, dtype=np.intp)
-        way, turn = np.zeros((len(self), 2)), np.zeros(len(self))
-        for first, chain in zip(self.start, self.chains, strict=False):
-            count = len(chain)
+        travel, turn = np.zeros((len(self), 2)), np.zeros(len(self))
+        for first, sequence in zip(self.starts, self.sequences, strict=False):
+            count = len(sequence)
             own = np.arange(count)
-            if not chain.cyclic:
+            if not sequence.cyclic:
                 own = own[(own + steps >= 0) & (own + steps < count)]
             index[first + own] = first + (own + steps) % count
-            if chain.cyclic and abs(steps) <= count:
-                way[first + own] = chain.track[count + own + steps] - chain.track[count + own]
-                turn[first + own] = (own + steps) // count * chain.turn_rad
-            elif not chain.cyclic:
-                way[first + own] = chain.track[own + steps] - chain.track[own]
-        return index, way, turn
+            if sequence.cyclic and abs(steps) <= count:
+                travel[first + own] = (
+                    sequence.ground_path_m[count + own + steps] - sequence.ground_path_m[count + own]
+                )
+                turn[first + own] = (own + steps) // count * sequence.turn_rad
+            elif not sequence.cyclic:
+                travel[first + own] = sequence.ground_path_m[own + steps] - sequence.ground_path_m[own]
+        return index, travel, turn
 
 
-def library_chains(library: Library, body: Body) -> Chains:
-    """All chains of a library on the body of a take."""
+def library_sequences(library: Library, body: Body) -> PostureSequences:
+    """All sequences of a library on the body of a take."""
     spacing = 1.0
-    chains = tuple(_chains(library, body, spacing))
-    total = sum(len(chain) for chain in chains)
+    sequences = tuple(_sequences(library, body, spacing))
+    total = sum(len(sequence) for sequence in sequences)
     if total > MOST_POSTURES:
-        chains = tuple(_chains(library, body, total / MOST_POSTURES))
-    return Chains(library, body, chains)
+        sequences = tuple(_sequences(library, body, total / MOST_POSTURES))
+    return PostureSequences(library, body, sequences)
 
 
-def _chains(library: Library, body: Body, spacing: float) -> Iterator[Chain]:
+def _sequences(library: Library, body: Body, spacing: float) -> Iterator[PostureSequence]:
     used = {step.posture for motion in library.motions for step in motion.steps}
     for motion in library.motions:
-        chain = _chain(library, motion, body, spacing)
-        other = _mirrored(chain)
-        for each in (chain,) if _repeats(chain, other, body) else (chain, other):
+        sequence = _sequence(library, motion, body, spacing)
+        mirror_image = _mirrored(sequence)
+        for each in (
+            (sequence,) if _is_same_motion(sequence, mirror_image, body) else (sequence, mirror_image)
+        ):
             yield each
-            if each.cyclic and np.linalg.norm(each.track[len(each)] - each.track[0]) > TRAVELS_M:
-                yield replace(each, track=np.zeros_like(each.track))
+            if (
+                each.cyclic
+                and np.linalg.norm(each.ground_path_m[len(each)] - each.ground_path_m[0]) > TRAVEL_M
+            ):
+                yield replace(each, ground_path_m=np.zeros_like(each.ground_path_m))
     for loose in library.postures:
         if loose.name in used:
             continue
         posture = Posture.stack([applied(loose, library.actor, body)])
-        single = Chain(posture, (loose.name,), False, 0.0, False, np.zeros((1, 2)), 0.0, "")
+        single = PostureSequence(posture, (loose.name,), False, 0.0, False, np.zeros((1, 2)), 0.0, "")
         yield single
-        other = _mirrored(single)
-        if not _repeats(single, other, body):
-            yield other
+        mirror_image = _mirrored(single)
+        if not _is_same_motion(single, mirror_image, body):
+            yield mirror_image
 
 
-def _chain(library: Library, motion: LibraryMotion, body: Body, spacing: float) -> Chain:
+def _sequence(library: Library, motion: LibraryMotion, body: Body, spacing: float) -> PostureSequence:
     """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
     whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
     fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
     posture = course(library, motion, body, fine)
     points = body.points(body.pose(posture)) - posture.translation[:, None]
-    way = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
-    rate = np.clip(way / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
+    rate = np.clip(length / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
     count = int(np.clip(np.ceil(whole * rate), 3, MOST_POSTURES))
     step = whole / count if motion.cyclic else whole / (count - 1)
     time = step * np.arange(count)
@@ -173,24 +180,33 @@ def _chain(library: Library, motion: LibraryMotion, body: Body, spacing: float) 
         away = np.minimum(away, whole - away)
     names = tuple(motion.steps[int(i)].posture for i in away.argmin(axis=1))
     sampled = course(library, motion, body, time)
-    track = sampled.translation[:, :2]
+    ground_path_m = sampled.translation[:, :2]
     if motion.cyclic:
         around = step * np.arange(-count, 2 * count)
-        track = course(library, motion, body, around).translation[:, :2]
+        ground_path_m = course(library, motion, body, around).translation[:, :2]
     turn = motion.travel[2] if motion.cyclic else 0.0
-    return Chain(sampled, names, False, step, motion.cyclic, track, turn, motion.name)
+    return PostureSequence(sampled, names, False, step, motion.cyclic, ground_path_m, turn, motion.name)
 
 
-def _mirrored(chain: Chain) -> Chain:
-    track = chain.track * np.array([-1.0, 1.0])
-    posture = mirrored(chain.posture)
-    return Chain(posture, chain.names, True, chain.step_s, chain.cyclic, track, -chain.turn_rad, chain.motion)
+def _mirrored(sequence: PostureSequence) -> PostureSequence:
+    ground_path_m = sequence.ground_path_m * np.array([-1.0, 1.0])
+    posture = mirrored(sequence.posture)
+    return PostureSequence(
+        posture,
+        sequence.names,
+        True,
+        sequence.step_s,
+        sequence.cyclic,
+        ground_path_m,
+        -sequence.turn_rad,
+        sequence.motion,
+    )
 
 
-def _repeats(chain: Chain, other: Chain, body: Body) -> bool:
-    """Whether a mirror image is its own motion again, at the same or, in a cycle, at another time."""
-    first, second = (_shape(entry.posture, body) for entry in (chain, other))
-    shifts = range(0, len(chain), -(-len(chain) // MOST_SHIFTS)) if chain.cyclic else (0,)
+def _is_same_motion(sequence: PostureSequence, mirror_image: PostureSequence, body: Body) -> bool:
+    """Whether a mirror image equals its motion, at the same or, in a cycle, at another time."""
+    first, second = (_shape(entry.posture, body) for entry in (sequence, mirror_image))
+    shifts = range(0, len(sequence), -(-len(sequence) // MOST_SHIFTS)) if sequence.cyclic else (0,)
     apart = [np.linalg.norm(np.roll(second, shift, axis=0) - first, axis=-1).mean() for shift in shifts]
     return float(min(apart)) < SAME_M
 

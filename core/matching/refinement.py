@@ -1,7 +1,7 @@
-"""From the best states to values between them: time within the motion, heading and place of every frame.
+"""Refinement of a state path to continuous values: time within the motion, heading and place of every frame.
 
-Gauss-Newton over all frames looked at, at once. What the footage says is weighed against a motion that goes
-on, turns and travels evenly; markers that are far off count less, as performers hold a limb otherwise.
+Gauss-Newton over all sampled frames at once. The footage's residuals are weighed against a motion that goes
+on, turns and travels evenly; outlying markers count less (Student's t), as performers hold limbs differently.
 """
 
 from collections.abc import Generator
@@ -13,187 +13,209 @@ from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.heading import about_up
-from .frame_likelihood import Sight, square_root
-from .noise_scales import DEGREES, Habits, scale
-from .posed_constraints import POINTS_COUNT, Anchors
-from .sequence_table import CourseTable, Reading
+from .frame_likelihood import FrameLikelihood, square_root
+from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales, student_scales
+from .posed_constraints import INDEPENDENT_POINTS, PosedConstraints
+from .sequence_table import SequenceTable
 
 UNKNOWNS = 5
-"""Time within the chain [s], heading [rad], place [m]."""
+"""Time within the sequence [s], heading [rad], place of the hips [m]."""
 ITERATIONS = 10
 PROBE = 5e-3
-"""By which derivatives are taken [s, rad, m]."""
-LARGEST = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
-"""No unknown moves farther at once."""
-EVEN_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
-"""Of the speed as a share of the usual one, of turning [rad/s] and of going [m/s] besides the motion's:
-upwards the floor tells it, and who jumps or crouches otherwise is fast."""
-CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
-"""Of what these change by in a second, as the square root of time."""
-LEAP_STD = np.array([np.inf, np.inf, 0.7, 0.7, 1.5])
-"""The same where another movement begins, whose time and axes are its own: nobody leaves the spot by that."""
-MOST_SIZE = 1.5
-"""No marker is larger or smaller than on an average body by more."""
-HELD = 1e-2
-"""Least information on each unknown, so that all stay where nothing is known of them."""
+"""Step of numerical derivatives [s, rad, m]."""
+LARGEST_STEP = np.array([0.06, 0.2, 0.2, 0.2, 0.2])
+"""Largest change of an unknown in one iteration."""
+RATE_STD = np.array([0.4, 0.8, 0.35, 0.35, 1.5])
+"""Standard deviation of the rates: speed as a share of the usual one, turning [rad/s] and going [m/s] besides
+the motion's own. Upwards it is large: the floor tells the height, and a jump or crouch of another kind is
+fast."""
+RATE_CHANGE_STD = np.array([1.0, 2.0, 0.5, 0.5, 6.0])
+"""Standard deviation of the rates' change in a second; it grows with the square root of time."""
+JUMP_STD = np.array([np.inf, np.inf, 0.7, 0.7, 1.5])
+"""The same as `RATE_STD` at a jump to another movement: its time and axes are its own, the place stays."""
+LARGEST_SIZE = 1.5
+"""Largest ratio of a marker's size to an average body's, either way."""
+LEAST_INFORMATION = 1e-2
+"""Added to each unknown's information, so that undetermined ones stay."""
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
-    """Where a performer is in a library at T frames."""
+class ContinuousPath:
+    """Sequence, time, heading and place at T frames."""
 
-    chain: IndexArray
-    """(T,)."""
-    joined: BoolArray
-    """(T - 1,) whether the motion goes on from each frame to the next, and no other begins."""
+    sequence: IndexArray
+    """(T,) index of the sequence."""
+    continues: BoolArray
+    """(T - 1,) whether the motion goes on from each frame to the next without a jump."""
     values: Array
-    """(T, 5) time from the chain's time 0 [s], going on over cycles; heading of the motion's axes then [rad];
-    place of the hips [m]."""
+    """(T, 5) time from the sequence's time 0 [s], counted on over cycles; heading of the motion's axes at
+    that time 0 [rad]; place of the hips [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
-    """What all iterations share."""
+    """Gauss-Newton refinement of a path, and its residuals."""
 
-    table: CourseTable
-    sights: list[Sight]
-    clock_s: Array
+    table: SequenceTable
+    likelihoods: list[FrameLikelihood]
+    time_s: Array
     """(T,) times of the frames."""
     tempering: float
     floor_m: float | None
     floor_std_m: float
-    anchors: Anchors | None = None
-    """What is posed; each of its frames is one of the T."""
-    anchored: IndexArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    """(K,) which of the T frames those are."""
+    constraints: PosedConstraints | None = None
+    """Of the posed keyframes, each of whose frames is one of the T."""
+    constraint_rows: IndexArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    """(K,) which of the T frames are posed."""
 
-    def refined(self, course: Course) -> Generator[None, None, Course]:
-        """The course that explains the footage best, nearby; yields now and then."""
-        values = np.array(course.values)
+    def refine(self, path: ContinuousPath) -> Generator[None, None, ContinuousPath]:
+        """The nearby path that explains the footage best; yields once an iteration."""
+        values = np.array(path.values)
         for _ in range(ITERATIONS):
             yield
-            size = self._sizes(course.chain, values)
-            matrix, gradient = self._footage(course.chain, values, size)
-            self._posed(course.chain, values, matrix, gradient)
-            self._evenness(course, values, matrix, gradient)
+            size = self._sizes(path.sequence, values)
+            matrix, gradient = self._footage(path.sequence, values, size)
+            self._add_posed(path.sequence, values, matrix, gradient)
+            self._add_smoothness(path, values, matrix, gradient)
             step = solveh_banded(_banded(matrix), -gradient.ravel()).reshape(values.shape)
-            values = values + np.clip(step, -LARGEST, LARGEST)
-        return Course(course.chain, course.joined, values)
+            values = values + np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+        return ContinuousPath(path.sequence, path.continues, values)
 
     @cached_property
-    def _seen(self) -> tuple[Array, ...]:
-        names = ("weight", "axes", "root", "whole", "location", "backward", "pixel", "root_std_m")
-        return tuple(np.array([getattr(sight, name) for sight in self.sights]) for name in names)
+    def _observations(self) -> tuple[Array, ...]:
+        names = (
+            "weight",
+            "image_axes",
+            "extent",
+            "unclipped",
+            "location",
+            "backward",
+            "pixel_size",
+            "extent_std_m",
+        )
+        return tuple(
+            np.array([getattr(likelihood, name) for likelihood in self.likelihoods]) for name in names
+        )
 
-    def _sizes(self, chain: IndexArray, values: Array) -> Array:
-        """(M,) how much larger each marker is than on an average body, over the clip.
+    def _sizes(self, sequence: IndexArray, values: Array) -> Array:
+        """(M,) size of each marker over the clip, relative to an average body's.
 
-        Clothes and where a color ends are the same in all frames: taken as news in each they would say more
-        of the distance than the floor does.
+        Clothes and the color's ends are the same in all frames: as independent errors of each they would tell
+        more of the distance than the floor does.
         """
-        _, _, root, whole, *_ = self._seen
-        shown, depth = self._shown(chain, values)
-        seen = root * depth[..., None]
-        known = whole & (np.abs(seen).sum(axis=-1) > 0.0)
-        ratio = np.sum(seen * shown, axis=-1) / np.maximum(np.sum(shown * shown, axis=-1), 1e-12)
-        sizes = np.ones(whole.shape[1])
+        _, _, extent, unclipped, *_ = self._observations
+        predicted, depth = self._predicted_extents(sequence, values)
+        seen = extent * depth[..., None]
+        known = unclipped & (np.abs(seen).sum(axis=-1) > 0.0)
+        ratio = np.sum(seen * predicted, axis=-1) / np.maximum(np.sum(predicted * predicted, axis=-1), 1e-12)
+        sizes = np.ones(unclipped.shape[1])
         for marker in range(len(sizes)):
             if known[:, marker].any():
                 sizes[marker] = np.exp(np.median(np.log(np.maximum(ratio[known[:, marker], marker], 0.1))))
-        return np.clip(sizes, 1.0 / MOST_SIZE, MOST_SIZE)
+        return np.clip(sizes, 1.0 / LARGEST_SIZE, LARGEST_SIZE)
 
-    def _shown(self, chain: IndexArray, values: Array) -> tuple[Array, Array]:
+    def _predicted_extents(self, sequence: IndexArray, values: Array) -> tuple[Array, Array]:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
-        _, axes, _, _, location, backward, *_ = self._seen
-        read: Reading = self.table.read(chain, values[:, 0])
+        _, image_axes, _, _, location, backward, *_ = self._observations
+        samples = self.table.sample(sequence, values[:, 0])
         turn = about_up(values[:, 1])
-        middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
-        depth = np.maximum(-np.einsum("tmi,ti->tm", middle, backward), 0.1)
-        spread = turn[:, None] @ read.spread @ np.swapaxes(turn, -1, -2)[:, None]
-        image = np.einsum("tmki,tmij,tmlj->tmkl", axes, spread, axes, optimize=True)
+        centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        depth = np.maximum(-np.einsum("tmi,ti->tm", centroid, backward), 0.1)
+        second_moment = turn[:, None] @ samples.second_moment @ np.swapaxes(turn, -1, -2)[:, None]
+        image = np.einsum("tmki,tmij,tmlj->tmkl", image_axes, second_moment, image_axes, optimize=True)
         return np.stack(square_root(image[..., 0, 0], image[..., 0, 1], image[..., 1, 1]), axis=-1), depth
 
-    def habits(self, course: Course) -> Habits:
-        """What the whole clip says of the performer."""
-        weight, _, _, whole, *_ = self._seen
-        size = self._sizes(course.chain, course.values)
-        off, extent, _ = self.residuals(course.chain, course.values, size)
-        return Habits(
-            scale(off, weight > 0.0, self.tempering), scale(extent, whole > 0.0, self.tempering), size
+    def noise_scales(self, path: ContinuousPath) -> NoiseScales:
+        """The performer's noise scales over the whole clip."""
+        weight, _, _, unclipped, *_ = self._observations
+        size = self._sizes(path.sequence, path.values)
+        centroid_residual, extent_residual, _ = self.residuals(path.sequence, path.values, size)
+        return NoiseScales(
+            student_scales(centroid_residual, weight > 0.0, self.tempering),
+            student_scales(extent_residual, unclipped > 0.0, self.tempering),
+            size,
         )
 
-    def residuals(self, chain: IndexArray, values: Array, size: Array) -> tuple[Array, Array, Array]:
-        """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T, 1) of the floor."""
-        weight, axes, root, whole, location, _, pixel, root_std = self._seen
-        read: Reading = self.table.read(chain, values[:, 0])
+    def residuals(self, sequence: IndexArray, values: Array, size: Array) -> tuple[Array, Array, Array]:
+        """Residuals in standard deviations: centroids (T, M, 2), extents (T, M, 3), the floor (T, 1)."""
+        weight, image_axes, extent, unclipped, location, _, pixel_size, extent_std = self._observations
+        samples = self.table.sample(sequence, values[:, 0])
         turn = about_up(values[:, 1])
-        middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
-        off = np.einsum("tmki,tmi->tmk", axes, middle) * weight[..., None]
-        shown, depth = self._shown(chain, values)
-        shown = shown * size[:, None]
-        deviation = np.hypot(root_std, pixel[:, None] * depth)
-        extent = (shown - root * depth[..., None]) / deviation[..., None] * np.array([1.0, np.sqrt(2.0), 1.0])
-        extent = np.where(whole[..., None], extent, 0.0)
+        centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        centroid_residual = np.einsum("tmki,tmi->tmk", image_axes, centroid) * weight[..., None]
+        predicted, depth = self._predicted_extents(sequence, values)
+        predicted = predicted * size[:, None]
+        deviation = np.hypot(extent_std, pixel_size[:, None] * depth)
+        extent_residual = (
+            (predicted - extent * depth[..., None])
+            / deviation[..., None]
+            * np.array([1.0, np.sqrt(2.0), 1.0])
+        )
+        extent_residual = np.where(unclipped[..., None], extent_residual, 0.0)
         if self.floor_m is None:
-            return off, extent, np.zeros((len(values), 1))
-        over = values[:, 4] - read.height - self.floor_m
-        return off, extent, over[:, None] / self.floor_std_m
+            return centroid_residual, extent_residual, np.zeros((len(values), 1))
+        over = values[:, 4] - samples.hip_height_m - self.floor_m
+        return centroid_residual, extent_residual, over[:, None] / self.floor_std_m
 
-    def _footage(self, chain: IndexArray, values: Array, size: Array) -> tuple[Array, Array]:
-        """Normal equations: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
-        now = self.residuals(chain, values, size)
-        rows = self._weighted(now, now)
+    def _footage(self, sequence: IndexArray, values: Array, size: Array) -> tuple[Array, Array]:
+        """Normal equations of the footage: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
+        now = self.residuals(sequence, values, size)
+        rows = self._robust_rows(now, now)
         jacobian = np.empty((*rows.shape, UNKNOWNS))
         for unknown in range(UNKNOWNS):
             probe = np.array(values)
             probe[:, unknown] += PROBE
-            jacobian[..., unknown] = (self._weighted(self.residuals(chain, probe, size), now) - rows) / PROBE
+            jacobian[..., unknown] = (
+                self._robust_rows(self.residuals(sequence, probe, size), now) - rows
+            ) / PROBE
         matrix = np.zeros((3, len(values), UNKNOWNS, UNKNOWNS))
-        matrix[0] = np.swapaxes(jacobian, -1, -2) @ jacobian + HELD * np.eye(UNKNOWNS)
+        matrix[0] = np.swapaxes(jacobian, -1, -2) @ jacobian + LEAST_INFORMATION * np.eye(UNKNOWNS)
         return matrix, np.einsum("tri,tr->ti", jacobian, rows)
 
-    def _posed(self, chain: IndexArray, values: Array, matrix: Array, gradient: Array) -> None:
-        """Add what posed keyframes say; not tempered, as nothing else says the same again."""
-        if self.anchors is None or not len(self.anchored):
+    def _add_posed(self, sequence: IndexArray, values: Array, matrix: Array, gradient: Array) -> None:
+        """Add the posed keyframes; not tempered, as no other frame says the same."""
+        if self.constraints is None or not len(self.constraint_rows):
             return
-        rows, own = self.anchored, chain[self.anchored]
+        rows, own = self.constraint_rows, sequence[self.constraint_rows]
 
-        def left(at: Array) -> tuple[Array, Array]:
+        def residuals(at: Array) -> tuple[Array, Array]:
             points = self.table.points(own, at[:, 0]) @ np.swapaxes(about_up(at[:, 1]), -1, -2)
-            return self.anchors.residuals(points, at[:, 2:]) if self.anchors else (at, at)
+            return self.constraints.residuals(points, at[:, 2:]) if self.constraints else (at, at)
 
-        now = left(values[rows])
+        now = residuals(values[rows])
         trust = np.ones((len(rows), now[0].shape[1] + now[1].shape[1]))
-        # A posture that the library does not hold says little of the time; the place holds all the same.
-        spread = (now[1] ** 2).sum(axis=1, keepdims=True)
-        trust[:, 3:] = np.sqrt((DEGREES + POINTS_COUNT * 3.0) / (DEGREES + spread))
+        # A posture missing in the library tells little of the time; its place counts in full.
+        squared = (now[1] ** 2).sum(axis=1, keepdims=True)
+        trust[:, 3:] = np.sqrt(
+            (DEGREES_OF_FREEDOM + INDEPENDENT_POINTS * 3.0) / (DEGREES_OF_FREEDOM + squared)
+        )
         residual = np.concatenate(now, axis=1) * trust
         jacobian = np.empty((*residual.shape, UNKNOWNS))
         for unknown in range(UNKNOWNS):
             probe = values[rows].copy()
             probe[:, unknown] += PROBE
-            jacobian[..., unknown] = (np.concatenate(left(probe), axis=1) * trust - residual) / PROBE
+            jacobian[..., unknown] = (np.concatenate(residuals(probe), axis=1) * trust - residual) / PROBE
         np.add.at(matrix[0], rows, np.swapaxes(jacobian, -1, -2) @ jacobian)
         np.add.at(gradient, rows, np.einsum("tri,tr->ti", jacobian, residual))
 
-    def _weighted(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
-        """(T, R) residuals, weighted as Student's t has it with what they are at some place."""
+    def _robust_rows(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
+        """(T, R) residuals, weighted by Student's t with their values at `at`."""
         rows = []
         for value, now in zip(values, at, strict=True):
             squared = (now**2).sum(axis=-1)
-            trust = np.sqrt((DEGREES + now.shape[-1]) / (DEGREES + squared))
+            trust = np.sqrt((DEGREES_OF_FREEDOM + now.shape[-1]) / (DEGREES_OF_FREEDOM + squared))
             rows.append((value * trust[..., None]).reshape(len(value), -1))
         return np.asarray(np.sqrt(self.tempering) * np.concatenate(rows, axis=1))
 
-    def _evenness(self, course: Course, values: Array, matrix: Array, gradient: Array) -> None:
-        """Add that motions go on at a usual speed and change it little."""
-        duration = np.diff(self.clock_s)[:, None]
-        rate, by_first, by_second = self._rates(course.chain, values, duration, course.joined)
-        joined = course.joined.astype(float)[:, None]
-        even = np.where(joined > 0.0, 1.0 / EVEN_STD, 1.0 / LEAP_STD)
+    def _add_smoothness(self, path: ContinuousPath, values: Array, matrix: Array, gradient: Array) -> None:
+        """Add the prior of an even motion: usual rates, slowly changing."""
+        duration = np.diff(self.time_s)[:, None]
+        rate, by_first, by_second = self._rates(path.sequence, values, duration, path.continues)
+        continues = path.continues.astype(float)[:, None]
+        even = np.where(continues > 0.0, 1.0 / RATE_STD, 1.0 / JUMP_STD)
         scale = even * np.sqrt(self.tempering)
         usual = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-        _add(
+        _add_rows(
             matrix,
             gradient,
             (rate - usual) * scale,
@@ -202,20 +224,22 @@ class Refinement:
         if len(rate) < 2:
             return
         lasting = np.sqrt(0.5 * (duration[1:] + duration[:-1]))
-        scale = joined[1:] * joined[:-1] / (CHANGE_STD * lasting)
+        scale = continues[1:] * continues[:-1] / (RATE_CHANGE_STD * lasting)
         blocks = [-by_first[:-1], by_first[1:] - by_second[:-1], by_second[1:]]
-        _add(matrix, gradient, (rate[1:] - rate[:-1]) * scale, [block * scale[..., None] for block in blocks])
+        _add_rows(
+            matrix, gradient, (rate[1:] - rate[:-1]) * scale, [block * scale[..., None] for block in blocks]
+        )
 
     def _rates(
-        self, chain: IndexArray, values: Array, duration: Array, joined: BoolArray
+        self, sequence: IndexArray, values: Array, duration: Array, continues: BoolArray
     ) -> tuple[Array, Array, Array]:
-        """(T - 1, 5) speed, turning and going besides the motion's, and their derivatives by both frames."""
-        way = self.table.read(chain, values[:, 0]).way
-        further = self.table.read(chain, values[:, 0] + PROBE).way
-        velocity = (further - way) / PROBE
+        """(T - 1, 5) rates of time, heading and place besides the motion's; derivatives by both frames."""
+        travel = self.table.sample(sequence, values[:, 0]).travel
+        further = self.table.sample(sequence, values[:, 0] + PROBE).travel
+        velocity = (further - travel) / PROBE
         turn = about_up(0.5 * (values[1:, 1] + values[:-1, 1]))
-        gone = np.where(joined[:, None], np.diff(way, axis=0), 0.0)
-        earlier, later = velocity[:-1] * joined[:, None], velocity[1:] * joined[:, None]
+        gone = np.where(continues[:, None], np.diff(travel, axis=0), 0.0)
+        earlier, later = velocity[:-1] * continues[:, None], velocity[1:] * continues[:, None]
         change = np.diff(values, axis=0)
         change[:, 2:] -= (turn @ gone[..., None])[..., 0]
         unit = np.broadcast_to(np.eye(UNKNOWNS), (len(gone), UNKNOWNS, UNKNOWNS))
@@ -230,7 +254,7 @@ class Refinement:
         return change * over, by_first * over[..., None], by_second * over[..., None]
 
 
-def _add(matrix: Array, gradient: Array, rows: Array, blocks: list[Array]) -> None:
+def _add_rows(matrix: Array, gradient: Array, rows: Array, blocks: list[Array]) -> None:
     """Add rows (N, R) that depend on consecutive frames through blocks (N, R, 5)."""
     count = len(rows)
     for first, left in enumerate(blocks):

@@ -1,4 +1,4 @@
-"""The chains of a library as tables that are read at any time: markers, height and way."""
+"""Tables of a library's sequences, interpolated at any time: marker moments, height, travel, postures."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,128 +8,134 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.heading import about_up, headed
 from ..body.posture import Posture
-from .marker_moments import Solids
-from .posture_sequences import Chains
+from .marker_moments import MarkerMoments
+from .posture_sequences import PostureSequences
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
-    """What T times of chains hold, in the axes of a motion that heads straight ahead at its beginning."""
+class SequenceSamples:
+    """Samples of sequences at T times, in the axes of a motion that heads straight ahead at its beginning."""
 
-    middle: Array
-    """(T, M, 3) [m]."""
-    spread: Array
-    """(T, M, 3, 3) [m²]."""
-    height: Array
-    """(T,) [m]."""
-    way: Array
-    """(T, 3) where the hips are, relative to where they were at the chain's time 0 [m]."""
+    centroid: Array
+    """(T, M, 3) of the markers, relative to the hips [m]."""
+    second_moment: Array
+    """(T, M, 3, 3) of the markers [m²]."""
+    hip_height_m: Array
+    """(T,) height of the hips [m]."""
+    travel: Array
+    """(T, 3) travel of the hips since the sequence's time 0 [m]."""
 
 
 @dataclass(frozen=True, eq=False)
-class CourseTable:
-    """All chains at their steps of time, a cycle's first posture once more at its end."""
+class SequenceTable:
+    """All sequences at their steps of time; a cycle's first posture comes once more at its end."""
 
-    chains: Chains
-    solids: Solids
+    sequences: PostureSequences
+    moments: MarkerMoments
 
     @cached_property
     def _rows(self) -> tuple[IndexArray, IndexArray]:
-        """The posture of each row, and where each chain's rows begin."""
-        rows, start = [], [0]
-        for first, chain in zip(self.chains.start, self.chains.chains, strict=False):
-            own = first + np.arange(len(chain))
-            rows.append(np.append(own, first) if chain.cyclic else own)
-            start.append(start[-1] + len(rows[-1]))
-        return np.concatenate(rows), np.array(start)
+        """Index of each row's posture, and each sequence's first row."""
+        rows, starts = [], [0]
+        for first, sequence in zip(self.sequences.starts, self.sequences.sequences, strict=False):
+            own = first + np.arange(len(sequence))
+            rows.append(np.append(own, first) if sequence.cyclic else own)
+            starts.append(starts[-1] + len(rows[-1]))
+        return np.concatenate(rows), np.array(starts)
 
     @cached_property
-    def _turned(self) -> tuple[Array, Array, Array]:
-        """Middles, spreads and ways (R, 3) of all rows; a cycle's end is turned by what the cycle turns."""
-        rows, start = self._rows
-        middle, spread = self.solids.middle[rows], self.solids.spread[rows]
-        way = np.zeros((len(rows), 3))
-        for index, chain in enumerate(self.chains.chains):
-            own = slice(start[index], start[index + 1])
-            count = len(chain)
-            track = chain.track[count : 2 * count + 1] if chain.cyclic else chain.track
-            way[own, :2] = track - track[0]
-            way[own, 2] = self.solids.height[rows[own]] - self.solids.height[rows[own.start]]
-            if chain.cyclic:
-                turn = about_up(np.array(chain.turn_rad))
-                middle[own.stop - 1] = middle[own.stop - 1] @ turn.T
-                spread[own.stop - 1] = turn @ spread[own.stop - 1] @ turn.T
-        return middle, spread, way
+    def _moments(self) -> tuple[Array, Array, Array]:
+        """Centroids, second moments and travels (R, 3) of all rows; a cycle's last row has its turn."""
+        rows, starts = self._rows
+        centroid, second_moment = self.moments.centroid[rows], self.moments.second_moment[rows]
+        travel = np.zeros((len(rows), 3))
+        for index, sequence in enumerate(self.sequences.sequences):
+            own = slice(starts[index], starts[index + 1])
+            count = len(sequence)
+            ground_path_m = (
+                sequence.ground_path_m[count : 2 * count + 1] if sequence.cyclic else sequence.ground_path_m
+            )
+            travel[own, :2] = ground_path_m - ground_path_m[0]
+            travel[own, 2] = self.moments.hip_height_m[rows[own]] - self.moments.hip_height_m[rows[own.start]]
+            if sequence.cyclic:
+                turn = about_up(np.array(sequence.turn_rad))
+                centroid[own.stop - 1] = centroid[own.stop - 1] @ turn.T
+                second_moment[own.stop - 1] = turn @ second_moment[own.stop - 1] @ turn.T
+        return centroid, second_moment, travel
 
-    def _between(self, chain: IndexArray, time_s: Array) -> tuple[IndexArray, IndexArray, Array, IndexArray]:
-        """(T,) the rows before and after some times, how far between them, and in which cycle."""
-        _, start = self._rows
-        step = np.array([entry.step_s for entry in self.chains.chains])[chain]
-        place = np.where(step > 0.0, time_s / np.where(step > 0.0, step, 1.0), 0.0)
-        last = (np.diff(start) - 1)[chain]
-        cyclic = np.array([entry.cyclic for entry in self.chains.chains])[chain]
-        cycle = np.where(cyclic, np.floor(place / np.maximum(last, 1)), 0.0)
-        local = np.clip(place - cycle * last, 0.0, last)
+    def _bracket(
+        self, sequence: IndexArray, time_s: Array
+    ) -> tuple[IndexArray, IndexArray, Array, IndexArray]:
+        """(T,) rows before and after some times, the share between them, and the cycle."""
+        _, starts = self._rows
+        step = np.array([entry.step_s for entry in self.sequences.sequences])[sequence]
+        position = np.where(step > 0.0, time_s / np.where(step > 0.0, step, 1.0), 0.0)
+        last = (np.diff(starts) - 1)[sequence]
+        cyclic = np.array([entry.cyclic for entry in self.sequences.sequences])[sequence]
+        cycle = np.where(cyclic, np.floor(position / np.maximum(last, 1)), 0.0)
+        local = np.clip(position - cycle * last, 0.0, last)
         low = np.minimum(local.astype(np.intp), np.maximum(last - 1, 0))
-        first = start[:-1][chain] + low
-        second = np.minimum(first + 1, start[1:][chain] - 1)
+        first = starts[:-1][sequence] + low
+        second = np.minimum(first + 1, starts[1:][sequence] - 1)
         return first, second, local - low, cycle.astype(np.intp)
 
-    def read(self, chain: IndexArray, time_s: Array) -> Reading:
-        """What the chains hold at some times; before a chain's beginning and after its end it rests."""
+    def sample(self, sequence: IndexArray, time_s: Array) -> SequenceSamples:
+        """Interpolate sequences at some times; before its beginning and after its end a sequence rests."""
         rows, _ = self._rows
-        middles, spreads, ways = self._turned
-        first, second, share, cycle = self._between(chain, time_s)
+        centroids, second_moments, travels = self._moments
+        first, second, share, cycle = self._bracket(sequence, time_s)
 
         def between(values: Array) -> Array:
             weight = share.reshape(-1, *[1] * (values.ndim - 1))
             return np.asarray((1.0 - weight) * values[first] + weight * values[second])
 
-        turn = self._turn(chain, cycle)
-        middle = between(middles) @ np.swapaxes(turn, -1, -2)
-        spread = turn[:, None] @ between(spreads) @ np.swapaxes(turn, -1, -2)[:, None]
-        way = self._carried(between(ways), chain, cycle)
-        return Reading(middle, spread, between(self.solids.height[rows]), way)
+        turn = self._turn(sequence, cycle)
+        centroid = between(centroids) @ np.swapaxes(turn, -1, -2)
+        second_moment = turn[:, None] @ between(second_moments) @ np.swapaxes(turn, -1, -2)[:, None]
+        travel = self._over_cycles(between(travels), sequence, cycle)
+        return SequenceSamples(centroid, second_moment, between(self.moments.hip_height_m[rows]), travel)
 
-    def points(self, chain: IndexArray, time_s: Array) -> Array:
-        """(T, P, 3) the body's points at some times, relative to the hips [m], in the axes of `read`."""
-        rows, start = self._rows
-        points = self.solids.points[rows]
-        for index, entry in enumerate(self.chains.chains):
-            points[start[index + 1] - 1] = points[start[index + 1] - 1] @ about_up(np.array(entry.turn_rad)).T
-        first, second, share, cycle = self._between(chain, time_s)
+    def points(self, sequence: IndexArray, time_s: Array) -> Array:
+        """(T, P, 3) the body's points at some times, relative to the hips [m], in the axes of `sample`."""
+        rows, starts = self._rows
+        points = self.moments.points[rows]
+        for index, entry in enumerate(self.sequences.sequences):
+            points[starts[index + 1] - 1] = (
+                points[starts[index + 1] - 1] @ about_up(np.array(entry.turn_rad)).T
+            )
+        first, second, share, cycle = self._bracket(sequence, time_s)
         weight = share[:, None, None]
         between = (1.0 - weight) * points[first] + weight * points[second]
-        return np.asarray(between @ np.swapaxes(self._turn(chain, cycle), -1, -2))
+        return np.asarray(between @ np.swapaxes(self._turn(sequence, cycle), -1, -2))
 
-    def posture(self, chain: IndexArray, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
+    def posture(self, sequence: IndexArray, time_s: Array, heading_rad: Array, hips: Array) -> Posture:
         """(T,) postures at some times, with headings of the motion's beginning and places of the hips [m]."""
-        rows, start = self._rows
-        first, second, share, cycle = self._between(chain, time_s)
+        rows, starts = self._rows
+        first, second, share, cycle = self._bracket(sequence, time_s)
         ends = np.zeros(len(rows))
-        ends[start[1:] - 1] = [entry.turn_rad for entry in self.chains.chains]
-        postures = headed(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
+        ends[starts[1:] - 1] = [entry.turn_rad for entry in self.sequences.sequences]
+        postures = headed(self.sequences.posture[rows], ends, np.zeros((len(rows), 3)))
         led = postures[first].plus(share[:, None] * postures[second].minus(postures[first]))
-        turned = np.array([entry.turn_rad for entry in self.chains.chains])[chain]
+        turned = np.array([entry.turn_rad for entry in self.sequences.sequences])[sequence]
         return headed(led, heading_rad + cycle * turned, hips)
 
-    def nearest(self, chain: IndexArray, time_s: Array) -> IndexArray:
-        """(T,) which of the N postures of the chains is nearest in time."""
-        first, second, share, _ = self._between(chain, time_s)
+    def nearest(self, sequence: IndexArray, time_s: Array) -> IndexArray:
+        """(T,) index of the nearest in time of all the sequences' postures."""
+        first, second, share, _ = self._bracket(sequence, time_s)
         return self._rows[0][np.where(share < 0.5, first, second)]
 
-    def _turn(self, chain: IndexArray, cycle: IndexArray) -> Array:
-        return about_up(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
+    def _turn(self, sequence: IndexArray, cycle: IndexArray) -> Array:
+        return about_up(cycle * np.array([entry.turn_rad for entry in self.sequences.sequences])[sequence])
 
-    def _carried(self, way: Array, chain: IndexArray, cycle: IndexArray) -> Array:
-        """Places (T, 3) that come again some cycles later."""
-        _, start = self._rows
-        ends = self._turned[2][start[1:] - 1]  # (C, 3)
-        turns = np.array([entry.turn_rad for entry in self.chains.chains])
-        carried = np.array(way)
-        for index in np.unique(chain[cycle != 0]):
+    def _over_cycles(self, travel: Array, sequence: IndexArray, cycle: IndexArray) -> Array:
+        """Travel (T, 3) some cycles later."""
+        _, starts = self._rows
+        ends = self._moments[2][starts[1:] - 1]  # (C, 3)
+        turns = np.array([entry.turn_rad for entry in self.sequences.sequences])
+        carried = np.array(travel)
+        for index in np.unique(sequence[cycle != 0]):
             turn = about_up(turns[index])
-            own = (chain == index) & (cycle != 0)
+            own = (sequence == index) & (cycle != 0)
             for count in np.unique(cycle[own]):
                 rows = own & (cycle == count)
                 moved = carried[rows]

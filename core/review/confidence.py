@@ -1,15 +1,16 @@
-"""How far a person may believe each frame of a motion, as one number from 0 to 1.
+"""Confidence in each frame of a motion, one number from 0 to 1.
 
 Confidence is the share of the principal points that are expected to lie within a tolerance of their true
 places: the mean over the points of the probability that a normal error is shorter than the tolerance. The
-error's covariance is the estimate's own, in which hidden markers and far keyframes show already, with what
-the estimate cannot know of itself:
+error's covariance is the estimate's own, in which hidden markers and far keyframes show already, with two
+additions:
 
-* Where the footage moved a point far from the interpolated keyframes, these tell little there, and what the
-  footage cannot see, depth above all, is off by a share of what it sees. The estimate's covariance does not
-  grow with that movement; true errors do.
-* Where most of the markers contradict the motion by more than they should, the covariance is scaled up by as
-  much, the factor of Birge (1932, *The calculation of errors by the method of least squares*).
+* Where the footage moved a point far from the interpolated keyframes, these tell little there, and the error
+in
+  what the footage cannot see, depth above all, is a share of that movement. The estimate's covariance does
+  not grow with it; true errors do.
+* Where most of the markers contradict the motion by more than they should, the covariance is scaled up by the
+  Birge ratio (1932, *The calculation of errors by the method of least squares*).
 """
 
 import numpy as np
@@ -18,24 +19,24 @@ from scipy.special import gammainc
 from ..arrays import Array
 
 TOLERANCE_SHARE = 0.025
-"""Of the performer's stature: four to five centimeters of a grown-up's joints."""
+"""Tolerance as a share of the performer's stature: four to five centimeters for an adult."""
 UNSEEN_SHARE = 0.2
-"""Of the way that the footage moved a point, the part that its error adds in what is not seen: about what
-takes with truth show with few keyframes."""
+"""Error in what is not seen, as a share of the distance that the footage moved a point: about the value that
+takes with truth have with few keyframes."""
 ROWS = 2
-"""Numbers that a centroid's distance is made of."""
+"""Components of a centroid's distance."""
 
 
 def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) -> Array:
-    """What the points' errors are expected to be, (F, P, 3, 3) [m²].
+    """Expected covariance of the points' errors, (F, P, 3, 3) [m²].
 
     Args:
         point_covariance: (F, P, 3, 3) the estimate's own [m²]; NaN where unknown.
-        moved_m: (F, P) how far each point lies from the interpolated keyframes [m].
+        moved_m: (F, P) distance of each point from the interpolated keyframes [m].
         misfit: (F, M) as `misfits` gives it; NaN where not compared.
     """
     unseen = np.eye(3) * (UNSEEN_SHARE * moved_m)[..., None, None] ** 2 / 3.0
-    return np.asarray((point_covariance + unseen) * _doubt(misfit)[:, None, None, None])
+    return np.asarray((point_covariance + unseen) * _birge_ratio(misfit)[:, None, None, None])
 
 
 def confidence(covariance: Array, tolerance_m: float) -> Array:
@@ -43,11 +44,11 @@ def confidence(covariance: Array, tolerance_m: float) -> Array:
 
     NaN where the covariance is.
     """
-    return np.asarray(_within(covariance, tolerance_m).mean(axis=1))
+    return np.asarray(_probability_within(covariance, tolerance_m).mean(axis=1))
 
 
 def misfits(distance_px: Array, expected_px: Array) -> Array:
-    """Squared distances (F, M) in expected ones: 1 on average where the noise is as assumed.
+    """Reduced squared distances (F, M): 1 on average where the noise is as assumed.
 
     Args:
         distance_px: (F, M) between the predicted and observed centroids; NaN where not compared.
@@ -56,16 +57,16 @@ def misfits(distance_px: Array, expected_px: Array) -> Array:
     return np.asarray((distance_px / expected_px) ** 2 / ROWS)
 
 
-def _doubt(misfit: Array) -> Array:
-    """(F,) factor, at least one, by which the compared markers (F, M) contradict the covariance.
+def _birge_ratio(misfit: Array) -> Array:
+    """(F,) Birge ratio, at least one, of the compared markers (F, M).
 
-    It is the median marker's: one that went astray has lost its weight in the estimate already.
+    It is the median marker's: an outlier has lost its weight in the estimate already.
     """
     compared = np.isfinite(misfit).any(axis=1)
     return np.maximum(np.nanmedian(np.where(compared[:, None], misfit, 1.0), axis=1), 1.0)
 
 
-def _within(covariance: Array, tolerance_m: float) -> Array:
+def _probability_within(covariance: Array, tolerance_m: float) -> Array:
     """Probability (...) that normal errors of covariance (..., 3, 3) are shorter than the tolerance.
 
     The squared length is a weighted sum of χ²; the gamma distribution of its mean and variance stands in for

@@ -1,4 +1,4 @@
-"""What a person judges a motion by: outlines, points, confidence, and frames worth another keyframe."""
+"""Review of a motion: outlines, points, confidence, and frames worth another keyframe."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -21,17 +21,17 @@ from .weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
 STAGE = "Judging the motion"
-FRAMES_AT_ONCE = 100
-"""So few that whoever waits can stop within some hundredths of a second."""
+CHUNK_FRAMES = 100
+"""So few that a job can be canceled within some hundredths of a second."""
 WRONG_SHARE = 0.1
-"""Of the performer's stature: a point expected further off is wrong, no matter how far."""
-COMPACT = ("observed", "predicted")
-"""Large rows that are only looked at: kept as single precision."""
+"""Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong."""
+SINGLE_PRECISION = ("observed", "predicted")
+"""Large arrays that are only drawn, kept in single precision."""
 
 
 @dataclass(frozen=True, eq=False)
 class Review:
-    """What there is to see of a motion of F frames, M markers and 13 points; NaN where there is nothing."""
+    """Review data of a motion of F frames, M markers and 13 points; NaN where there is none."""
 
     frames: Array
     """(F,) scene frames, fractional for variable frame rate."""
@@ -42,11 +42,11 @@ class Review:
     observed: Array
     """(F, M, K, 2) closed outline of each region seen [px]: the even ellipse of equal moments."""
     predicted: Array
-    """(F, M, K, 2) the same of what the motion predicts to be visible of each marker [px]."""
+    """(F, M, K, 2) the same of each marker's visible part as the motion predicts it [px]."""
     points: Array
     """(F, 13, 3) principal points in the world [m]."""
     image_points: Array
-    """(F, 13, 2) the same in the picture, through the lens that was found [px]."""
+    """(F, 13, 2) the same in the picture, through the calibrated lens [px]."""
     sigma_m: Array
     """(F, 13) square root of the trace of each point's covariance [m]; NaN for a method without."""
     reprojection_px: Array
@@ -58,17 +58,17 @@ class Review:
     confidence: Array
     """(F,) from 0 to 1; NaN for a method without uncertainty."""
     keyframe_indices: IndexArray
-    """(K,) places in the clip that were given as keyframes."""
+    """(K,) frame indices of the keyframes."""
     weak_frames: tuple[WeakFrame, ...]
     """Frames worth another keyframe, the worst first."""
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Everything as plain arrays, which `from_arrays` reads back; none needs pickling."""
+        """All fields as plain arrays for `from_arrays`; none needs pickling."""
         arrays: dict[str, NDArray[Any]] = {}
         for field in fields(self):
             if field.name == "weak_frames":
                 continue
-            kind = np.float32 if field.name in COMPACT else None
+            kind = np.float32 if field.name in SINGLE_PRECISION else None
             arrays[field.name] = np.asarray(getattr(self, field.name), dtype=kind)
         weak = self.weak_frames
         arrays["weak_index"] = np.array([frame.index for frame in weak], dtype=np.int64)
@@ -80,7 +80,7 @@ class Review:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
-        """Read what `to_arrays` gave.
+        """Restore a review from the arrays of `to_arrays`.
 
         Raises:
             KeyError: An array is missing.
@@ -115,11 +115,11 @@ class Review:
 
 
 def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
-    """Gather what there is to see of a reconstruction.
+    """Review a reconstruction.
 
     Args:
         take: The take.
-        reconstruction: What `reconstruct` made of it.
+        reconstruction: The result of `reconstruct`.
         scene_frames: (F,) scene frame of each frame of the clip.
 
     Yields:
@@ -168,12 +168,12 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
 
 
 def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:
-    """Outlines (F, M, K, 2) and the centroids' distances (F, M) from those seen [px]; NaN where unseen."""
+    """Predicted outlines (F, M, K, 2) and the centroids' distances (F, M) from observed ones [px]."""
     outlines = np.full((*centroid.shape[:2], CORNERS, 2), np.nan)
     distance = np.full(centroid.shape[:2], np.nan)
-    for first in range(0, len(centroid), FRAMES_AT_ONCE):
+    for first in range(0, len(centroid), CHUNK_FRAMES):
         yield first / len(centroid)
-        chunk = slice(first, first + FRAMES_AT_ONCE)
+        chunk = slice(first, first + CHUNK_FRAMES)
         frame = np.arange(len(centroid))[chunk]
         predicted = model.evaluate(pose[chunk], frame)
         seen = predicted.visible > RegionNoise().least_visible

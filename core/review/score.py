@@ -1,7 +1,7 @@
-"""How far a motion is from the truth, in the measures of the field.
+"""Score of a motion against the truth, in the measures of the field.
 
 MPJPE, the mean per joint position error: Ionescu et al. (2014), *Human3.6M*, eq. 8. The split along and
-across the line of sight is what a single camera makes interesting: across it the image helps, along it not.
+across the line of sight matters with a single camera: across it the image helps, along it not.
 """
 
 from collections.abc import Collection
@@ -20,7 +20,7 @@ from ..files.number_lists import number_array
 from ..footage.camera import Camera
 
 STANDING_M = 0.004
-"""An ankle that truly moves less than this in a frame stands."""
+"""An ankle whose true position moves less than this in a frame stands."""
 NORMAL_95 = 1.96
 """Half-width of a normal distribution's 95 % interval, in standard deviations."""
 
@@ -79,7 +79,7 @@ def score_points(
     free = np.ones(len(truth), dtype=bool)
     free[list(keyframe_indices)] = False
     if not free.any():
-        raise InputError("every frame is a keyframe; at least one other is needed to score what lies between")
+        raise InputError("every frame is a keyframe; a score needs at least one frame without a keyframe")
     error = points - truth  # (F, P, 3)
     distance = np.linalg.norm(error, axis=-1)  # (F, P)
     along, across = _along_and_across(error, truth, camera)

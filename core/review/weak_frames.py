@@ -1,9 +1,9 @@
-"""Which frames are worth another keyframe, the worst first, each with its reason.
+"""Weak frames: those worth another keyframe, the worst first, each with its reason.
 
 An error between keyframes is taken to fall, frame by frame, in proportion to the distance from the nearest
-one. A new keyframe's worth is the expected squared error that it so takes away, from itself and from the
-frames around it: uncertainty and coverage in one. They are chosen one after another as if the ones before
-were posed, so that none lies beside another.
+one. A new keyframe's worth is the expected squared error that it removes, from its own frame and from those
+around it: uncertainty and coverage in one. Frames are chosen greedily, as if those before were posed, so that
+none lies beside another.
 """
 
 from dataclasses import dataclass
@@ -15,15 +15,15 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, BoolArray, IndexArray
 
 WEAK_CONFIDENCE = 0.75
-"""Frames believed further than this need no keyframe."""
-FRAMES_EACH = 20
-"""At most one frame in so many is named."""
-NEAREST = 4
-"""No frame nearer than this to a keyframe is named [frames]."""
+"""Frames of a higher confidence need no keyframe."""
+FRAMES_PER_NAMED = 20
+"""Frames of the clip for each one that is named."""
+NEAREST_FRAMES = 4
+"""Least distance of a named frame from a keyframe [frames]."""
 LEAST_WORTH = 0.2
-"""Frames worth less than this share of the worst one's are not named."""
+"""Least worth of a named frame, as a share of the worst one's."""
 MOST_CANDIDATES = 400
-"""So many frames of one gap are tried, evenly spread."""
+"""Largest number of frames tried in one gap, evenly spread."""
 HIDDEN_QUALITY = 0.3
 NOTICEABLE_HIDDEN = 0.4
 """Share of the frames around a weak one in which a marker is hidden, ..."""
@@ -53,24 +53,24 @@ class WeakFrame:
     """A frame worth another keyframe."""
 
     index: int
-    """Place in the clip, from 0."""
+    """Index in the clip, from 0."""
     reason: Reason
     strength: float
-    """What a keyframe there is worth, relative to the worst frame's: 0 to 1."""
+    """Worth of a keyframe there, relative to the worst frame's: 0 to 1."""
     marker: int | None = None
     """The marker that is hidden or misplaced, where one is the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class FrameEvidence:
-    """What is known of F frames and M markers."""
+    """Errors, confidence and observations of F frames and M markers."""
 
     squared_error: Array
     """(F,) expected squared error of a frame, in any unit."""
     confidence: Array
     """(F,) 0 to 1; NaN where unknown, which counts as weak."""
     quality: Array
-    """(F, M) of the regions seen, 0 where hidden."""
+    """(F, M) quality of the regions, 0 where hidden."""
     misfit: Array
     """(F, M) as in `confidence`; NaN where not compared."""
     speed: Array
@@ -78,10 +78,10 @@ class FrameEvidence:
 
 
 def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[WeakFrame, ...]:
-    """Name the frames worth another keyframe, the worst first.
+    """Find the frames worth another keyframe, the worst first.
 
     Args:
-        evidence: What is known of the F frames.
+        evidence: Of the F frames.
         keyframes: (K,) increasing indices, K ≥ 1.
     """
     count = len(evidence.squared_error)
@@ -89,9 +89,9 @@ def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[Wea
     weak = ~(evidence.confidence >= WEAK_CONFIDENCE)
     left = evidence.squared_error.copy()
     edges = [-1, *posed, count]  # -1 and F stand for no keyframe
-    gaps = [_best(left, weak, *gap) for gap in zip(edges[:-1], edges[1:], strict=True)]
+    gaps = [_best_in_gap(left, weak, *gap) for gap in zip(edges[:-1], edges[1:], strict=True)]
     found: list[tuple[float, int]] = []
-    while gaps and len(found) < max(1, count // FRAMES_EACH):
+    while gaps and len(found) < max(1, count // FRAMES_PER_NAMED):
         best = max(gaps)
         worth, index, first, last = best
         if worth <= (LEAST_WORTH * found[0][0] if found else 0.0):
@@ -100,22 +100,22 @@ def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[Wea
         frame, distance = _gap(first, last, count)
         left[frame] *= np.minimum(np.abs(frame - index), distance) / distance
         gaps.remove(best)
-        gaps += [_best(left, weak, first, index), _best(left, weak, index, last)]
-    return tuple(_described(evidence, posed, index, worth / found[0][0]) for worth, index in found)
+        gaps += [_best_in_gap(left, weak, first, index), _best_in_gap(left, weak, index, last)]
+    return tuple(_with_reason(evidence, posed, index, worth / found[0][0]) for worth, index in found)
 
 
 def _gap(first: int, last: int, count: int) -> tuple[IndexArray, IndexArray]:
-    """The frames between two keyframes, and how far each is from the nearer one."""
+    """Frames between two keyframes, and the distance of each from the nearer one."""
     frame = np.arange(first + 1, last)
     before = frame - first if first >= 0 else np.full(len(frame), count)
     after = last - frame if last < count else np.full(len(frame), count)
     return frame, np.minimum(before, after)
 
 
-def _best(squared_error: Array, weak: BoolArray, first: int, last: int) -> tuple[float, int, int, int]:
+def _best_in_gap(squared_error: Array, weak: BoolArray, first: int, last: int) -> tuple[float, int, int, int]:
     """The worth of the best new keyframe between two, its index, and the two; 0 where none is weak."""
     frame, distance = _gap(first, last, len(squared_error))
-    candidates = frame[weak[frame] & (distance >= NEAREST)]
+    candidates = frame[weak[frame] & (distance >= NEAREST_FRAMES)]
     if not len(candidates):
         return 0.0, 0, first, last
     candidates = candidates[:: -(-len(candidates) // MOST_CANDIDATES)]
@@ -125,19 +125,19 @@ def _best(squared_error: Array, weak: BoolArray, first: int, last: int) -> tuple
     return float(worth[best]), int(candidates[best]), first, last
 
 
-def _described(evidence: FrameEvidence, keyframes: list[int], index: int, strength: float) -> WeakFrame:
+def _with_reason(evidence: FrameEvidence, keyframes: list[int], index: int, strength: float) -> WeakFrame:
     """The frame with the most noticeable reason."""
     count = len(evidence.squared_error)
     distance = min(abs(index - frame) for frame in keyframes)
     reach = max(2, distance // 2)
-    around = slice(max(0, index - reach), index + reach + 1)
-    hidden = (evidence.quality[around] < HIDDEN_QUALITY).mean(axis=0)
-    compared = np.isfinite(evidence.misfit[around])
-    misfit = np.where(compared, evidence.misfit[around], 0.0).sum(0) / np.maximum(compared.sum(0), 1)
+    nearby = slice(max(0, index - reach), index + reach + 1)
+    hidden = (evidence.quality[nearby] < HIDDEN_QUALITY).mean(axis=0)
+    compared = np.isfinite(evidence.misfit[nearby])
+    misfit = np.where(compared, evidence.misfit[nearby], 0.0).sum(0) / np.maximum(compared.sum(0), 1)
     usual_speed = max(float(np.median(evidence.speed)), 1e-9)
     reasons: list[tuple[float, Reason, int | None]] = [
         (distance * len(keyframes) / count / NOTICEABLE_DISTANCE, Reason.FAR, None),
-        (float(evidence.speed[around].mean()) / usual_speed / NOTICEABLE_SPEED, Reason.FAST, None),
+        (float(evidence.speed[nearby].mean()) / usual_speed / NOTICEABLE_SPEED, Reason.FAST, None),
         (float(hidden.max()) / NOTICEABLE_HIDDEN, Reason.HIDDEN, int(hidden.argmax())),
         (float(misfit.max() / NOTICEABLE_MISFIT) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
     ]

@@ -181,7 +181,7 @@ def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
     models = _models(body)
     axes = {model.name: model.axes for model in models}
     rig = rig_at_rest(body, axes, _rest(body), modes, AT_ORIGIN)
-    shown = rig.show([values[bone.name][None] for bone in rig.bones])
+    shown = rig.pose([values[bone.name][None] for bone in rig.bones])
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]

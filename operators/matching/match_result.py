@@ -8,7 +8,7 @@ import bpy
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.footage.reading import Reading
-from ...core.matching.candidate import Candidate
+from ...core.matching.candidates import Candidate
 from ...core.matching.match_take import LibraryChoice
 from ...core.prior.keyframes import Keyframe
 from ..bridge.matched_keyframes import remove_keyframes, take_over

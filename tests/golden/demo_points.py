@@ -1,6 +1,6 @@
-"""The demonstration's motion as last looked at; `python tests/golden/demo_points.py` writes it anew.
+"""Golden points of the demonstration's motion; `python tests/golden/demo_points.py` writes them anew.
 
-To be done after a change that is meant to move it, and said so in the message of that change.
+To be run after a change that is meant to move them, whose message says by how much.
 """
 
 import sys
@@ -15,7 +15,7 @@ UNIT_M = 1e-6
 
 
 def demo_points() -> NDArray[np.float64]:
-    """(118, 13, 3) points of the demonstration, converted here and now [m]."""
+    """(118, 13, 3) points of the demonstration, converted now [m]."""
     from keymark.core.estimate.reconstruct import reconstruct
     from keymark.core.progress import run
     from keymark.core.take.take_file import read_take
@@ -25,7 +25,7 @@ def demo_points() -> NDArray[np.float64]:
 
 
 def golden_points() -> NDArray[np.float64]:
-    """What the file holds [m]."""
+    """(118, 13, 3) points stored in the file [m]."""
     with np.load(FILE, allow_pickle=False) as file:
         return np.asarray(file["points"] * UNIT_M, dtype=np.float64)
 

@@ -1,1 +1,1 @@
-"""What the whole-clip estimate weighs against each other, one term a file."""
+"""The terms of the estimates' cost, one a file; `assembly` lists them. A new kind of evidence begins here."""

@@ -10,7 +10,7 @@ from ..clip_state import ClipState
 from .term import NormalEquations, student_weight
 
 SURFACE_SHARE = 0.2
-"""How far a part's contour as a whole may lie from a perfect one, of its half-width: clothes, muscles."""
+"""Standard deviation of a part's contour as a whole, of its half-width: clothes, muscles."""
 PIXEL_STD = 0.6
 """The same in pixels of the pictures: blur and light."""
 DEGREES = 4.0
@@ -20,7 +20,7 @@ ALIKE = len(SHARES) * len(SIDES)
 
 @dataclass(frozen=True, eq=False)
 class ContourTerm:
-    """Compares every contour sample with the edge that was found near it."""
+    """Compares every contour sample with the edge found near it."""
 
     model: ContourModel
     edge: Array
@@ -39,5 +39,5 @@ class ContourTerm:
         variance = (self.variance + (SURFACE_SHARE * predicted.half_width) ** 2) * temperature
         information = np.where(found, student_weight(residual**2 / variance, DEGREES, 1) / variance, 0.0)
         weight = np.sqrt(information / ALIKE)
-        jacobian = self.model.normal_jacobian(predicted, self.normal, state.pose) @ state.chain
+        jacobian = self.model.normal_jacobian(predicted, self.normal, state.pose) @ state.tangent_jacobian
         equations.add_rows(residual * weight, np.where(found[..., None], jacobian, 0.0) * weight[..., None])

@@ -1,4 +1,4 @@
-"""Depths of the principal points near those of the prior (paper, eq. 9): what the image cannot say."""
+"""Depths of the principal points near those of the prior (paper, eq. 9), which the image tells little of."""
 
 from dataclasses import dataclass
 
@@ -24,6 +24,6 @@ class DepthTerm:
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each point."""
         residual = depths.evaluate(state.body, self.camera, state.pose, state.frame) - self.prior_depth
-        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.chain
+        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.tangent_jacobian
         std_m = np.asarray(self.std_m)
         equations.add_rows(residual / std_m, jacobian / std_m[..., None])

@@ -5,6 +5,7 @@ a single picture says as well.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -25,13 +26,14 @@ class GroundTerm:
     height_m: float | Array
     """How high the lower one is while its foot is on the ground; one height or (F,)."""
     std_m: float = 0.03
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each frame."""
         residual, lower = self._residual(state)
         jacobian = state.body.points_jacobian(state.pose)[np.arange(state.frames), lower, 2]  # (F, D)
         weight = np.sqrt(student_weight(residual**2, DEGREES, 1))[:, None]
-        rows = (jacobian[:, None] @ state.chain) / self.std_m
+        rows = (jacobian[:, None] @ state.tangent_jacobian) / self.std_m
         equations.add_rows(residual[:, None] * weight, rows * weight[..., None])
 
     def cost(self, state: ClipState) -> Array:

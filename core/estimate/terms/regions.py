@@ -1,11 +1,12 @@
 """The markers' image regions against their prediction: centroid and second moments, in pixels.
 
 A second-moment residual is turned into the observed region's own axes and divided by twice the mean
-deviation along them, the linearised difference of matrix square roots: three numbers in pixels, with no
+deviation along them, the linearized difference of matrix square roots: three numbers in pixels, with no
 angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,17 +19,17 @@ from .term import NormalEquations, student_weight
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
 GROUPS = (slice(0, 2), slice(2, FEATURES))
-"""Rows that are doubted together: place and shape."""
+"""Rows that are outliers together: centroid and shape."""
 CONTRADICTED = 20.0
 """Cost of a marker that is seen where it should be hidden."""
 SMALLEST_DEVIATION_PX = 0.6
 AREA_TOLERANCE = 0.25
-"""Share of an area that may be missing for other reasons than that something is before it."""
+"""Share of an area that may be missing for other reasons than occlusion."""
 
 
 @dataclass(frozen=True)
 class RegionNoise:
-    """How far an observed region may lie from a perfect model of the body.
+    """Noise of an observed region against a perfect model of the body.
 
     Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
     sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
@@ -44,7 +45,7 @@ class RegionNoise:
     degrees: float = 4.0
     """Student's t degrees of freedom of a marker's rows."""
     least_visible: float = 0.15
-    """A region predicted to be hidden further than this is not compared."""
+    """Least predicted visibility of a region that is compared."""
 
     def surface_std(self, width: Array) -> Array:
         """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
@@ -61,7 +62,7 @@ def _per_feature(centroid: float, shape: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ObservedRegions:
-    """Tracks in the form the term compares."""
+    """Tracks with the axes and deviations that residuals need."""
 
     centroid: Array
     """(F, M, 2), NaN where hidden."""
@@ -137,18 +138,18 @@ def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 
-def missing_variance(area: Array, whole: Array, predicted: RegionPrediction) -> Array:
-    """(F, M, 5) variance [px²] of the features for what of a region is missing, nobody knows where.
+def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
+    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
 
     A table or a door may hide a part of a marker, of which the body's model knows nothing. A share f that is
     cut off a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
 
     Args:
         area: (F, M) area of the regions seen [px].
-        whole: (M,) or a number: area seen of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, from which the body's own hiding is gone already.
+        area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
+        predicted: The regions' prediction, occlusion by the body itself included.
     """
-    expected = np.maximum(predicted.area * whole, 1.0)
+    expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
     variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
     shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
@@ -165,9 +166,10 @@ class RegionTerm:
     width_px: Array
     """(F, M) mean half-width of each marker's limb in the image [px]."""
     distrust: Array
-    """(M,) factor by which each marker's regions err more than the noise says."""
-    whole: Array
-    """(M,) area seen of each marker where nothing hides it, relative to the predicted one."""
+    """(M,) factor of the noise of each marker's regions."""
+    area_ratio: Array
+    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add five rows for each marker that is seen and predicted to be seen."""
@@ -178,14 +180,14 @@ class RegionTerm:
         residual = residual + state.bias.reshape(state.frames, count, FEATURES)
         weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
         residual = np.where(weight > 0.0, residual, 0.0) * weight
-        jacobian = (jacobian @ state.chain[:, None]) * weight[..., None]
+        jacobian = (jacobian @ state.tangent_jacobian[:, None]) * weight[..., None]
         shape = (state.frames, count * FEATURES)
         equations.add_biased_rows(
             residual.reshape(shape), jacobian.reshape(*shape, -1), weight.reshape(shape)
         )
 
-    def misfit(self, state: ClipState) -> Array:
-        """(F, M) what each marker costs: the negative logarithm of Student's t, up to a constant.
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of Student's t over all markers, up to a constant.
 
         A marker that is seen where the posture hides it costs as much as one that is far off.
         """
@@ -199,7 +201,7 @@ class RegionTerm:
             size = self.noise.degrees * (group.stop - group.start)
             cost += 0.5 * size * np.log1p(squared[..., group].sum(-1) / size)
         contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
-        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost))
+        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
 
     def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
         """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
@@ -213,10 +215,10 @@ class RegionTerm:
         return np.asarray(information)
 
     def _information(self, residual: Array, predicted: RegionPrediction) -> Array:
-        """The same before what is far off counts for less."""
+        """The same before outliers are downweighted."""
         usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
-        variance = variance + missing_variance(self.observed.area, self.whole, predicted)
+        variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
         return np.asarray(np.where(usable, trust, 0.0)[..., None] / variance)

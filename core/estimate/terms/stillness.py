@@ -41,7 +41,7 @@ class StillnessTerm:
             return
         chosen = list(self.points)
         places = state.body.points(state.pose)[:, chosen]
-        jacobian = state.body.points_jacobian(state.pose)[:, chosen] @ state.chain[:, None]
+        jacobian = state.body.points_jacobian(state.pose)[:, chosen] @ state.tangent_jacobian[:, None]
         travel = np.diff(places, axis=0)
         middle = 0.5 * (places[1:] + places[:-1])
         weight = self._standing(travel, middle, state.frame[1:])[..., None] / self.std_m

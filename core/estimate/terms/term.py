@@ -1,6 +1,7 @@
-"""What a term of the whole-clip estimate is, and the equations it adds to."""
+"""The protocol of a term, its cost where one is needed, and the normal equations that terms add to."""
 
-from typing import Protocol
+from collections.abc import Iterable
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -53,11 +54,33 @@ class NormalEquations:
 
 
 class Term(Protocol):
-    """A term adds its linearised rows at a state; `temperature` ≥ 1 widens image noise while annealing."""
+    """A term adds its linearized rows at a state; `temperature` ≥ 1 widens image noise while annealing."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add this term's rows."""
         ...
+
+
+class CostTerm(Term, Protocol):
+    """A term that also tells its cost, as the choice between several fits of one frame needs."""
+
+    robust: ClassVar[bool]
+    """Whether its noise has heavy tails; without them the cost is half a sum of squares."""
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of each frame's probability, up to a constant."""
+        ...
+
+
+def total_cost(terms: Iterable[CostTerm], state: ClipState) -> Array:
+    """(F,) negative logarithm of the probability of each frame's state, up to a constant.
+
+    Sums of squares are added before robust costs: the order is fixed because rounding depends on it.
+    """
+    total = np.zeros(state.frames)
+    for term in sorted(terms, key=lambda term: term.robust):
+        total = total + term.cost(state)
+    return total
 
 
 def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:

@@ -75,7 +75,7 @@ def action_picture(
     every = motion_frames(armature_object, action, body)
     frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
     values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
-    posture = shown_postures(armature_object, rig, rig.show(values), body)
+    posture = shown_postures(armature_object, rig, rig.pose(values), body)
     points = body.points(body.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
     rate = scene.render.fps / scene.render.fps_base

@@ -36,7 +36,7 @@ def library_from_action(
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
     values = run(read_values(armature_object, action, rig, frames))
-    posture = shown_postures(armature_object, rig, rig.show(values), body)
+    posture = shown_postures(armature_object, rig, rig.pose(values), body)
     library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
     library_from_json(library_to_json(library), f"library '{about.title}'")  # checks what was typed
     return library

@@ -217,7 +217,7 @@ def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_p
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
     assert list(frames[[0, -1]]) == [1.0, FRAMES]
-    shown = rig.show(run(read_values(armature_object, action, rig, frames))).points
+    shown = rig.pose(run(read_values(armature_object, action, rig, frames))).points
     blender = places(take, action, shown_points)
     apart = np.linalg.norm(shown[:, None] - blender[:, :, None], axis=-1).min(axis=-1)
     assert apart.max() < 1e-5

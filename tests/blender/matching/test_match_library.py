@@ -15,7 +15,7 @@ from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import write_library
 from keymark.core.matching import match_take as matching
-from keymark.core.matching.candidate import Candidate, MatchedFrame
+from keymark.core.matching.candidates import Candidate, MatchedFrame
 from keymark.core.matching.match_take import LibraryChoice
 from keymark.core.progress import Progress
 from keymark.core.take.motion import Motion
@@ -55,7 +55,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
         library=library(motion),
         fit=0.75,
         floor_m=0.02,
-        course=motion.posture,
+        postures=motion.posture,
         frames=tuple(
             MatchedFrame(
                 index,

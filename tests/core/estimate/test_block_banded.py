@@ -37,7 +37,7 @@ def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) ->
     banded, dense = random_system(frames, seed=frames)
     vector = np.random.default_rng(9).normal(size=(frames, SIZE))
     np.testing.assert_allclose(banded.multiply(vector).ravel(), dense @ vector.ravel(), atol=1e-10)
-    factor = banded.factorise()
+    factor = banded.factorize()
     np.testing.assert_allclose(
         factor.solve(vector).ravel(), np.linalg.solve(dense, vector.ravel()), atol=1e-10
     )
@@ -58,4 +58,4 @@ def test_rows_about_the_leading_unknowns_leave_the_others_alone() -> None:
 def test_a_singular_system_is_refused() -> None:
     """Nothing is solved from a matrix that determines nothing."""
     with pytest.raises(np.linalg.LinAlgError):
-        BlockBanded(3, SIZE).factorise()
+        BlockBanded(3, SIZE).factorize()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.estimate.consistency import chi_square_average, coverage, mean_interval, normalized_squared
+from _consistency import chi_square_average, coverage, mean_interval, normalized_squared
 
 
 def test_normalized_squares_by_hand() -> None:

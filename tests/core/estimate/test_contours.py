@@ -33,7 +33,7 @@ def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
     """What is measured from roughly known postures."""
     contours = run(learn_contours(BODY, CAMERA, album(), posture, keyframes))
     assert contours is not None
-    return run(contours.term(posture, FRAME))
+    return run(contours.measure(posture, FRAME))
 
 
 def solve(pictures: Album | None) -> Posture:

@@ -4,12 +4,41 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from keymark.core.estimate.fuzzy import Memberships, OutputSet, aggregate, keyframe_distance, nearness
+from keymark.core.estimate.fuzzy import Memberships, OutputSet, aggregate, keyframe_distance
+from numpy.typing import ArrayLike
 
 
 def output(center: float, width: float, degree: float) -> OutputSet:
     """An output set of one degree of freedom."""
     return OutputSet(np.array([center]), np.array([width]), degree)
+
+
+def nearness(
+    near_degree: ArrayLike, far_degree: ArrayLike, near_width: float, far_width: float
+) -> np.ndarray:
+    """μ of the compact form δ_t+1 = (1 - μ) δ_t: the rules defuzzified to one number.
+
+    With δ = θ̂ - θ_p the deviation from the a priori posture, the far rule's step is θ_p,t+1 - θ_p,t and
+    keeps δ; the near rule's is shorter by δ and ends at δ = 0. Measured from the far step the two output sets
+    stand at -δ and at 0. Sets that do not overlap have a joined mean of -δ A_near / (A_near + A_far), where
+    A = width · degree · (2 - degree) is the area of a clipped triangle. Hence δ_t+1 = δ_t + mean, which is
+    (1 - μ) δ_t with μ = A_near / (A_near + A_far). Sets that overlap share area, which the maximum counts
+    once; the joined mean then differs from -μ δ by less than a width, which is within the process noise.
+    Where only one rule applies both forms agree exactly: μ is 1 or 0.
+
+    Args:
+        near_degree: (...) degree of the near rule.
+        far_degree: (...) degree of the far rule.
+        near_width: half-width of the near rule's output set, in any unit.
+        far_width: half-width of the far rule's output set, in the same unit.
+
+    Returns:
+        (...) μ between 0 and 1.
+    """
+    near, far = np.asarray(near_degree, dtype=np.float64), np.asarray(far_degree, dtype=np.float64)
+    near_area = near_width * near * (2.0 - near)
+    far_area = far_width * far * (2.0 - far)
+    return np.asarray(near_area / (near_area + far_area))
 
 
 def test_distance_counts_in_half_gaps() -> None:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from _consistency import chi_square_average, normalized_squared
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.consistency import chi_square_average, normalized_squared
 from keymark.core.estimate.filter_options import FilterOptions
 from keymark.core.estimate.kalman import FuzzyKalmanFilter
 from keymark.core.observation import depths

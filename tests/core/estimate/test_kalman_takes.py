@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from keymark.core.estimate.consistency import coverage
+from _consistency import coverage
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.progress import run
 from keymark.core.take.take_file import read_take

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from _scene import BODY, MODEL, exercise, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_selection import worthwhile
+from keymark.core.estimate.keyframe_selection import select_keyframes
 from keymark.core.prior.keyframes import Keyframe, Matched
 
 FRAMES, FPS = 91, 30.0
@@ -20,7 +20,7 @@ def used(posed: list[int], library: Posture) -> tuple[list[int], list[int]]:
     """Frames of the posed and of the matched keyframes that are left, of matched ones every 10 frames."""
     keyframes = [Keyframe(i, library[i], matched=SAID) for i in range(5, FRAMES, 10) if i not in posed]
     keyframes += [Keyframe(i, TRUTH[i]) for i in posed]
-    left = worthwhile(tuple(sorted(keyframes, key=lambda k: k.index)), MODEL, TRACKS, FPS)
+    left = select_keyframes(tuple(sorted(keyframes, key=lambda k: k.index)), MODEL, TRACKS, FPS)
     return [k.index for k in left if k.matched is None], [k.index for k in left if k.matched is not None]
 
 
@@ -69,4 +69,4 @@ def test_a_clip_in_which_nothing_is_seen_keeps_a_library_that_agrees() -> None:
         *(Keyframe(i, alike()[i], matched=SAID) for i in (30, 60)),
         Keyframe(90, TRUTH[90]),
     )
-    assert worthwhile(keyframes, MODEL, hidden, FPS) == keyframes
+    assert select_keyframes(keyframes, MODEL, hidden, FPS) == keyframes

@@ -9,15 +9,15 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m
 from keymark.core.estimate.ankle_height import SHOE_M, lower_ankle_m
 from keymark.core.estimate.calibration import placement_values
-from keymark.core.estimate.keyframe_trust import read_trust
+from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.match_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
-    UNDECIDED_DEPTH_M,
+    UNDETERMINED_DEPTH_M,
     depth_std_m,
     joint_std_rad,
     match_covariance,
-    undecided_covariance,
+    undetermined_covariance,
 )
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
@@ -41,12 +41,14 @@ def off(seed: int = 2) -> Posture:
     return TRUTH[INDEX].plus((factor @ error[..., None])[..., 0])
 
 
-def estimate(postures: Posture, doubt: np.ndarray | None) -> WholeClipResult:
+def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResult:
     """The estimate through keyframes at `INDEX`."""
     keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
     prior = interpolate(keyframes, FRAMES)
     return run(
-        estimate_whole_clip(BODY, CAMERA, TRACKS, SEGMENTS, prior, tuple(int(i) for i in INDEX), doubt=doubt)
+        estimate_whole_clip(
+            BODY, CAMERA, TRACKS, SEGMENTS, prior, tuple(int(i) for i in INDEX), match_scale=match_scale
+        )
     )
 
 
@@ -74,13 +76,13 @@ def test_nothing_is_calibrated_on_keyframes_that_nobody_posed() -> None:
 
 def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
     """The model found from posed keyframes is the same whatever else is matched."""
-    doubt = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
+    match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
-    mixed = run(read_trust(MODEL, RegionNoise(), observed, width, postures, INDEX, doubt))
-    posed = np.flatnonzero(doubt == 0.0)
+    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), observed, width, postures, INDEX, match_scale))
+    posed = np.flatnonzero(match_scale == 0.0)
     alone = run(
-        read_trust(
+        read_mixed_keyframes(
             MODEL,
             RegionNoise(),
             observed[posed],
@@ -115,12 +117,12 @@ def test_depths_count_near_posed_keyframes_only() -> None:
 def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_keyframes() -> None:
     """A posed keyframe decides, a matched one leaves depth open."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
-    spread = undecided_covariance(points, CAMERA, np.array([0, 10]), np.array([0.0, 1.0]))
+    spread = undetermined_covariance(points, CAMERA, np.array([0, 10]), np.array([0.0, 1.0]))
     assert np.abs(spread[0]).max() == 0.0
-    assert np.trace(spread[10, 4]) == pytest.approx(UNDECIDED_DEPTH_M**2)
+    assert np.trace(spread[10, 4]) == pytest.approx(UNDETERMINED_DEPTH_M**2)
     sight = points[10, 4] - CAMERA.pose()[1]
     along = sight @ spread[10, 4] @ sight / (sight @ sight)
-    assert along == pytest.approx(UNDECIDED_DEPTH_M**2)
+    assert along == pytest.approx(UNDETERMINED_DEPTH_M**2)
 
 
 def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:
@@ -139,8 +141,8 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
 
 def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
     """To begin with an earlier estimate of matched keyframes changes nothing."""
-    postures, doubt = off(), np.ones(len(INDEX))
-    first = estimate(postures, doubt)
+    postures, match_scale = off(), np.ones(len(INDEX))
+    first = estimate(postures, match_scale)
     again = run(
         estimate_whole_clip(
             BODY,
@@ -149,7 +151,7 @@ def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_res
             SEGMENTS,
             first.problem.prior,
             tuple(int(i) for i in INDEX),
-            doubt=doubt,
+            match_scale=match_scale,
             earlier=replace(first),
         )
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.estimate.unobserved_variance import GRACE_S, unseen_variance
+from keymark.core.estimate.unobserved_variance import GRACE_S, unobserved_variance
 
 SEGMENTS = ("trunk", "forearm.L", "shin.L")
 TIME_S = np.arange(90) / 30.0
@@ -12,7 +12,7 @@ TIME_S = np.arange(90) / 30.0
 def open_of(visible: np.ndarray, keyframes: list[int]) -> np.ndarray:
     """(F, D) variances."""
     index = np.array(keyframes, dtype=np.intp)
-    return unseen_variance(HUMAN, SEGMENTS, visible, index, TIME_S)
+    return unobserved_variance(HUMAN, SEGMENTS, visible, index, TIME_S)
 
 
 @pytest.mark.parametrize("keyframes", [[0], [0, 45, 89]])

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.warm_start import revised_share, revised_windows
+from keymark.core.estimate.warm_start import blend_weight, revised_windows
 from keymark.core.estimate.whole_clip import WholeClipOptions, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
@@ -139,8 +139,8 @@ def test_windows_around_changes_reach_beyond_them_and_never_keep_a_frame_twice()
     assert kept[2][0] == 580 and kept[-1][1] == 920 and len(kept) == 5
     assert all(a[1] <= b[0] for a, b in zip(kept, kept[1:], strict=False))
     assert all(w.first == max(w.keep_first - 20, 0) and w.last == min(w.keep_last + 20, 1000) for w in found)
-    share = revised_share(changed, 20)
+    share = blend_weight(changed, 20)
     assert (share[600:910] == 1.0).all() and share[580] == 0.0 and 0.0 < share[585] < share[588] < 1.0
     assert np.abs(np.diff(share)).max() < 0.2
     nothing = np.zeros(10, dtype=bool)
-    assert revised_windows(nothing, 100, 20) == [] and not revised_share(nothing, 20).any()
+    assert revised_windows(nothing, 100, 20) == [] and not blend_weight(nothing, 20).any()

@@ -32,7 +32,7 @@ def values(rig: Rig) -> list[np.ndarray]:
 
 def shown(rig: Rig, reduced: ReducedKeys) -> np.ndarray:
     """(F, P, 3) what the keys show."""
-    return rig.show([s.evaluate(TIMES, 0, FRAMES - 1) for s in reduced.splines]).points
+    return rig.pose([s.evaluate(TIMES, 0, FRAMES - 1) for s in reduced.splines]).points
 
 
 def key_count(reduced: ReducedKeys) -> int:
@@ -43,7 +43,7 @@ def key_count(reduced: ReducedKeys) -> int:
 def test_the_rig_shows_the_body(rig: Rig) -> None:
     """All thirteen points are among the joints and ends of the bones, where the body's are."""
     posture = exercise(6)
-    places = rig.show(rig_values(rig, posture)).points
+    places = rig.pose(rig_values(rig, posture)).points
     points = BODY.points(BODY.pose(posture))
     apart = np.linalg.norm(places[:, None] - points[:, :, None], axis=-1).min(axis=-1)
     assert apart.max() < 1e-9
@@ -56,7 +56,7 @@ def test_no_point_is_further_off_than_the_tolerance(
 ) -> None:
     """In every frame, ends of hands and feet included; and the tolerance is made use of."""
     reduced = run(reduce_keys(rig, TIMES, values, tolerance_m, KEYFRAMES, whole_pose))
-    distance = np.linalg.norm(shown(rig, reduced) - rig.show(values).points, axis=-1)
+    distance = np.linalg.norm(shown(rig, reduced) - rig.pose(values).points, axis=-1)
     assert 0.4 * tolerance_m < distance.max() <= tolerance_m
     assert distance.max() == pytest.approx(reduced.furthest_m)
 
@@ -77,8 +77,8 @@ def test_fewer_keys_than_at_even_steps(rig: Rig, values: list[np.ndarray]) -> No
     count = -(-key_count(reduced) // len(rig.bones))
     even = np.unique(np.round(np.linspace(0, FRAMES - 1, count)).astype(np.intp))
     none = np.zeros(0, dtype=np.intp)
-    evenly = rig.show([fit_keys(TIMES, d, even, none).evaluate(TIMES, 0, FRAMES - 1) for d in values])
-    assert np.linalg.norm(evenly.points - rig.show(values).points, axis=-1).max() > 0.0075
+    evenly = rig.pose([fit_keys(TIMES, d, even, none).evaluate(TIMES, 0, FRAMES - 1) for d in values])
+    assert np.linalg.norm(evenly.points - rig.pose(values).points, axis=-1).max() > 0.0075
     assert key_count(reduced) < 0.5 * FRAMES * len(rig.bones)
 
 
@@ -99,7 +99,7 @@ def test_a_point_can_be_held_more_tightly(rig: Rig, values: list[np.ndarray]) ->
     tolerance = np.full((FRAMES, rig.point_slices[-1].stop), 0.02)
     tolerance[15:35, ankle] = 0.001
     reduced = run(reduce_keys(rig, TIMES, values, tolerance, KEYFRAMES))
-    distance = np.linalg.norm(shown(rig, reduced) - rig.show(values).points, axis=-1)
+    distance = np.linalg.norm(shown(rig, reduced) - rig.pose(values).points, axis=-1)
     assert distance[15:35, ankle].max() <= 0.001
     assert distance.max() > 0.01
 
@@ -138,10 +138,10 @@ def test_changing_one_bone_shows_what_showing_all_does(rig: Rig, values: list[np
     changed[upper_arm] = values[upper_arm] + 0.05
     changed[0] = values[0] + 0.01
     frames = slice(10, 30)
-    part = rig.show_changed(
-        rig.show(values), frames, {index: changed[index][frames] for index in (upper_arm, 0)}
+    part = rig.pose_changed(
+        rig.pose(values), frames, {index: changed[index][frames] for index in (upper_arm, 0)}
     )
-    assert part.points == pytest.approx(rig.show(changed).points[frames], abs=1e-12)
+    assert part.points == pytest.approx(rig.pose(changed).points[frames], abs=1e-12)
 
 
 def test_bones_hang_together() -> None:
@@ -150,4 +150,4 @@ def test_bones_hang_together() -> None:
         RigBone(name, parent, "XYZ", np.eye(3), np.eye(3), np.zeros(3), np.zeros((1, 3)))
         for name, parent in (("a", -1), ("b", 0), ("c", 1), ("d", 0))
     )
-    assert Rig(bones, np.eye(3), np.zeros(3)).below == ((0, 1, 2, 3), (1, 2), (2,), (3,))
+    assert Rig(bones, np.eye(3), np.zeros(3)).subtrees == ((0, 1, 2, 3), (1, 2), (2,), (3,))

@@ -94,9 +94,9 @@ def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take
 def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
     """Mean distance of the points from the truth, with the hips aligned and absolutely."""
     assert choice.match is not None
-    found, true = (BODY.points(BODY.pose(posture)) for posture in (choice.match.course, truth))
+    found, true = (BODY.points(BODY.pose(posture)) for posture in (choice.match.postures, truth))
     off = found - true
-    hips = (choice.match.course.translation - truth.translation)[:, None]
+    hips = (choice.match.postures.translation - truth.translation)[:, None]
     return (
         float(np.linalg.norm(off - hips, axis=-1).mean()),
         float(np.linalg.norm(off, axis=-1).mean()),
@@ -218,7 +218,7 @@ def test_posed_keyframes_steer_the_match(walking: Library) -> None:
     assert steered.match.floor_m == pytest.approx(0.2, abs=0.05)
     assert errors_m(steered, truth)[1] < 0.8 * errors_m(alone, truth)[1]
     for end in ends:
-        off = steered.match.course.translation[end.index] - end.posture.translation
+        off = steered.match.postures.translation[end.index] - end.posture.translation
         assert np.linalg.norm(off) < 0.05
 
 
@@ -244,7 +244,7 @@ def test_matching_is_the_same_every_time(walking: Library) -> None:
     first, second = (run(match_take(take, reading, [walking])).match for _ in range(2))
     assert first is not None
     assert second is not None
-    assert np.array_equal(first.course.to_vector(), second.course.to_vector())
+    assert np.array_equal(first.postures.to_vector(), second.postures.to_vector())
 
 
 def test_what_cannot_be_matched_is_refused(walking: Library) -> None:

@@ -9,7 +9,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import read_library
 from keymark.core.library.registry import SHIPPED
-from keymark.core.matching.posed_constraints import Anchors
+from keymark.core.matching.posed_constraints import PosedConstraints
 from keymark.core.prior.keyframes import Keyframe, Matched
 
 BODY = Body(Actor.from_stature(1.7))
@@ -33,15 +33,15 @@ def test_a_posed_posture_is_its_own_in_its_own_heading(library: Library) -> None
     postures, points = shapes(library)
     for which, heading in ((0, 5), (7, 17)):
         turned = headed(postures[[which]], HEADINGS[[heading]], np.array([[0.3, -0.4, 0.9]]))[0]
-        anchors = Anchors.of(BODY, [Keyframe(4, turned)])
-        cost = anchors.cost(4, points, HEADINGS)
+        constraints = PosedConstraints.from_keyframes(BODY, [Keyframe(4, turned)])
+        cost = constraints.cost(4, points, HEADINGS)
         assert cost is not None
         assert divmod(int(cost.argmin()), len(HEADINGS)) == (which, heading)
         assert cost.min() == pytest.approx(-2.5, abs=0.01)
-        assert anchors.cost(5, points, HEADINGS) is None
+        assert constraints.cost(5, points, HEADINGS) is None
 
 
-def test_only_what_a_person_posed_is_an_anchor(library: Library) -> None:
+def test_only_what_a_person_posed_is_a_constraint(library: Library) -> None:
     """Matched keyframes say nothing new; the posed ones come in order, and the lowest sole is the floor."""
     postures, _ = shapes(library)
     said = Matched("squatting_lifting", library.postures[1].name, False, 0.9)
@@ -52,11 +52,11 @@ def test_only_what_a_person_posed_is_an_anchor(library: Library) -> None:
         postures[0].angles,
     )
     keyframes = [Keyframe(9, raised), Keyframe(5, postures[1], matched=said), Keyframe(2, raised)]
-    anchors = Anchors.of(BODY, keyframes)
-    assert anchors.frames.tolist() == [2, 9]
-    assert anchors.place_at(5) is None
-    assert np.array_equal(anchors.place_at(9), raised.translation)
-    lowest = Anchors.of(BODY, [Keyframe(0, postures[0])]).floor_m()
+    constraints = PosedConstraints.from_keyframes(BODY, keyframes)
+    assert constraints.frames.tolist() == [2, 9]
+    assert constraints.hips_at(5) is None
+    assert np.array_equal(constraints.hips_at(9), raised.translation)
+    lowest = PosedConstraints.from_keyframes(BODY, [Keyframe(0, postures[0])]).floor_m()
     assert lowest is not None
-    assert anchors.floor_m() == pytest.approx(lowest + 0.4)
-    assert Anchors.of(BODY, []).floor_m() is None
+    assert constraints.floor_m() == pytest.approx(lowest + 0.4)
+    assert PosedConstraints.from_keyframes(BODY, []).floor_m() is None

@@ -4,7 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from keymark.core.review.weak_frames import FRAMES_EACH, NEAREST, FrameEvidence, Reason, find_weak_frames
+from keymark.core.review.weak_frames import (
+    FRAMES_PER_NAMED,
+    NEAREST_FRAMES,
+    FrameEvidence,
+    Reason,
+    find_weak_frames,
+)
 
 FRAMES, MARKERS = 121, 3
 
@@ -40,9 +46,9 @@ def test_weak_frames_are_few_spread_and_in_order_of_worth() -> None:
     noisy = replace(evidence(), squared_error=np.random.default_rng(2).uniform(0.5, 2.0, FRAMES))
     keyframes = [0, 60, 120]
     found = find_weak_frames(noisy, keyframes)
-    assert 3 <= len(found) <= FRAMES // FRAMES_EACH
+    assert 3 <= len(found) <= FRAMES // FRAMES_PER_NAMED
     places = sorted([*keyframes, *(frame.index for frame in found)])
-    assert np.diff(places).min() >= NEAREST
+    assert np.diff(places).min() >= NEAREST_FRAMES
     strengths = [frame.strength for frame in found]
     assert strengths == sorted(strengths, reverse=True)
 

@@ -10,7 +10,7 @@ import pytest
 from _synthetic_take import true_postures, write_synthetic_take
 from keymark.core.estimate.notes import filter_notes, left_out_notes, match_notes
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.matching.candidate import Candidate, MatchedFrame
+from keymark.core.matching.candidates import Candidate, MatchedFrame
 from keymark.core.matching.library_match import LibraryMatch
 from keymark.core.matching.match_take import NEAR_FRAMES, with_matches
 from keymark.core.prior.keyframes import Keyframe, Matched
@@ -44,7 +44,7 @@ def match(frames: list[int]) -> LibraryMatch:
     """A match that says the true postures."""
     matched = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
     library = SimpleNamespace(identifier="waving")
-    return cast(LibraryMatch, SimpleNamespace(library=library, frames=matched, course=TRUTH))
+    return cast(LibraryMatch, SimpleNamespace(library=library, frames=matched, postures=TRUTH))
 
 
 def test_it_is_said_that_nothing_was_posed_and_what_the_motion_rests_on(take: Take) -> None:

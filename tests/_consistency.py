@@ -7,10 +7,9 @@ section 5.4.
 from typing import NamedTuple
 
 import numpy as np
+from keymark.core.arrays import Array
 from numpy.typing import ArrayLike
 from scipy.stats import chi2, t
-
-from ..arrays import Array
 
 SIGMAS_OF_95_PERCENT = 1.96
 

@@ -1,0 +1,59 @@
+"""The estimation problem of a whole clip, without its pictures."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..footage.camera import Camera
+from .clip_state import ClipState
+from .keyframe_evidence import KeyframeEvidence
+from .terms.regions import FEATURES, ObservedRegions, RegionNoise
+from .windows import Window
+
+
+@dataclass(frozen=True, eq=False)
+class ClipProblem:
+    """Everything that the estimate of a clip of F frames follows from, except its pictures."""
+
+    body: Body
+    camera: Camera
+    """As stated; the evidence has the calibrated lens."""
+    evidence: KeyframeEvidence
+    factor: Array
+    """(D, D) of the deviation's accelerations."""
+    prior: Posture
+    """A batch of F postures."""
+    keyframes: IndexArray
+    """(K,) frames of the keyframes."""
+    observed: ObservedRegions
+    width_px: Array
+    """(F, M) half-width of each marker's limb [px]."""
+    step_s: Array
+    """(F - 1,) time between frames [s]."""
+    noise: RegionNoise
+    matched: BoolArray
+    """(K,) which keyframes are matched."""
+    depth_std_m: Array
+    """(F,) noise of the prior's depths [m]."""
+    ankle_height_m: Array | None = None
+    """(F,) usual height of the lower ankle [m]; None where no floor is known."""
+
+    @property
+    def frames(self) -> int:
+        """Number of frames F."""
+        return self.prior.batch[0]
+
+    def start(self, window: Window) -> ClipState:
+        """The state of a window to begin with: its prior, without biases."""
+        frames, markers = window.last - window.first, self.observed.quality.shape[1]
+        return ClipState(
+            self.body,
+            self.prior[window.frames],
+            np.arange(window.first, window.last),
+            self.factor,
+            np.zeros((frames, self.body.skeleton.dof_count)),
+            np.zeros((frames, markers * FEATURES)),
+        )

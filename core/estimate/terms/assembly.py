@@ -1,0 +1,131 @@
+"""The terms of each estimate, in the order in which they are added.
+
+A new kind of evidence is a file beside this one (the protocol is in `term.py`) and a line in each list it
+belongs to: a window of a clip, the same once its contours are measured, a single frame. A list keeps its
+order, since rounding depends on it.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...arrays import Array
+from ...body.kinematics import Body
+from ...observation import depths
+from ...prior.frame_prior import Belief
+from ...prior.variability import REFERENCE_STEP_S
+from ..ankle_height import ANKLE_HEIGHT_STD_M
+from ..clip_problem import ClipProblem
+from ..clip_state import ClipState
+from ..keyframe_evidence import KeyframeEvidence
+from ..windows import Window
+from .belief import BeliefTerm
+from .contours import ContourTerm
+from .depths import DepthTerm
+from .ground import GroundTerm
+from .limits import LimitTerm
+from .quadratic import QuadraticBuilder, QuadraticTerm
+from .regions import ObservedRegions, RegionNoise, RegionTerm
+from .smoothness import SmoothnessTerm
+from .stillness import StillnessTerm
+from .term import CostTerm, Term
+
+ANKLES = ("ankle.L", "ankle.R")
+LARGEST_VARIATION = 20.0
+"""Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else
+determines."""
+
+
+def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
+    """The terms of one window of a clip, but for its contours.
+
+    Args:
+        clip: The whole clip's problem.
+        window: The window.
+        state: Any state of it, by which its prior and frames are known.
+    """
+    frames = window.frames
+    step_s = clip.step_s[window.first : window.last - 1]
+    pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
+    prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
+    ankles = _ankles(clip.body)
+    evidence = clip.evidence
+    terms: list[Term] = [
+        _prior_term(clip, window, step_s),
+        SmoothnessTerm(pace**1.5),
+        RegionTerm(
+            evidence.model,
+            clip.observed[frames],
+            clip.noise,
+            clip.width_px[frames],
+            evidence.distrust,
+            evidence.area_ratio,
+        ),
+        DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None]),
+        LimitTerm(),
+        StillnessTerm(clip.camera, ankles, step_s),
+    ]
+    if clip.ankle_height_m is not None:
+        terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
+    return terms
+
+
+def with_contours(terms: Sequence[Term], contours: ContourTerm) -> list[Term]:
+    """The terms of a window once edges have been measured near its contours."""
+    return [*terms, contours]
+
+
+def frame_terms(
+    evidence: KeyframeEvidence,
+    observed: ObservedRegions,
+    belief: Belief,
+    noise: RegionNoise,
+    width_px: Array,
+) -> list[CostTerm]:
+    """The terms of one frame, for as many states of it as the belief has starts, S.
+
+    Args:
+        evidence: The markers' model, as calibrated on keyframes or of average proportions.
+        observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
+        belief: Prior belief in the posture.
+        noise: Noise of the regions' features.
+        width_px: (1, M) half-width of each marker's limb [px].
+    """
+    model, starts = evidence.model, belief.starts.batch[0]
+    bias_std = noise.bias_std(width_px).reshape(1, -1)
+    repeated = observed[np.zeros(starts, dtype=np.intp)]
+    width = np.repeat(width_px, starts, axis=0)
+    terms: list[CostTerm] = [
+        BeliefTerm.of(starts, belief.posture.skeleton.dof_count, bias_std),
+        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
+        LimitTerm(),
+    ]
+    if belief.grounded is not None:
+        ankles = _ankles(model.body)
+        points = model.body.points(model.body.pose(belief.grounded))
+        terms.append(GroundTerm(ankles, float(points[:, list(ankles), 2].min())))
+    return terms
+
+
+def _ankles(body: Body) -> tuple[int, ...]:
+    """Indices of the ankles among the principal points."""
+    return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
+
+
+def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:
+    """The deviation's size, trust in keyframes, and the biases' slow drift."""
+    noise, width_px = clip.noise, clip.width_px[window.frames]
+    inside = (clip.keyframes >= window.first) & (clip.keyframes < window.last)
+    dofs, frames = clip.body.skeleton.dof_count, len(width_px)
+    size = noise.bias_std(width_px).reshape(frames, -1)
+    builder = QuadraticBuilder(frames, dofs + size.shape[1])
+    posture, bias = slice(0, dofs), slice(dofs, None)
+    builder.add(posture, (1.0,), LARGEST_VARIATION)
+    information = clip.factor.T @ clip.evidence.information[inside] @ clip.factor
+    builder.add_blocks(clip.keyframes[inside] - window.first, information)
+    kept = np.exp(-step_s / noise.bias_time_s)[:, None]
+    builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))
+    first = np.full_like(size, np.inf)
+    first[0] = size[0]
+    builder.add(bias, (1.0,), first)
+    return builder.term()
