@@ -29,7 +29,7 @@ LONG_REPEATS = 2
 load_project()
 
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.footage.colors.clip_colors import ClipColors  # noqa: E402
+from keymark.core.footage.colors.streaming_color_learning import ClipColors  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.footage.markers import track_markers  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402

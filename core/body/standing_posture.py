@@ -3,10 +3,10 @@
 import numpy as np
 
 from ..arrays import Array
+from .body_volume import HEAD_OVERSHOOT
 from .heading import headed
 from .kinematics import Body
 from .posture import Posture
-from .shapes import HEAD_OVERSHOOT
 from .skeleton import SIDES
 
 ARMS_LOWERED_RAD = float(np.radians(75.0))

@@ -18,7 +18,7 @@ from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
-from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
+from ..prior.process_noise import REFERENCE_STEP_S, acceleration_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .contour_evidence import ContourEvidence, learn_contours

@@ -10,7 +10,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..observation import depths
-from ..prior.variability import REFERENCE_STEP_S
+from ..prior.process_noise import REFERENCE_STEP_S
 from ..progress import Part, Preview, scaled
 from .ankle_height import FOOTING_STD_M
 from .clip_state import ClipState

@@ -8,9 +8,9 @@ import numpy as np
 from ..arrays import Array, IntArray
 from .association import Candidates, candidates
 from .clips.clip_samples import ClipSamples
-from .colors.clip_colors import ClipColors
+from .colors.color_confusion import color_claims
 from .colors.color_model import ColorModel
-from .colors.color_overlap import color_claims
+from .colors.streaming_color_learning import ClipColors
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
 from .region_assignment import DEAREST_PIECE, own_regions

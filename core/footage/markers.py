@@ -8,11 +8,11 @@ import numpy as np
 from ..arrays import Array, Image
 from .association import candidates, main_path
 from .clips.clip import Clip
-from .colors.clip_colors import ClipColors
+from .colors.streaming_color_learning import ClipColors
 from .detections import Sightings
 from .marker_style import MarkerStyle, color_groups
-from .pieces import region_quality
 from .region_assignment import own_regions
+from .region_fragments import region_quality
 from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import NO_REGIONS, Regions, find_regions

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IntArray
 from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
-from .pieces import OwnRegion, join_pieces
+from .region_fragments import OwnRegion, join_pieces
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import InputError
 from .clips.clip import Clip
 from .clips.frame_reader import FrameReader
-from .colors.clip_colors import ClipColors
+from .colors.streaming_color_learning import ClipColors
 from .detections import Sightings
 from .marker_style import MarkerStyle
 from .markers import tell_markers

@@ -188,7 +188,8 @@ def _worth_trying(prepared: Sequence[Prepared]) -> list[Prepared]:
 def with_matches(take: Take, match: LibraryMatch) -> Take:
     """The take with a match's keyframes: posed ones stay, and matched ones near them move beside them.
 
-    Beside a posed keyframe a matched one tells how the performer differs from the library (`prior/style`).
+    Beside a posed keyframe a matched one tells how the performer differs from the library
+    (`prior/performer_offset`).
     """
     posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
     keyframes = {keyframe.index: keyframe for keyframe in take.keyframes if keyframe.matched is None}

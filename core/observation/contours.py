@@ -11,12 +11,12 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
-from ..body.shapes import PieceStack, body_pieces
 from ..footage.camera import Camera
 from .occlusion import Covers, covers
-from .outline import View, view_pieces
+from .silhouette import View, view_pieces
 
 SHARES = (0.2, 0.4, 0.6, 0.8)
 """Where on a part samples lie; its ends are another part's as much."""

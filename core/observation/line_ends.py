@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
+from ..body.body_volume import TRUNK, marker_parts, marker_segments, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross_matrix
-from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
 from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
-from ..body.shapes import PieceStack
 from ..footage.camera import Camera
-from .outline import view_pieces
+from .silhouette import view_pieces
 
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7

@@ -13,12 +13,12 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
-from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
 from .occlusion import covers, visible_share
-from .outline import TINY, Outline, outline, view_pieces
+from .silhouette import TINY, Outline, outline, view_pieces
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
 """Entries of a second-moment matrix in the order of rows: xx, xy, yy."""

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.footage.camera import Camera
-from ...core.footage.first_camera import first_stand, guess_lens
+from ...core.footage.default_camera import first_stand, guess_lens
 from .footage import clip_rate, set_scene_range
 from .footage_camera import (
     clip_lens,

@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from ...files.fields import listed
-from .one_image import read_image
+from .image_file import read_image
 
 MOST_IMAGES = 10**6
 """Of one folder; eleven hours of film."""

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array, BoolArray, Image, IntArray
 from .color_model import ColorDistribution, ColorModel, color_model
 from .color_space import chromaticity
-from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
+from .indexed_frames import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
 
 # What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
 SATURATION_DEVIATION = 0.15

@@ -13,7 +13,7 @@ from ..colors.color_model import ColorModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
-from .window_sheet import Sheet, Window, lay_out
+from .window_atlas import Sheet, Window, lay_out
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 MOST_REGIONS = 8

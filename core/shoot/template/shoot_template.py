@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...files.fields import listed
-from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
+from ...footage.default_camera import EYE_HEIGHT_M, first_stand, guess_lens
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import counted
 from .clip_survey import ClipSurvey

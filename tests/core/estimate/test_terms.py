@@ -16,7 +16,7 @@ from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
 from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight
 from keymark.core.observation import depths
-from keymark.core.prior.variability import acceleration_factor
+from keymark.core.prior.process_noise import acceleration_factor
 
 FRAMES = 6
 DOFS = HUMAN.dof_count

@@ -12,7 +12,7 @@ from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.matting import coverage
 from keymark.core.footage.segmentation.search_windows import boxes_to_measure
-from keymark.core.footage.segmentation.window_sheet import NO_COLOR, Window, lay_out
+from keymark.core.footage.segmentation.window_atlas import NO_COLOR, Window, lay_out
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9

@@ -15,7 +15,7 @@ from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
-from keymark.core.footage.segmentation.mask_outlines import mask_outlines
+from keymark.core.footage.segmentation.region_outlines import mask_outlines
 from keymark.core.footage.segmentation.regions import color_masks
 
 Result = TypeVar("Result")

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _any_library import libraries
 from _libraries import ACTOR, small_library
+from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body

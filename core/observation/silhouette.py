@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
 from ..body.rotations import cross
-from ..body.shapes import PieceStack
 from ..footage.camera import Camera
 
 ALONG, ACROSS = 8, 4

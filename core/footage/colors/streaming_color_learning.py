@@ -15,7 +15,7 @@ from ..region_tracks import ExpectedRegions
 from ..segmentation.working_image import halvings, learning_image, measuring_image
 from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel
-from .color_names import nearest_colors, share_of_color
+from .nearest_colors import nearest_colors, share_of_color
 
 SAMPLES = 12
 """Frames that are learned from first; up to three times as many are kept."""

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA
+from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import Piece, PieceStack
 from keymark.core.footage.camera import Camera
-from keymark.core.observation.outline import outline, view_pieces
+from keymark.core.observation.silhouette import outline, view_pieces
 
 LENGTH, WIDE, DEEP = 0.4, 0.12, 0.05
 FRAME = np.zeros(1, dtype=np.intp)
