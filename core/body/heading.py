@@ -9,12 +9,12 @@ from .posture import Posture
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def about_up(angle_rad: Array | float) -> Array:
+def yaw_rotation(angle_rad: Array | float) -> Array:
     """(..., 3, 3) rotations about the vertical by angles (...)."""
     return rotations.hinge(UP, np.asarray(angle_rad))
 
 
-def headed(posture: Posture, angle_rad: Array | float, place: Array) -> Posture:
+def yawed_at(posture: Posture, angle_rad: Array | float, place: Array) -> Posture:
     """Postures turned about the vertical, their hips in given places.
 
     Args:
@@ -23,5 +23,5 @@ def headed(posture: Posture, angle_rad: Array | float, place: Array) -> Posture:
         place: (N, 3) of the hips' midpoint [m].
     """
     matrices = np.array(posture.rotations)
-    matrices[..., 0, :, :] = about_up(angle_rad) @ matrices[..., 0, :, :]
+    matrices[..., 0, :, :] = yaw_rotation(angle_rad) @ matrices[..., 0, :, :]
     return Posture(posture.skeleton, place, matrices, posture.angles)

@@ -16,7 +16,7 @@ MONOTONE_LIMIT = 3.0
 """Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone."""
 
 
-def smooth_course(posed: Posture, knots: Array, at: Array) -> Posture:
+def cubic_spline(posed: Posture, knots: Array, at: Array) -> Posture:
     """The posture at any time, led smoothly through those given.
 
     Before the first and after the last the posture is held.
@@ -32,18 +32,18 @@ def smooth_course(posed: Posture, knots: Array, at: Array) -> Posture:
     step = posed[1:].minus(posed[:-1])  # (K-1, D), in the earlier posture's tangent space
     gap = np.diff(knots)[:, None]
     tangent = _tangents(step / gap, gap)  # (K, D) per unit of time
-    stretch, elapsed = stretches(knots, at)
+    stretch, elapsed = find_intervals(knots, at)
     return posed[stretch].plus(_hermite(posed, step, gap, tangent, stretch, elapsed))
 
 
-def straight_course(posed: Posture, knots: Array, at: Array) -> Posture:
-    """Like `smooth_course`, with constant velocity between postures (slerp): the plainest comparison."""
-    stretch, elapsed = stretches(knots, at)
+def linear_spline(posed: Posture, knots: Array, at: Array) -> Posture:
+    """Like `cubic_spline`, with constant velocity between postures (slerp): the plainest comparison."""
+    stretch, elapsed = find_intervals(knots, at)
     share = elapsed / np.diff(knots)[stretch]
     return posed[stretch].plus(share[:, None] * posed[1:].minus(posed[:-1])[stretch])
 
 
-def stretches(knots: Array, at: Array) -> tuple[IndexArray, Array]:
+def find_intervals(knots: Array, at: Array) -> tuple[IndexArray, Array]:
     """Between which two knots (K,) each time (T,) lies, by the first of them, and how long after that one."""
     held = np.clip(at, knots[0], knots[-1])
     stretch = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import Array
 from .body_volume import HEAD_OVERSHOOT
-from .heading import headed
+from .heading import yawed_at
 from .kinematics import Body
 from .posture import Posture
 from .skeleton import SIDES
@@ -59,7 +59,7 @@ def facing_rad(direction: Array) -> float:
     return float(np.arctan2(x, -y)) if np.hypot(x, y) > 1e-9 else 0.0
 
 
-def turned(posture: Posture, angle_rad: Array) -> Posture:
+def yawed_in_place(posture: Posture, angle_rad: Array) -> Posture:
     """A posture turned about the vertical through its hips by each of N angles: a batch of N."""
     batch = Posture.stack([posture] * len(angle_rad))
-    return headed(batch, angle_rad, batch.translation)
+    return yawed_at(batch, angle_rad, batch.translation)

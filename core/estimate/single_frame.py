@@ -16,7 +16,7 @@ from ..body.posture import Posture
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
-from ..prior.frame_prior import Belief
+from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
@@ -57,7 +57,7 @@ class FrameFit:
 def fit_frame(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
-    belief: Belief,
+    belief: FramePrior,
     frame: int,
     noise: RegionNoise | None = None,
 ) -> FrameFit:
@@ -92,7 +92,7 @@ def calibrated(
     return run(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
 
 
-def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> ExpectedRegions:
+def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:
     """Where a belief puts each marker, (1, M), with a generous radius."""
     predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
     depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
@@ -107,7 +107,7 @@ class _Descent:
         self,
         evidence: KeyframeEvidence,
         observed: ObservedRegions,
-        belief: Belief,
+        belief: FramePrior,
         frame: int,
         noise: RegionNoise,
     ) -> None:
@@ -186,7 +186,7 @@ class _Descent:
         return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
 
 
-def _ground(body: Body, belief: Belief) -> GroundTerm | None:
+def _ground(body: Body, belief: FramePrior) -> GroundTerm | None:
     """Where the ankles are when a foot is on the ground."""
     if belief.grounded is None:
         return None
@@ -195,7 +195,7 @@ def _ground(body: Body, belief: Belief) -> GroundTerm | None:
     return GroundTerm(ankles, float(points[:, list(ankles), 2].min()))
 
 
-def _factor(model: RegionModel, belief: Belief, frame: int) -> Array:
+def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:
     """A square root L (D, D) of the belief's covariance, in which the points keep near their depths.
 
     The image says little of depth, so the believed depths of the points count as seen (paper, eq. 9).

@@ -73,7 +73,7 @@ class Candidates:
         return np.asarray(self.moments[:, 0])
 
 
-def candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
+def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
     """Gather the regions of one color and take them to the image's own pixels.
 
     Args:
@@ -101,7 +101,7 @@ def typical_area(found: Candidates, clutter: BoolArray) -> float:
     return float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0
 
 
-def still_clutter(found: Candidates) -> BoolArray:
+def static_clutter(found: Candidates) -> BoolArray:
     """Mark regions (N,) that stay in place for most of the clip while others of their color move.
 
     A marker that itself rests is not marked: nothing else of its color is seen at the same time.
@@ -142,7 +142,7 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     return np.asarray(around[index] >= STILL_SHARE * frames)
 
 
-def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
+def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """Return the index of the marker's main region in each frame, (F,); -1 where it is hidden.
 
     Args:
@@ -206,7 +206,7 @@ def region_costs(
     return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
 
 
-def rivals_costs(
+def rival_costs(
     found: Candidates,
     taken: BoolArray,
     expected: ExpectedRegions | None,

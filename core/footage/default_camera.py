@@ -61,7 +61,7 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
     return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
 
 
-def first_stand(lens_mm: float, sensor_width_mm: float, size: tuple[int, int]) -> Array:
+def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int, int]) -> Array:
     """Where a camera is put at first: (4, 4) camera to world [m].
 
     It stands at eye height, looks level along +Y at the world's origin, and so far away that the floor there

@@ -13,17 +13,17 @@ from .segmentation.regions import Regions
 
 
 @dataclass(frozen=True)
-class Lesson:
+class LearningRound:
     """Once that the colors were learned."""
 
     frames: tuple[int, ...]
     """The frames learned from."""
-    taught: str
-    """Digest of what they taught."""
+    model_digest: str
+    """Digest of the color model that was learned."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sightings:
+class Detections:
     """All regions of the markers' colors in a clip of F frames."""
 
     regions: tuple[Regions, ...]
@@ -32,7 +32,7 @@ class Sightings:
     """(F,) time stamps of the frames in seconds."""
     size: tuple[int, int]
     """Width and height of the clip's images in px."""
-    lessons: tuple[Lesson, ...]
+    learning_rounds: tuple[LearningRound, ...]
     """How the colors were learned, in order."""
     samples: Mapping[int, Image]
     """The images that were learned from, (rows, columns, 3), by their frames."""

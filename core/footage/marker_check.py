@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from .association import Candidates, candidates
+from .association import Candidates, gather_candidates
 from .clips.clip_samples import ClipSamples
-from .colors.color_confusion import color_claims
+from .colors.color_confusion import color_confusion
 from .colors.color_model import ColorModel
-from .colors.streaming_color_learning import ClipColors
+from .colors.streaming_color_learning import StreamingColorLearner
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
-from .region_assignment import DEAREST_PIECE, own_regions
+from .region_assignment import HIGHEST_FRAGMENT_COST, assign_regions
 from .region_tracks import ExpectedRegions
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
@@ -73,15 +73,18 @@ def check_markers(
     yield 0.0
     frames = len(samples.images)
     at_samples = None if expected is None else _at(expected, samples.indices)
-    colors = ClipColors(samples.path, samples.size, styles, at_samples)
+    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples)
     colors.learn(samples.images)
     yield 0.5
     regions = []
     for done, image in enumerate(samples.images):
         regions += find_regions([image], 0, colors.model)
         yield 0.5 + 0.5 * done / frames
-    found = [candidates(regions, color, 2.0 ** halvings(samples.size)) for color in range(len(colors.groups))]
-    own = own_regions(found, colors.groups, at_samples, _cheapest)
+    found = [
+        gather_candidates(regions, color, 2.0 ** halvings(samples.size))
+        for color in range(len(colors.groups))
+    ]
+    own = assign_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
     likenesses = _likenesses([style.name for style in styles], colors, found, areas)
     complaints = colors.complaints()
@@ -106,15 +109,15 @@ def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
     for frame, (first, end) in enumerate(zip(found.start[:-1], found.start[1:], strict=True)):
         if first < end:
             best = first + int(np.argmin(cost[first:end]))
-            path[frame] = best if cost[best] <= DEAREST_PIECE else -1
+            path[frame] = best if cost[best] <= HIGHEST_FRAGMENT_COST else -1
     return path
 
 
 def _likenesses(
-    names: Sequence[str], colors: ClipColors, found: Sequence[Candidates], areas: Sequence[Array]
+    names: Sequence[str], colors: StreamingColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
 ) -> dict[int, Likeness]:
     """Return what else looks like each marker, by its index, from its area in every frame."""
-    claims = color_claims(colors.model)
+    claims = color_confusion(colors.model)
     together = [" and ".join(names[marker] for marker in group) for group in colors.groups]
     likenesses = {}
     for color, group in enumerate(colors.groups):

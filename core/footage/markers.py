@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, Image
-from .association import candidates, main_path
+from .association import gather_candidates, viterbi_path
 from .clips.clip import Clip
-from .colors.streaming_color_learning import ClipColors
-from .detections import Sightings
+from .colors.streaming_color_learning import StreamingColorLearner
+from .detections import Detections
 from .marker_style import MarkerStyle, color_groups
-from .region_assignment import own_regions
+from .region_assignment import assign_regions
 from .region_fragments import region_quality
 from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
@@ -47,35 +47,37 @@ def track_markers(
         InputError: a marker's color matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
-    seen = yield from sight_markers(clip, styles, expected)
+    seen = yield from detect_markers(clip, styles, expected)
     yield 1.0
-    return tell_markers(seen, styles, expected)
+    return assign_detections(seen, styles, expected)
 
 
-def sight_markers(
+def detect_markers(
     clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
-) -> Generator[float, None, Sightings]:
+) -> Generator[float, None, Detections]:
     """Find all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
-    colors = ClipColors(clip.path, clip.size, styles, expected)
-    regions, time_s = yield from _all_regions(clip, colors)
+    colors = StreamingColorLearner(clip.path, clip.size, styles, expected)
+    regions, time_s = yield from _detect_regions(clip, colors)
     colors.check_found()
-    return Sightings(tuple(regions), time_s, clip.size, tuple(colors.lessons), colors.samples)
+    return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
 
 
-def still_hold(seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
+def still_valid(seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
     """Tell whether exactly the same would be found in the clip with the markers expected elsewhere."""
-    colors = ClipColors(Path(), seen.size, styles, expected)
+    colors = StreamingColorLearner(Path(), seen.size, styles, expected)
     return colors.learn_again(seen)
 
 
-def tell_markers(
-    seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+def assign_detections(
+    seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
     """Tell which of the regions that were found are the markers'; see `track_markers`."""
     return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
 
 
-def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple[list[Regions], Array]]:
+def _detect_regions(
+    clip: Clip, colors: StreamingColorLearner
+) -> Generator[float, None, tuple[list[Regions], Array]]:
     """Find the regions of every frame, and the frames' times.
 
     The images of the clip's first stretch wait, reduced, until the colors are learned from them; later ones
@@ -107,7 +109,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
 
 
 def _regions_of_stretch(
-    waiting: list[Image], colors: ClipColors, regions: list[Regions], frame_count: int
+    waiting: list[Image], colors: StreamingColorLearner, regions: list[Regions], frame_count: int
 ) -> Generator[float, None, None]:
     """Learn the colors from images on the measuring grid; append their regions and let go of them."""
     colors.learn(waiting)
@@ -128,8 +130,8 @@ def _tracks(
     size: tuple[int, int],
 ) -> RegionTracks:
     """Tell which regions are the markers', over the whole clip at once."""
-    found = [candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
-    joined = own_regions(found, groups, expected, main_path)
+    found = [gather_candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
+    joined = assign_regions(found, groups, expected, viterbi_path)
     rows = [joined[marker] for marker in range(len(styles))]
     moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)

@@ -6,10 +6,10 @@ from dataclasses import replace
 from ..errors import InputError
 from .clips.album import Album
 from .clips.clip import Clip
-from .clips.frame_checks import FrameWatch
-from .clips.watched_clip import watched
+from .clips.frame_checks import FrameChecks
+from .clips.watched_clip import watch_clip
 from .marker_style import MarkerStyle
-from .markers import sight_markers, still_hold, tell_markers
+from .markers import assign_detections, detect_markers, still_valid
 from .reading import Reading
 from .reading_key import of_same_footage, reading_key
 from .region_tracks import ExpectedRegions
@@ -49,18 +49,20 @@ def read_clip(
         kept = kept if with_album else replace(kept, album=None)
         if kept.key == key:
             return kept
-        seen = kept.sightings
-        if seen is not None and of_same_footage(kept.key, key) and still_hold(seen, styles, expected):
-            return replace(kept, tracks=tell_markers(seen, styles, expected), key=key)
-    album, watch = Album() if with_album else None, FrameWatch()
+        seen = kept.detections
+        if seen is not None and of_same_footage(kept.key, key) and still_valid(seen, styles, expected):
+            return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
+    album, checks = Album() if with_album else None, FrameChecks()
     try:
-        seen = yield from sight_markers(watched(clip, watch, album), styles, expected)
+        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected)
     except InputError as error:
-        why = watch.nothing_seen()
+        why = checks.nothing_seen()
         if why is not None:
             raise InputError(f"{clip.path}: {why}") from error
         if clip.notes:
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
     yield 1.0
-    return Reading(tell_markers(seen, styles, expected), album, seen, key=key, noticed=watch.noticed())
+    return Reading(
+        assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
+    )

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from .clips.album import Album
-from .clips.frame_checks import NOTHING_NOTICED, Noticed
-from .detections import Sightings
+from .clips.frame_checks import NO_FINDINGS, FrameFindings
+from .detections import Detections
 from .region_tracks import RegionTracks
 
 
@@ -16,11 +16,11 @@ class Reading:
     """The markers' regions in every frame."""
     album: Album | None = None
     """A small picture of every frame; None where nothing is to be looked for but markers."""
-    sightings: Sightings | None = None
+    detections: Detections | None = None
     """All regions of the markers' colors; None where they were not kept."""
     notes: tuple[str, ...] = ()
     """Sentences on what may be wrong with the clip."""
     key: str = ""
     """Of what it was read from and how, see `reading_key`; empty where nobody knows."""
-    noticed: Noticed = NOTHING_NOTICED
+    frame_findings: FrameFindings = NO_FINDINGS
     """What is to be known of the frames themselves."""

@@ -5,21 +5,21 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..arrays import Array, BoolArray, IntArray
-from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
-from .region_fragments import OwnRegion, join_pieces
+from .association import Candidates, region_costs, rival_costs, static_clutter, typical_area
+from .region_fragments import MarkerRegion, join_fragments
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
 
-DEAREST_PIECE = 10.0
+HIGHEST_FRAGMENT_COST = 10.0
 """Highest cost of what is taken for a piece of a marker."""
 
 
-def own_regions(
+def assign_regions(
     found: Sequence[Candidates],
     groups: Sequence[Sequence[int]],
     expected: ExpectedRegions | None,
     choose: Callable[[Candidates, Array, float], IntArray],
-) -> dict[int, OwnRegion]:
+) -> dict[int, MarkerRegion]:
     """Return what is each marker's in every frame, by the marker's index.
 
     Args:
@@ -31,7 +31,7 @@ def own_regions(
     """
     alone = [len(group) == 1 for group in groups]
     clutter = [
-        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        static_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
         for one, single in zip(found, alone, strict=True)
     ]
     usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
@@ -43,9 +43,9 @@ def own_regions(
         taken = np.zeros(len(one.frame), dtype=np.bool_)
         for marker in group:
             cost = region_costs(one, clutter[color], usual[color], expected, marker)
-            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            cost += rival_costs(one, taken, expected, marker, [other for other in group if other != marker])
             path = choose(one, cost, length)
-            own[marker] = join_pieces(one, path, cost, reach, DEAREST_PIECE)
+            own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
             taken[path[path >= 0]] = True
     return own
 

@@ -13,7 +13,7 @@ AREA_WINDOW = 31
 CLIPPED_QUALITY = 0.4
 
 
-class OwnRegion(NamedTuple):
+class MarkerRegion(NamedTuple):
     """What of the regions of its color is a marker's, in each of F frames."""
 
     moments: Array
@@ -26,9 +26,9 @@ class OwnRegion(NamedTuple):
     """(F,) share of its largest piece in its area."""
 
 
-def join_pieces(
+def join_fragments(
     found: Candidates, path: IntArray, cost: Array, reach_px: float, most_cost: float
-) -> OwnRegion:
+) -> MarkerRegion:
     """Add to each frame's main region the pieces that an arm before the marker cut off from it.
 
     Args:
@@ -51,10 +51,10 @@ def join_pieces(
     share = np.zeros(frames)
     seen = np.flatnonzero(path >= 0)
     share[seen] = found.area[path[seen]] / area[seen]
-    return OwnRegion(moments, clipped, certainty, share)
+    return MarkerRegion(moments, clipped, certainty, share)
 
 
-def region_quality(own: OwnRegion) -> Array:
+def region_quality(own: MarkerRegion) -> Array:
     """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
 
     The product of the area against the full area seen in frames around, of clipping by the image's border, of

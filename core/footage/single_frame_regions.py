@@ -7,10 +7,10 @@ import numpy as np
 from ..errors import InputError
 from .clips.clip import Clip
 from .clips.frame_reader import FrameReader
-from .colors.streaming_color_learning import ClipColors
-from .detections import Sightings
+from .colors.streaming_color_learning import StreamingColorLearner
+from .detections import Detections
 from .marker_style import MarkerStyle
-from .markers import tell_markers
+from .markers import assign_detections
 from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
@@ -39,8 +39,8 @@ def regions_of_frame(
     if image is None:
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
-    colors = ClipColors(clip.path, clip.size, styles)
+    colors = StreamingColorLearner(clip.path, clip.size, styles)
     colors.learn([measuring_image(sample, times) for _, sample in clip.sample(SAMPLED_FRAMES)])
     colors.check_found()
     regions = find_regions([image], times, colors.model)
-    return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)
+    return assign_detections(Detections(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import about_up
+from ..body.heading import yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.posture_spline import straight_course
+from ..body.posture_spline import linear_spline
 from .library import Travel
-from .posture_shape import headings_rad, moved, shapes
+from .posture_shape import headings_rad, shape_vectors, turned_and_shifted
 
 FEWEST_CYCLES = 1.9
 """So many must be seen: two, but for what is missing at the clip's ends."""
@@ -84,19 +84,19 @@ def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) 
         time_s: (F,) rising times [s].
         period_s: What `find_period_s` found.
     """
-    shape = shapes(body, posture)
+    shape = shape_vectors(body, posture)
     begin_s, cycles = _whole_cycles(shape, time_s, period_s)
     count = max(8, round(period_s * (len(time_s) - 1) / (time_s[-1] - time_s[0])))
     phase_s = period_s * np.arange(count + 1) / count  # the last is the next cycle's first
     turn, step = _cycle_step(posture, time_s, period_s)
     seen = []
     for cycle in range(cycles):
-        there = straight_course(posture, time_s, begin_s + cycle * period_s + phase_s)
+        there = linear_spline(posture, time_s, begin_s + cycle * period_s + phase_s)
         for _ in range(cycle):  # back to where the first cycle was
-            there = moved(moved(there, 0.0, -step), -turn, np.zeros(3))
+            there = turned_and_shifted(turned_and_shifted(there, 0.0, -step), -turn, np.zeros(3))
         seen.append(there)
     mean = _mean(seen)
-    again = moved(mean[:1], turn, step)
+    again = turned_and_shifted(mean[:1], turn, step)
     gap = again.minus(mean[count:])[0]  # (D,) what the end misses
     closed = mean.plus((phase_s / period_s)[:, None] * gap)
     return Cycle(closed[:count], phase_s[:count], period_s, (float(step[0]), float(step[1]), turn))
@@ -116,10 +116,10 @@ def _whole_cycles(shape: Array, time_s: Array, period_s: float) -> tuple[float, 
 def _cycle_step(posture: Posture, time_s: Array, period_s: float) -> tuple[float, Array]:
     """The turn about the vertical [rad] and then the shift (3,) [m] that lead from a cycle to the next."""
     now = time_s <= time_s[-1] - period_s
-    later = straight_course(posture, time_s, time_s[now] + period_s)
+    later = linear_spline(posture, time_s, time_s[now] + period_s)
     turned = headings_rad(later) - headings_rad(posture[now])
     turn = float(np.arctan2(np.sin(turned).mean(), np.cos(turned).mean()))
-    step = (later.translation - posture[now].translation @ about_up(turn).T).mean(axis=0)
+    step = (later.translation - posture[now].translation @ yaw_rotation(turn).T).mean(axis=0)
     return turn, np.asarray(step * [1.0, 1.0, 0.0])
 
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import about_up
+from ..body.heading import yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .posture_shape import ankle_heights, headings_rad, moved, shapes
+from .posture_shape import ankle_heights, headings_rad, shape_vectors, turned_and_shifted
 from .texts import LONGEST_NAME, identifier_from
 
 FEWEST, MOST = 10, 40
@@ -30,7 +30,7 @@ DECIMALS_S = 3
 
 
 @dataclass(frozen=True)
-class About:
+class LibraryMetadata:
     """What a library says of itself."""
 
     title: str
@@ -46,7 +46,7 @@ class About:
 
 
 def learn_library(
-    body: Body, posture: Posture, time_s: Array, about: About, count: int | None = None
+    body: Body, posture: Posture, time_s: Array, about: LibraryMetadata, count: int | None = None
 ) -> Library:
     """Turn a finished motion into a library of one motion.
 
@@ -68,7 +68,7 @@ def learn_library(
         raise InputError(f"the count of postures is {count}; 2 to 1000 are valid")
     if frames < fewest:
         raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest}")
-    shape = shapes(body, posture)
+    shape = shape_vectors(body, posture)
     if np.linalg.norm(shape - shape[0], axis=1).max() < STILL_M:
         raise InputError("the motion stands still; a library needs postures that differ")
     posture = on_floor(body, posture, time_s)
@@ -81,9 +81,11 @@ def learn_library(
         cycle = average_cycle(body, posture, time_s, period_s)
         posture, time_s, duration_s, travel = cycle.posture, cycle.time_s, cycle.duration_s, cycle.travel
     turn = -_straight_ahead(posture)
-    shift = moved(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
-    posture = moved(posture, turn, shift)
-    chosen = spread_frames(shapes(body, posture), time_s, duration_s, count, cyclic=period_s is not None)
+    shift = turned_and_shifted(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
+    posture = turned_and_shifted(posture, turn, shift)
+    chosen = spread_frames(
+        shape_vectors(body, posture), time_s, duration_s, count, cyclic=period_s is not None
+    )
     names = _names(about.title, len(chosen))
     tags = _tags(body, posture[chosen])
     motion = LibraryMotion(
@@ -119,7 +121,7 @@ def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
     lower = ankle_heights(body, posture).min(axis=-1)
     slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
-    return moved(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
+    return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
 
 
 def spread_frames(
@@ -183,8 +185,8 @@ def _turned_travel(
 ) -> tuple[float, float, float]:
     """A cycle's travel, given for the world, as it is for postures that were turned and shifted."""
     x, y, heading = travel
-    step = about_up(turn) @ np.array([x, y, 0.0])
-    onward = step + shift - about_up(heading) @ shift
+    step = yaw_rotation(turn) @ np.array([x, y, 0.0])
+    onward = step + shift - yaw_rotation(heading) @ shift
     return float(onward[0]), float(onward[1]), heading
 
 

@@ -14,8 +14,8 @@ from ..files.fields import listed
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .library_file import library_to_json
-from .texts import checked_identifier, name_key, told_apart
-from .transfer import applied
+from .texts import checked_identifier, name_key, unique_name
+from .transfer import transferred
 
 
 class Choice(Enum):
@@ -72,7 +72,7 @@ def compare(mine: Library, theirs: Library) -> Comparison:
     )
 
 
-def chosen(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
+def choose_version(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
     """One of two libraries of the same identifier, as a whole: mine where they are equal.
 
     Raises:
@@ -88,7 +88,7 @@ def chosen(mine: Library, theirs: Library, choice: Choice | None = None) -> Libr
     )
 
 
-def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
+def merge_versions(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     """Both libraries in one: what only theirs has is added to mine, fitted to my actor's proportions.
 
     The header is that of the later version. The result's version is one later than both, unless it equals one
@@ -127,7 +127,7 @@ def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     return replace(whole, version=max(mine.version, theirs.version) + 1)
 
 
-def joined(first: Library, second: Library, identifier: str, title: str) -> Library:
+def join_libraries(first: Library, second: Library, identifier: str, title: str) -> Library:
     """A new library with everything of two others, on the proportions of the first.
 
     What has the same name in both is told apart by a number, unless it is the same. Author, license, sources
@@ -146,12 +146,12 @@ def joined(first: Library, second: Library, identifier: str, title: str) -> Libr
             names[name_key(posture.name)] = rows[key][0]
             continue
         taken = [entry.name for entry in (*postures, *fitted.postures) if entry is not posture]
-        name = told_apart(posture.name, taken)
+        name = unique_name(posture.name, taken)
         names[name_key(posture.name)] = name
         postures.append(replace(posture, name=name))
     for motion in _respelled(fitted.motions, names):
         if not any(replace(old, name="") == replace(motion, name="") for old in first.motions):
-            motions.append(replace(motion, name=told_apart(motion.name, [entry.name for entry in motions])))
+            motions.append(replace(motion, name=unique_name(motion.name, [entry.name for entry in motions])))
     return Library(
         identifier=checked_identifier(identifier, "the identifier of the new library"),
         title=title,
@@ -186,7 +186,7 @@ def _fitted(library: Library, other: Library) -> Library:
     """A library on the proportions of another."""
     body = Body(other.actor)
     postures = tuple(
-        replace(entry, posture=applied(entry, library.actor, body)) for entry in library.postures
+        replace(entry, posture=transferred(entry, library.actor, body)) for entry in library.postures
     )
     return replace(library, actor=other.actor, postures=postures)
 

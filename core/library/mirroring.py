@@ -10,7 +10,7 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
-from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, told_apart
+from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, unique_name
 from .transfer import SAME_M
 
 MIRRORED = "mirrored"
@@ -32,7 +32,7 @@ def mirrored_library(library: Library) -> Library:
     """
     names: dict[str, str] = {}
     for entry in library.postures:
-        names[entry.name] = told_apart(mirrored_name(entry.name)[:LONGEST_NAME].strip(), names.values())
+        names[entry.name] = unique_name(mirrored_name(entry.name)[:LONGEST_NAME].strip(), names.values())
     return replace(
         library,
         identifier=_marked(library.identifier, f"_{MIRRORED}", LONGEST_IDENTIFIER),
@@ -71,14 +71,14 @@ def with_mirrored(library: Library) -> Library:
         if found is not None:
             twin = library.postures[found].name
         else:
-            twin = told_apart(_distinct(entry.name), [*taken, *(new.name for new in added)])
+            twin = unique_name(_distinct(entry.name), [*taken, *(new.name for new in added)])
             added.append(LibraryPosture(twin, opposite, entry.tags))
         names[entry.name] = twin
     motions: list[LibraryMotion] = list(library.motions)
     for motion in library.motions:
         twin_motion = _motion(motion, _distinct(motion.name), names)
         if not any(_same_course(old, twin_motion) for old in library.motions):
-            title = told_apart(twin_motion.name, [old.name for old in motions])
+            title = unique_name(twin_motion.name, [old.name for old in motions])
             motions.append(replace(twin_motion, name=title))
     return replace(library, postures=(*library.postures, *added), motions=tuple(motions))
 

@@ -3,19 +3,19 @@
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import UP, about_up, headed
+from ..body.heading import UP, yaw_rotation, yawed_at
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.posture_spline import smooth_course, stretches
+from ..body.posture_spline import cubic_spline, find_intervals
 from ..body.soles import lower_sole_m
 from .library import Library, LibraryMotion
-from .transfer import applied
+from .transfer import transferred
 
 NEIGHBORS = 2
 """So many postures before and after a cycle shape the curve within it."""
 
 
-def course(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -> Posture:
+def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -> Posture:
     """The postures of a motion at any times, led smoothly through those of its steps.
 
     A cyclic motion goes on endlessly, before time 0 too, and travels with every cycle; any other holds its
@@ -35,20 +35,20 @@ def course(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -
     knots = np.array([step.time_s for step in motion.steps])
     at = np.asarray(time_s, dtype=np.float64)
     if not motion.cyclic:
-        return applied(_led(library, posed, knots, at), library.actor, body)
+        return transferred(_led(library, posed, knots, at), library.actor, body)
     cycle = np.floor(at / motion.duration_s)
     around = np.arange(-NEIGHBORS, len(knots) + NEIGHBORS)
     turn, step = np.divmod(around, len(knots))
     led = _led(
         library,
-        carried(posed[step], motion, turn),
+        after_cycles(posed[step], motion, turn),
         knots[step] + turn * motion.duration_s,
         at - cycle * motion.duration_s,
     )
-    return applied(carried(led, motion, cycle), library.actor, body)
+    return transferred(after_cycles(led, motion, cycle), library.actor, body)
 
 
-def carried(posture: Posture, motion: LibraryMotion, cycles: Array) -> Posture:
+def after_cycles(posture: Posture, motion: LibraryMotion, cycles: Array) -> Posture:
     """Postures where they come again some cycles later, or earlier.
 
     A cycle turns a place about the world's origin by the motion's heading, then moves it by x and y.
@@ -63,19 +63,19 @@ def carried(posture: Posture, motion: LibraryMotion, cycles: Array) -> Posture:
     # The sum of the turned ways of all cycles is a geometric series; sin(n h / 2) / sin(h / 2) is its size.
     half = 0.5 * np.remainder(heading + np.pi, 2.0 * np.pi) - 0.5 * np.pi
     size = np.asarray(cycles) if abs(half) < 1e-9 else np.sin(cycles * half) / np.sin(half)
-    direction = about_up((np.asarray(cycles) - 1.0) * half)
+    direction = yaw_rotation((np.asarray(cycles) - 1.0) * half)
     moved = size[:, None] * (direction @ np.array([*way, 0.0]))
-    place = (about_up(angle) @ posture.translation[..., None])[..., 0] + moved
-    return headed(posture, angle, place)
+    place = (yaw_rotation(angle) @ posture.translation[..., None])[..., 0] + moved
+    return yawed_at(posture, angle, place)
 
 
 def _led(library: Library, posed: Posture, knots: Array, at: Array) -> Posture:
     """Postures (T,) between those at the knots, their soles no lower and no higher than there."""
     if len(knots) == 1:
         return posed[np.zeros(len(at), dtype=np.intp)]
-    led = smooth_course(posed, knots, at)
+    led = cubic_spline(posed, knots, at)
     body = Body(library.actor, posed.skeleton)
-    stretch, _ = stretches(knots, at)
+    stretch, _ = find_intervals(knots, at)
     given = lower_sole_m(body, posed)
     height = lower_sole_m(body, led)
     low = np.minimum(given[:-1], given[1:])[stretch]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import about_up, headed
+from ..body.heading import yaw_rotation, yawed_at
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -21,7 +21,7 @@ def headings_rad(posture: Posture) -> Array:
     return np.where(level > np.sqrt(0.5), ahead, across)
 
 
-def moved(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
+def turned_and_shifted(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
     """Postures turned about the world's vertical axis, then shifted.
 
     Args:
@@ -29,18 +29,18 @@ def moved(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
         angle_rad: (F,) or one angle.
         shift: (F, 3) or (3,) [m].
     """
-    place = (about_up(angle_rad) @ posture.translation[..., None])[..., 0] + shift
-    return headed(posture, angle_rad, place)
+    place = (yaw_rotation(angle_rad) @ posture.translation[..., None])[..., 0] + shift
+    return yawed_at(posture, angle_rad, place)
 
 
-def shapes(body: Body, posture: Posture) -> Array:
+def shape_vectors(body: Body, posture: Posture) -> Array:
     """The bodies' shapes (F, 3 P), as vectors whose distance is the points' mean square distance's root [m].
 
     They are the points over the ground below the hips, the performer facing -Y.
     """
     points = body.points(body.pose(posture))
     ground = posture.translation * [1.0, 1.0, 0.0]
-    turn = about_up(-headings_rad(posture))
+    turn = yaw_rotation(-headings_rad(posture))
     seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
     return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
 

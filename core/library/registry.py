@@ -21,7 +21,7 @@ MOST_FILES = 500
 
 
 @dataclass(frozen=True)
-class Shelved:
+class RegisteredLibrary:
     """A file on the shelf."""
 
     path: Path
@@ -46,16 +46,16 @@ class Shelved:
         return self.library.version if self.library else 0
 
 
-def shelved(folders: Sequence[Path]) -> tuple[Shelved, ...]:
+def registered_libraries(folders: Sequence[Path]) -> tuple[RegisteredLibrary, ...]:
     """Everything in some folders, in order of title; folders that are not there are empty.
 
     Of several libraries with one identifier only that of the earliest folder is on the shelf, and within a
     folder the one of the highest version; the rest can be reached by their files.
     """
-    found: dict[str, Shelved] = {}
-    broken: list[Shelved] = []
+    found: dict[str, RegisteredLibrary] = {}
+    broken: list[RegisteredLibrary] = []
     for folder in folders:
-        here: dict[str, Shelved] = {}
+        here: dict[str, RegisteredLibrary] = {}
         for path in _files(folder):
             entry = _read(path)
             if entry.library is None:
@@ -78,7 +78,7 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
     parted = any(mark in text for mark in (os.sep, os.altsep, "/") if mark)
     if isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING):
         return read_library(Path(name_or_path))
-    shelf = shelved(folders)
+    shelf = registered_libraries(folders)
     wanted = text.casefold()
     called = [entry for entry in shelf if entry.identifier.casefold() == wanted]
     titled = [entry for entry in shelf if entry.title.casefold() == wanted]
@@ -113,8 +113,8 @@ def _files(folder: Path) -> list[Path]:
     return sorted(files)[:MOST_FILES]
 
 
-def _read(path: Path) -> Shelved:
+def _read(path: Path) -> RegisteredLibrary:
     try:
-        return Shelved(path, read_library(path))
+        return RegisteredLibrary(path, read_library(path))
     except InputError as error:
-        return Shelved(path, None, str(error))
+        return RegisteredLibrary(path, None, str(error))

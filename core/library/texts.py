@@ -79,7 +79,7 @@ def name_key(name: str) -> str:
     return " ".join("".join(letter for letter in folded if not is_hidden(letter, "")).split())
 
 
-def told_apart(name: str, taken: Iterable[str]) -> str:
+def unique_name(name: str, taken: Iterable[str]) -> str:
     """The name, or with a number behind it where one that looks the same is taken."""
     keys = {name_key(other) for other in taken}
     if name_key(name) not in keys:

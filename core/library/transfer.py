@@ -13,7 +13,7 @@ SAME_M = 1e-6
 """Lengths that differ by less are the same; files keep fewer digits than memory does."""
 
 
-def applied(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
+def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
     """A posture with the same angles on another body, as high above the floor and as far along it.
 
     Heights and ways are scaled with the length of the legs. What counts as height is that of the lowest sole,

@@ -159,7 +159,7 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     Without keyframes a thing of a marker's color may have been taken for it. A marker that is merely lost
     where the match has it stays what it was: an arm may do something that the library does not.
     """
-    if reading.sightings is None or match.fit > WELL:
+    if reading.detections is None or match.fit > WELL:
         return None
     told = with_matches(replace(take, keyframes=()), match)
     again = yield from read_footage(told, reading)

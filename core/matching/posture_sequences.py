@@ -16,8 +16,8 @@ from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion
-from ..library.motion_playback import course
-from ..library.transfer import applied
+from ..library.motion_playback import sample_motion
+from ..library.transfer import transferred
 
 STEP_M = 0.045
 """Points move about so far from one posture of a chain to the next: well below what performers differ by."""
@@ -148,7 +148,7 @@ def _chains(library: Library, body: Body, spacing: float) -> Iterator[Chain]:
     for loose in library.postures:
         if loose.name in used:
             continue
-        posture = Posture.stack([applied(loose, library.actor, body)])
+        posture = Posture.stack([transferred(loose, library.actor, body)])
         single = Chain(posture, (loose.name,), False, 0.0, False, np.zeros((1, 2)), 0.0, "")
         yield single
         other = _mirrored(single)
@@ -160,7 +160,7 @@ def _chain(library: Library, motion: LibraryMotion, body: Body, spacing: float) 
     """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
     whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
     fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
-    posture = course(library, motion, body, fine)
+    posture = sample_motion(library, motion, body, fine)
     points = body.points(body.pose(posture)) - posture.translation[:, None]
     way = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
     rate = np.clip(way / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
@@ -172,11 +172,11 @@ def _chain(library: Library, motion: LibraryMotion, body: Body, spacing: float) 
     if motion.cyclic:
         away = np.minimum(away, whole - away)
     names = tuple(motion.steps[int(i)].posture for i in away.argmin(axis=1))
-    sampled = course(library, motion, body, time)
+    sampled = sample_motion(library, motion, body, time)
     track = sampled.translation[:, :2]
     if motion.cyclic:
         around = step * np.arange(-count, 2 * count)
-        track = course(library, motion, body, around).translation[:, :2]
+        track = sample_motion(library, motion, body, around).translation[:, :2]
     turn = motion.travel[2] if motion.cyclic else 0.0
     return Chain(sampled, names, False, step, motion.cyclic, track, turn, motion.name)
 

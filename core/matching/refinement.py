@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.heading import about_up
+from ..body.heading import yaw_rotation
 from .frame_likelihood import Sight, square_root
 from .noise_scales import DEGREES, Habits, scale
 from .posed_constraints import POINTS_COUNT, Anchors
@@ -106,7 +106,7 @@ class Refinement:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
         _, axes, _, _, location, backward, *_ = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
-        turn = about_up(values[:, 1])
+        turn = yaw_rotation(values[:, 1])
         middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         depth = np.maximum(-np.einsum("tmi,ti->tm", middle, backward), 0.1)
         spread = turn[:, None] @ read.spread @ np.swapaxes(turn, -1, -2)[:, None]
@@ -126,7 +126,7 @@ class Refinement:
         """In standard deviations: (T, M, 2) of middles, (T, M, 3) of extents, (T, 1) of the floor."""
         weight, axes, root, whole, location, _, pixel, root_std = self._seen
         read: Reading = self.table.read(chain, values[:, 0])
-        turn = about_up(values[:, 1])
+        turn = yaw_rotation(values[:, 1])
         middle = read.middle @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         off = np.einsum("tmki,tmi->tmk", axes, middle) * weight[..., None]
         shown, depth = self._shown(chain, values)
@@ -159,7 +159,7 @@ class Refinement:
         rows, own = self.anchored, chain[self.anchored]
 
         def left(at: Array) -> tuple[Array, Array]:
-            points = self.table.points(own, at[:, 0]) @ np.swapaxes(about_up(at[:, 1]), -1, -2)
+            points = self.table.points(own, at[:, 0]) @ np.swapaxes(yaw_rotation(at[:, 1]), -1, -2)
             return self.anchors.residuals(points, at[:, 2:]) if self.anchors else (at, at)
 
         now = left(values[rows])
@@ -213,7 +213,7 @@ class Refinement:
         way = self.table.read(chain, values[:, 0]).way
         further = self.table.read(chain, values[:, 0] + PROBE).way
         velocity = (further - way) / PROBE
-        turn = about_up(0.5 * (values[1:, 1] + values[:-1, 1]))
+        turn = yaw_rotation(0.5 * (values[1:, 1] + values[:-1, 1]))
         gone = np.where(joined[:, None], np.diff(way, axis=0), 0.0)
         earlier, later = velocity[:-1] * joined[:, None], velocity[1:] * joined[:, None]
         change = np.diff(values, axis=0)

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import about_up, headed
+from ..body.heading import yaw_rotation, yawed_at
 from ..body.posture import Posture
 from .marker_moments import Solids
 from .posture_sequences import Chains
@@ -56,7 +56,7 @@ class CourseTable:
             way[own, :2] = track - track[0]
             way[own, 2] = self.solids.height[rows[own]] - self.solids.height[rows[own.start]]
             if chain.cyclic:
-                turn = about_up(np.array(chain.turn_rad))
+                turn = yaw_rotation(np.array(chain.turn_rad))
                 middle[own.stop - 1] = middle[own.stop - 1] @ turn.T
                 spread[own.stop - 1] = turn @ spread[own.stop - 1] @ turn.T
         return middle, spread, way
@@ -96,7 +96,9 @@ class CourseTable:
         rows, start = self._rows
         points = self.solids.points[rows]
         for index, entry in enumerate(self.chains.chains):
-            points[start[index + 1] - 1] = points[start[index + 1] - 1] @ about_up(np.array(entry.turn_rad)).T
+            points[start[index + 1] - 1] = (
+                points[start[index + 1] - 1] @ yaw_rotation(np.array(entry.turn_rad)).T
+            )
         first, second, share, cycle = self._between(chain, time_s)
         weight = share[:, None, None]
         between = (1.0 - weight) * points[first] + weight * points[second]
@@ -108,10 +110,10 @@ class CourseTable:
         first, second, share, cycle = self._between(chain, time_s)
         ends = np.zeros(len(rows))
         ends[start[1:] - 1] = [entry.turn_rad for entry in self.chains.chains]
-        postures = headed(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
+        postures = yawed_at(self.chains.posture[rows], ends, np.zeros((len(rows), 3)))
         led = postures[first].plus(share[:, None] * postures[second].minus(postures[first]))
         turned = np.array([entry.turn_rad for entry in self.chains.chains])[chain]
-        return headed(led, heading_rad + cycle * turned, hips)
+        return yawed_at(led, heading_rad + cycle * turned, hips)
 
     def nearest(self, chain: IndexArray, time_s: Array) -> IndexArray:
         """(T,) which of the N postures of the chains is nearest in time."""
@@ -119,7 +121,7 @@ class CourseTable:
         return self._rows[0][np.where(share < 0.5, first, second)]
 
     def _turn(self, chain: IndexArray, cycle: IndexArray) -> Array:
-        return about_up(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
+        return yaw_rotation(cycle * np.array([entry.turn_rad for entry in self.chains.chains])[chain])
 
     def _carried(self, way: Array, chain: IndexArray, cycle: IndexArray) -> Array:
         """Places (T, 3) that come again some cycles later."""
@@ -128,7 +130,7 @@ class CourseTable:
         turns = np.array([entry.turn_rad for entry in self.chains.chains])
         carried = np.array(way)
         for index in np.unique(chain[cycle != 0]):
-            turn = about_up(turns[index])
+            turn = yaw_rotation(turns[index])
             own = (chain == index) & (cycle != 0)
             for count in np.unique(cycle[own]):
                 rows = own & (cycle == count)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import headed
+from ..body.heading import yawed_at
 from ..body.posture import Posture
 from .emissions import Fit, Turned
 from .frame_likelihood import Sight
@@ -32,7 +32,7 @@ class Path:
         fit = self.fits[frame]
         posture, heading = np.divmod(fit.states[rows], len(self.turned.heading_rad))
         hips = fit.hips[:, rows].T.astype(float)
-        return headed(self.chains.posture[posture], self.turned.heading_rad[heading], hips)
+        return yawed_at(self.chains.posture[posture], self.turned.heading_rad[heading], hips)
 
     def course(self) -> Course:
         """The path in times that go on over cycles, and headings that turn on."""

@@ -15,7 +15,7 @@ from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-from .occlusion import Covers, covers
+from .occlusion import PartOutlines, part_outlines
 from .silhouette import View, view_pieces
 
 SHARES = (0.2, 0.4, 0.6, 0.8)
@@ -86,9 +86,9 @@ class ContourModel:
                 joined[child, names.index(above)] = joined[names.index(above), child] = True
         return joined[self.part_of]
 
-    def covers(self, pose: Pose, frame: IndexArray) -> Covers:
+    def part_outlines(self, pose: Pose, frame: IndexArray) -> PartOutlines:
         """The outlines of all parts."""
-        return covers(self.parts, pose, self.camera, frame)
+        return part_outlines(self.parts, pose, self.camera, frame)
 
     def evaluate(self, pose: Pose, frame: IndexArray) -> ContourPrediction:
         """Predict all samples in F frames; `frame` (F,) are their places in the clip."""

@@ -25,7 +25,7 @@ BLOCK = 256
 
 
 @dataclass(frozen=True, eq=False)
-class Covers:
+class PartOutlines:
     """Image outlines of the O parts that may hide others, per frame; the last axis runs over both ends."""
 
     start: Array
@@ -38,9 +38,9 @@ class Covers:
     overshoot: Array
     """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
 
-    def pick(self, frame: IndexArray, part: IndexArray) -> "Covers":
+    def pick(self, frame: IndexArray, part: IndexArray) -> "PartOutlines":
         """R parts, each in a frame of its own, with arrays (R, 2)."""
-        return Covers(
+        return PartOutlines(
             self.start[frame, part],
             self.end[frame, part],
             self.depth[frame, part],
@@ -49,7 +49,7 @@ class Covers:
         )
 
 
-def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> Covers:
+def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> PartOutlines:
     """The image outlines of all parts of the body."""
     view = view_pieces(parts, pose, camera, frame)
     start, start_depth = camera.project(view.start, frame[:, None])
@@ -60,10 +60,10 @@ def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> 
         np.linalg.norm(view.reach(direction)[:, :, None] * parts.half_widths, axis=-1) * scale
         for direction in (view.across, view.along)
     )
-    return Covers(start, end, depth, half, past)
+    return PartOutlines(start, end, depth, half, past)
 
 
-def visible_share(pixels: Array, depth: Array, parts: Covers, own: BoolArray) -> Array:
+def visible_share(pixels: Array, depth: Array, parts: PartOutlines, own: BoolArray) -> Array:
     """How much of each sample no part hides, 0 to 1.
 
     Args:
@@ -91,7 +91,7 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: BoolArray) ->
     return seen
 
 
-def outline_depth(pixels: Array, parts: Covers) -> Array:
+def outline_depth(pixels: Array, parts: PartOutlines) -> Array:
     """Camera depth (F, N, O) [m] of each part's axis where it covers pixels (F, N, 2), else infinite."""
     start, axis = parts.start[:, None], (parts.end - parts.start)[:, None]  # (F, 1, O, 2)
     length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
@@ -110,7 +110,7 @@ def outline_depth(pixels: Array, parts: Covers) -> Array:
     return np.where(away * away + past * past < half * half, at(parts.depth), np.inf)
 
 
-def _may_hide(pixels: Array, depth: Array, parts: Covers) -> BoolArray:
+def _may_hide(pixels: Array, depth: Array, parts: PartOutlines) -> BoolArray:
     """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
     columns, rows = pixels[..., 0], pixels[..., 1]
     left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)
@@ -129,7 +129,7 @@ def _may_hide(pixels: Array, depth: Array, parts: Covers) -> BoolArray:
     return np.asarray(close & (parts.depth.min(-1)[:, None] + margin < depth.max(2)[:, :, None]))
 
 
-def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Array:
+def _hidden_share(columns: Array, rows: Array, depth: Array, part: PartOutlines) -> Array:
     """How far one part hides samples (R, S) in R chosen frames."""
     axis = part.end - part.start
     squared = np.maximum((axis * axis).sum(-1, keepdims=True), 1e-12)

@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .occlusion import Covers
+from .occlusion import PartOutlines
 
 NOWHERE = 255
 """While drawing, what is -1 as a signed byte."""
@@ -16,7 +16,7 @@ _TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
 
 
-def part_map(parts: Covers, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
+def part_map(parts: PartOutlines, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
     """Draw the body of one frame.
 
     Args:
@@ -39,7 +39,7 @@ def part_map(parts: Covers, frame: int, size: tuple[int, int], factor: float) ->
     return labels.view(np.int8)
 
 
-def _outlines(parts: Covers, frame: int) -> Array:
+def _outlines(parts: PartOutlines, frame: int) -> Array:
     """(O, corners, 2) the elliptical ends of all parts; a part's outline is their hull [px]."""
     ends = np.stack([parts.start[frame], parts.end[frame]], axis=1)  # (O, 2, 2)
     along = ends[:, 1] - ends[:, 0]

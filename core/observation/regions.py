@@ -17,8 +17,8 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-from .occlusion import covers, visible_share
-from .silhouette import TINY, Outline, outline, view_pieces
+from .occlusion import part_outlines, visible_share
+from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
 """Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
@@ -161,10 +161,10 @@ class RegionModel:
     def _stretch(self, pose: Pose, frame: IndexArray, jacobian: bool) -> RegionPrediction:
         """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
-        samples = outline(self._pieces, view)
+        samples = sample_silhouette(self._pieces, view)
         pixels, depth = self.camera.project(samples.world, frame[:, None, None])
         scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
-        parts = covers(self._parts, pose, self.camera, frame)
+        parts = part_outlines(self._parts, pose, self.camera, frame)
         seen = scale * visible_share(pixels, depth, parts, self._own)
         visible_area = self._per_marker((samples.area * seen).sum(2))
         whole_area = self._per_marker((samples.area * scale).sum(2))
@@ -196,7 +196,7 @@ class RegionModel:
 
     def _derive(
         self,
-        samples: Outline,
+        samples: Silhouette,
         pose: Pose,
         frame: IndexArray,
         factor: Array,

@@ -45,7 +45,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class Silhouette:
     """Sample points of the pieces' silhouettes."""
 
     world: Array
@@ -79,12 +79,12 @@ def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: IndexArra
     return View(start, end, toward, cross(toward, along), along, length, lateral, sagittal)
 
 
-def outline(pieces: PieceStack, view: View) -> Outline:
+def sample_silhouette(pieces: PieceStack, view: View) -> Silhouette:
     """Samples of the pieces' silhouettes."""
     parts = [_wall(pieces.half_widths, view), *(_cap(pieces.half_widths, end, view) for end in (0, 1))]
     places, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
     axes = np.stack([view.start, view.end - view.start, view.lateral, view.sagittal], axis=-1)
-    return Outline(np.swapaxes(axes @ places, -1, -2), area, np.swapaxes(rate, -1, -2))
+    return Silhouette(np.swapaxes(axes @ places, -1, -2), area, np.swapaxes(rate, -1, -2))
 
 
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:

@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import Array
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..body.standing_posture import turned
+from ..body.standing_posture import yawed_in_place
 from ..observation.depths import DEPTH_STD_M
 from .interpolation import interpolate
 from .keyframes import Keyframe
@@ -43,7 +43,7 @@ HEADINGS_RAD = np.radians([0.0, 60.0, -60.0, 180.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Belief:
+class FramePrior:
     """A normal belief in a posture, and where else to look."""
 
     posture: Posture
@@ -66,7 +66,7 @@ def difference_std(skeleton: Skeleton, time_s: float) -> Array:
     return np.maximum(std, 1e-3)
 
 
-def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> Belief:
+def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> FramePrior:
     """What the nearest keyframes before and after say of a frame.
 
     Args:
@@ -85,11 +85,11 @@ def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float)
     everyone = Posture.stack([keyframe.posture for keyframe in others])
     if len(near) == 1:
         postures = [_moved_on(others, index)]
-        return Belief(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
+        return FramePrior(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
     between = interpolate(tuple(others), index + 1)[index]
     # Each neighbor says something of its own, the nearer one more.
     std = (1.0 / variances[0] + 1.0 / variances[1]) ** -0.5
-    return Belief(between, std, Posture.stack([between, *postures]), grounded=everyone)
+    return FramePrior(between, std, Posture.stack([between, *postures]), grounded=everyone)
 
 
 def _moved_on(keyframes: Sequence[Keyframe], index: int) -> Posture:
@@ -104,12 +104,12 @@ def _moved_on(keyframes: Sequence[Keyframe], index: int) -> Posture:
     return last.posture.plus(step)
 
 
-def belief_from_pose(posture: Posture) -> Belief:
+def prior_from_pose(posture: Posture) -> FramePrior:
     """What a pose says that the animator has set roughly for the frame."""
-    return Belief(posture, TOUCHED_UP * _farthest(posture.skeleton), Posture.stack([posture]))
+    return FramePrior(posture, TOUCHED_UP * _farthest(posture.skeleton), Posture.stack([posture]))
 
 
-def belief_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> Belief:
+def prior_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> FramePrior:
     """What a body says that merely stands about where the performer is: anything is possible.
 
     Args:
@@ -119,8 +119,8 @@ def belief_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M
     std = _farthest(posture.skeleton)
     std[:3] = UNKNOWN_PLACE_M
     std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
-    around = turned(posture, HEADINGS_RAD)
-    return Belief(posture, std, around, depth_std_m, grounded=around[:1])
+    around = yawed_in_place(posture, HEADINGS_RAD)
+    return FramePrior(posture, std, around, depth_std_m, grounded=around[:1])
 
 
 def _farthest(skeleton: Skeleton) -> Array:

@@ -28,7 +28,7 @@ BEYOND_S = 0.1
 """So far outside the matched keyframes, the nearest of them is not what the library would have there."""
 
 
-def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
+def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
     """The keyframes, the matched ones changed the way the posed ones differ from the library.
 
     Args:
@@ -55,7 +55,7 @@ def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyfr
     return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
 
 
-def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
+def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
     """How posed keyframes differ from what the library and the other posed ones say of them.
 
     Args:

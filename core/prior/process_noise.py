@@ -22,7 +22,7 @@ A swing there and back within a gap, a half sine, accelerates by nearly ten time
 """
 
 
-def acceleration_factor(keyframes: Posture, time_s: Array) -> Array:
+def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
     """A square root L (D, D) of the covariance of the departure's second differences, L Lᵀ.
 
     Args:

@@ -22,7 +22,7 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can be "
             "decoded; it may be cut off or damaged"
         )
-    return (*notes, *reading.noticed.notes(take.frame_start), *_pause_notes(take, tracks))
+    return (*notes, *reading.frame_findings.notes(take.frame_start), *_pause_notes(take, tracks))
 
 
 def _pause_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:

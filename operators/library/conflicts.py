@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
-from ...core.library.texts import identifier_from, told_apart
+from ...core.library.texts import identifier_from, unique_name
 from . import registry
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def settled(
     Raises:
         InputError: Another one is there, and nobody has chosen what to do.
     """
-    from ...core.library.merging import Choice, merged
+    from ...core.library.merging import Choice, merge_versions
 
     taken = {conflict.new.identifier: conflict for conflict in conflicts(new, there)}
     if taken and choice == "ASK":
@@ -87,21 +87,23 @@ def settled(
         elif choice == "REPLACE":
             result.append(library)
         elif choice == "MERGE":
-            result.append(merged(taken[library.identifier].there, library, Choice.KEEP))
+            result.append(merge_versions(taken[library.identifier].there, library, Choice.KEEP))
         elif choice == "BOTH":
             while there(free := identifier_from(library.identifier, used)) is not None:
                 used.append(free)
             used.append(free)
-            title = told_apart(library.title, [taken[library.identifier].there.title])
+            title = unique_name(library.title, [taken[library.identifier].there.title])
             result.append(replace(library, identifier=free, title=title))
     return result
 
 
 def on_shelf(identifier: str) -> "Library | None":
     """The library on the shelf, if there is one."""
-    from ...core.library.registry import shelved
+    from ...core.library.registry import registered_libraries
 
-    found = (entry.library for entry in shelved(registry.folders()) if entry.identifier == identifier)
+    found = (
+        entry.library for entry in registered_libraries(registry.folders()) if entry.identifier == identifier
+    )
     return next((library for library in found if library is not None), None)
 
 
@@ -128,9 +130,9 @@ def _own_file(folder: Path, identifier: str) -> Path:
     Raises:
         InputError: Something else lies there.
     """
-    from ...core.library.registry import library_path, shelved
+    from ...core.library.registry import library_path, registered_libraries
 
-    path, there = library_path(folder, identifier), shelved([folder])
+    path, there = library_path(folder, identifier), registered_libraries([folder])
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)
     damaged = next((each for each in there if each.path == found and each.library is None), None)

@@ -192,9 +192,9 @@ class KEYMARK_OT_install_shipped_libraries(InstallOperator, bpy.types.Operator):
 
     def libraries(self, context: bpy.types.Context) -> "list[Library]":
         """All that come with Keymark."""
-        from ...core.library.registry import SHIPPED, shelved
+        from ...core.library.registry import SHIPPED, registered_libraries
 
-        return [entry.library for entry in shelved([SHIPPED]) if entry.library is not None]
+        return [entry.library for entry in registered_libraries([SHIPPED]) if entry.library is not None]
 
     def again(self) -> set[str]:
         """Call the operator anew, with what was chosen."""

@@ -78,20 +78,20 @@ class KEYMARK_OT_learn_library(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Learn it, keep it in the scene as pose assets, and on the shelf where that is wanted."""
         with reported(self):
-            from ...core.library.learning import About
+            from ...core.library.learning import LibraryMetadata
             from ...core.library.library_file import library_from_json, library_to_json, write_library
-            from ...core.library.registry import library_path, shelved
+            from ...core.library.registry import library_path, registered_libraries
             from ..bridge.library.learning import library_from_action
 
             take, render = active_take(context.scene), context.scene.render
             title = self.title.strip() or take.name
-            taken = {found.identifier for found in shelved(registry.folders())}
+            taken = {found.identifier for found in registered_libraries(registry.folders())}
             taken |= {library.identifier for library in context.scene.keymark.libraries}
             library = library_from_action(
                 take.armature,
                 take.finish.action or take.motion_action,
                 render.fps_base / render.fps,
-                About(
+                LibraryMetadata(
                     title=title,
                     author=self.author.strip() or "Unknown",
                     license=self.license.strip(),

@@ -90,14 +90,14 @@ def fill(choose: str = "") -> None:
     Args:
         choose: Identifier of the library that the list shall point to; by default the same as before.
     """
-    from ...core.library.registry import shelved
+    from ...core.library.registry import registered_libraries
 
     manager = bpy.context.window_manager
     shelf, own = manager.keymark_shelf, own_folder()
     before = chosen(bpy.context)
     wanted = choose or (before.name if before is not None else "")
     shelf.libraries.clear()
-    for found in shelved(folders()):
+    for found in registered_libraries(folders()):
         item = shelf.libraries.add()
         item.name, item.title, item.problem = found.identifier, found.title, found.problem
         item.version, item.is_own, item.path = found.version, found.path.parent == own, str(found.path)

@@ -136,11 +136,11 @@ def _libraries(name: str) -> "Sequence[Library]":
     Raises:
         InputError: There is none.
     """
-    from ...core.library.registry import find_library, shelved
+    from ...core.library.registry import find_library, registered_libraries
 
     if name != EVERY_LIBRARY:
         return [find_library(name, registry.folders())]
-    usable = [each.library for each in shelved(registry.folders()) if each.library is not None]
+    usable = [each.library for each in registered_libraries(registry.folders()) if each.library is not None]
     if not usable:
         raise InputError("there is no library to match with; import one, or install Keymark as a whole")
     return usable

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Image
 from .blank_frames import is_blank
-from .interlacing import combing
+from .interlacing import combed_shares
 
 SIDE = 64
 """Rows and columns of the pictures that are compared, about."""
@@ -29,7 +29,7 @@ NAMED = 3
 
 
 @dataclass(frozen=True)
-class Noticed:
+class FrameFindings:
     """What was noticed of a clip."""
 
     frames: int = 0
@@ -62,10 +62,10 @@ class Noticed:
         return tuple(notes)
 
 
-NOTHING_NOTICED = Noticed()
+NO_FINDINGS = FrameFindings()
 
 
-class FrameWatch:
+class FrameChecks:
     """Looks at every frame once."""
 
     def __init__(self) -> None:
@@ -87,15 +87,15 @@ class FrameWatch:
         small = image[step // 2 :: step, step // 2 :: step].copy()
         self._color = max(self._color, _colorfulness(small))
         if index % COMBED_EVERY == 0:
-            self._combed.append(combing(image))
+            self._combed.append(combed_shares(image))
         if self._last is not None:
             self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
         self._last = small
         return True
 
-    def noticed(self) -> Noticed:
+    def findings(self) -> FrameFindings:
         """Return what was noticed so far."""
-        return Noticed(self._frames, tuple(self._blank), self._cuts(), self._interlaced())
+        return FrameFindings(self._frames, tuple(self._blank), self._cuts(), self._interlaced())
 
     def nothing_seen(self) -> str | None:
         """Say why no marker can be found in the clip; None where that is not known."""

@@ -13,7 +13,7 @@ COLUMNS = 320
 """Fewest that are looked at."""
 
 
-def combing(image: Image) -> tuple[float, float]:
+def combed_shares(image: Image) -> tuple[float, float]:
     """Return how much of a picture looks combed, by rows as fields do it, and by columns for comparison.
 
     Args:

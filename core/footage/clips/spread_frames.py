@@ -22,7 +22,7 @@ IMAGE_COST = 4
 FEWEST = 3
 
 
-def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
     """Take frames from all over a clip as `sample_clip` does, but never decode much of it.
 
     Args:

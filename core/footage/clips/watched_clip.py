@@ -6,24 +6,24 @@ from dataclasses import dataclass
 from ...arrays import Image
 from .album import Album
 from .clip import Clip, FrameSource
-from .frame_checks import FrameWatch
+from .frame_checks import FrameChecks
 
 
 @dataclass(eq=False)
 class _WatchedSource:
-    """A source of frames that shows every frame it yields in order to those who watch."""
+    """A source of frames that shows every frame it yields in order to those who checks."""
 
     size: tuple[int, int]
     fps: float
     frame_count: int
     source: FrameSource
-    watch: FrameWatch
+    checks: FrameChecks
     album: Album | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield every frame after showing it; blank ones have no place in an album."""
         for index, time_s, image in self.source.frames():
-            if self.watch.add(index, image) and self.album is not None:
+            if self.checks.add(index, image) and self.album is not None:
                 self.album.add(index, image)
             yield index, time_s, image
 
@@ -40,7 +40,7 @@ class _WatchedSource:
         return self.source.onward(first)
 
 
-def watched(clip: Clip, watch: FrameWatch, album: Album | None) -> Clip:
+def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
     """Return the clip as one that is watched, and fills an album, while its frames are read in order."""
-    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, watch, album)
+    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
     return Clip(clip.path, source)

@@ -10,7 +10,7 @@ LEAST = 1e-300
 """A density that vanishes everywhere stays zero."""
 
 
-def color_claims(model: ColorModel) -> Array:
+def color_confusion(model: ColorModel) -> Array:
     """Return for what the pixels of each color would be taken, (C, C + 1): each color, then none of them.
 
     A pixel drawn from a color's learned density is weighed as the extraction weighs it, by the posterior

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array, BoolArray, Image, IntArray
 from .color_model import ColorDistribution, ColorModel, color_model
 from .color_space import chromaticity
-from .indexed_frames import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
+from .indexed_frames import LEARNING_NOISE_LEVELS, CroppedMask, IndexedFrames
 
 # What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
 SATURATION_DEVIATION = 0.15
@@ -57,7 +57,7 @@ def learn_colors(
         samples_srgb: one (red, green, blue) in 0..255 per marker.
         allowed: per image, (M, rows, columns) 1 where each marker may be looked for, or None for everywhere.
     """
-    sampled = SampledColors(images)
+    sampled = IndexedFrames(images)
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     core = labels = sampled.near(initial)
@@ -142,7 +142,7 @@ def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolAr
     return distance <= np.clip(np.quantile(distance, LEARNED_SHARE), NEAR, FARTHEST)
 
 
-def _allowed(masks: Sequence[PlacedMask], places: Image | None) -> list[PlacedMask]:
+def _allowed(masks: Sequence[CroppedMask], places: Image | None) -> list[CroppedMask]:
     """Return masks, one a marker, without what lies where the marker may not be looked for."""
     if places is None:
         return list(masks)

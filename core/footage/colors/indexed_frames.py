@@ -27,7 +27,7 @@ KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
 
 
-class PlacedMask(NamedTuple):
+class CroppedMask(NamedTuple):
     """Some pixels of an image, as a mask of the part of it that holds them."""
 
     left: int
@@ -39,22 +39,22 @@ class PlacedMask(NamedTuple):
     area: int
     """Pixels that are 1."""
 
-    def within(self, place: Image) -> "PlacedMask":
+    def within(self, place: Image) -> "CroppedMask":
         """Return what of it lies in a mask of the whole image."""
-        return _placed(self.left, self.top, self.mask & self.cut(place))
+        return _cropped(self.left, self.top, self.mask & self.crop(place))
 
     def interior(self) -> Image:
         """Return the mask without its mixed border where that leaves enough of it."""
         inner = cv2.erode(self.mask, KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
         return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
 
-    def cut(self, image: NDArray[_Number]) -> NDArray[_Number]:
+    def crop(self, image: NDArray[_Number]) -> NDArray[_Number]:
         """Return the part of an image that the mask is of."""
         rows, columns = self.mask.shape
         return image[self.top : self.top + rows, self.left : self.left + columns]
 
 
-class SampledColors:
+class IndexedFrames:
     """The sampled frames as indices into the table of the colors that occur in them."""
 
     def __init__(self, images: Sequence[Image]) -> None:
@@ -86,31 +86,31 @@ class SampledColors:
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
         return np.where(probability >= 0.5, label, NO_MARKER).astype(np.uint8)
 
-    def regions(self, labels: Image, core: Image, markers: int) -> list[list[PlacedMask]]:
+    def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
         """Return for each frame and marker its connected regions with enough of its core color."""
         result = []
         for image in self._images:
             label = labels.take(image)
-            result.append([_with_core(label, image, core, marker) for marker in range(markers)])
+            result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
         return result
 
-    def colors(self, masks: Sequence[PlacedMask]) -> tuple[Array, Array]:
+    def colors(self, masks: Sequence[CroppedMask]) -> tuple[Array, Array]:
         """Return chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
         inside = [
-            mask.cut(image)[mask.interior().view(np.bool_)]
+            mask.crop(image)[mask.interior().view(np.bool_)]
             for image, mask in zip(self._images, masks, strict=True)
             if mask.area
         ]
         index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
-    def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> Array:
+    def background_counts(self, masks: Sequence[Sequence[CroppedMask]]) -> Array:
         """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighboring cells."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
             covered = np.zeros(image.shape, dtype=np.uint8)
             for mask in placed:
-                mask.cut(covered)[:] |= mask.mask
+                mask.crop(covered)[:] |= mask.mask
             near = cv2.dilate(covered, KERNEL, iterations=BACKGROUND_MARGIN)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts = np.zeros(CELL_COUNT)
@@ -130,13 +130,13 @@ def _spread(counts: Array) -> Array:
     return np.asarray(lines.ravel(), dtype=np.float64)
 
 
-def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> PlacedMask:
+def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> CroppedMask:
     """Keep regions of which enough is of the core color and which are not most of the image."""
     mask = np.equal(label, marker).view(np.uint8)
     left, top, columns, rows = cv2.boundingRect(mask)
     part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
     if not columns:
-        return PlacedMask(0, 0, part, 0)
+        return CroppedMask(0, 0, part, 0)
     count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(part)
     color = image[top : top + rows, left : left + columns].take(pixel)
@@ -144,8 +144,8 @@ def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> Pla
     area = stats[:, cv2.CC_STAT_AREA]
     good = (strong >= np.maximum(4, 0.25 * area)) & (area <= LARGEST_SHARE * label.size)
     good[0] = False
-    return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
+    return _cropped(left, top, good.astype(np.uint8).take(np.asarray(number)))
 
 
-def _placed(left: int, top: int, mask: Image) -> PlacedMask:
-    return PlacedMask(left, top, mask, cv2.countNonZero(mask))
+def _cropped(left: int, top: int, mask: Image) -> CroppedMask:
+    return CroppedMask(left, top, mask, cv2.countNonZero(mask))

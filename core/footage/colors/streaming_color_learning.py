@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
-from ..detections import Lesson, Sightings
+from ..detections import Detections, LearningRound
 from ..marker_style import MarkerStyle, color_groups
 from ..region_tracks import ExpectedRegions
 from ..segmentation.working_image import halvings, learning_image, measuring_image
@@ -30,12 +30,12 @@ COMMON_COLOR = 0.02
 """Share of the picture with which a color is a wall's or a floor's."""
 
 
-class ClipColors:
+class StreamingColorLearner:
     """The colors of a clip's markers: learned from its first stretch, and anew as more of it is seen.
 
     Attributes:
         groups: of each color, the markers that bear it; more than one where samples are alike.
-        lessons: how the colors were learned so far.
+        learning_rounds: how the colors were learned so far.
         samples: the images that were learned from, by their frames.
     """
 
@@ -61,7 +61,7 @@ class ClipColors:
         self._spacing = 1
         self._learned: LearnedColors | None = None
         self._most_found = np.zeros(len(self.groups), dtype=np.int64)
-        self.lessons: list[Lesson] = []
+        self.learning_rounds: list[LearningRound] = []
         self.samples: dict[int, Image] = {}
 
     @property
@@ -96,14 +96,14 @@ class ClipColors:
             self._spacing = min(3 * self._spacing, WIDEST_SPACING)
             self._learn()
 
-    def learn_again(self, earlier: Sightings) -> bool:
+    def learn_again(self, earlier: Detections) -> bool:
         """Learn from what was learned from before; tell whether it teaches exactly the same."""
-        for lesson in earlier.lessons:
-            self._samples = [(index, earlier.samples[index]) for index in lesson.frames]
+        for one in earlier.learning_rounds:
+            self._samples = [(index, earlier.samples[index]) for index in one.frames]
             self._learn()
-            if self.lessons[-1] != lesson:
+            if self.learning_rounds[-1] != one:
                 return False
-        return bool(earlier.lessons)
+        return bool(earlier.learning_rounds)
 
     def check_found(self) -> None:
         """Refuse colors that were found nowhere.
@@ -142,7 +142,7 @@ class ClipColors:
         self._most_found = np.maximum(self._most_found, self._learned.found)
         model = self._learned.model
         taught = digest(model.label, model.probability, self._learned.found)
-        self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
+        self.learning_rounds.append(LearningRound(tuple(index for index, _ in self._samples), taught))
         self.samples.update(self._samples)
 
     def _allowed(self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions) -> Image | None:

@@ -13,7 +13,7 @@ from ..colors.color_model import ColorModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
-from .window_atlas import Sheet, Window, lay_out
+from .window_atlas import Atlas, Window, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 MOST_REGIONS = 8
@@ -85,7 +85,7 @@ def find_regions(
                 windows.append(Window(number, times, color, *box))
     if not windows:
         return [NO_REGIONS] * len(images)
-    return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
+    return _measure(pack_windows(images, windows), images[0].shape, times, len(images), model)
 
 
 def color_masks(image: Image, model: ColorModel) -> SingleArray:
@@ -105,7 +105,7 @@ def color_masks(image: Image, model: ColorModel) -> SingleArray:
         if not columns:
             continue
         around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
-        sheet = lay_out([grid], [Window(0, 0, color, *around)])
+        sheet = pack_windows([grid], [Window(0, 0, color, *around)])
         covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
         share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
@@ -125,7 +125,7 @@ class _Components(NamedTuple):
     """(K,) mean probability of the pixels' color in 0..1."""
 
 
-def _components(sheet: Sheet, model: ColorModel) -> _Components:
+def _components(sheet: Atlas, model: ColorModel) -> _Components:
     """Find each panel's regions of its color, without one-pixel holes.
 
     Specks and regions without a sure core are left out.
@@ -150,7 +150,7 @@ def _components(sheet: Sheet, model: ColorModel) -> _Components:
 
 
 def _measure(
-    sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColorModel
+    sheet: Atlas, shape: tuple[int, ...], times: int, images: int, model: ColorModel
 ) -> list[Regions]:
     """Measure the regions on a sheet, in pixels of the grid that images of a shape halved `times` make."""
     found = _components(sheet, model)

@@ -29,7 +29,7 @@ class Window(NamedTuple):
     bottom: int
 
 
-class Sheet(NamedTuple):
+class Atlas(NamedTuple):
     """Windows side by side, their tops at the sheet's first row, with a column between them."""
 
     picture: Image
@@ -46,7 +46,7 @@ class Sheet(NamedTuple):
     """(columns,) pixels of the image that one of the sheet spans."""
 
 
-def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
+def pack_windows(images: Sequence[Image], windows: Sequence[Window]) -> Atlas:
     """Cut windows out of images and lay them side by side.
 
     Args:
@@ -70,7 +70,7 @@ def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
         image[panel], used[panel], scale[panel] = window.image, rows, 1 << window.times
         shift[0, panel], shift[1, panel] = window.left - start, window.top
         start = end + 1
-    return Sheet(picture, image, color, used, shift, scale)
+    return Atlas(picture, image, color, used, shift, scale)
 
 
 def _cut(image: Image, window: Window, height: int) -> Image:

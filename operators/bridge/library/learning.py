@@ -3,7 +3,7 @@
 import bpy
 
 from ....core.body.human import HUMAN
-from ....core.library.learning import About, learn_library
+from ....core.library.learning import LibraryMetadata, learn_library
 from ....core.library.library import Library
 from ....core.progress import run
 from ..actor_lengths import read_body
@@ -15,7 +15,7 @@ def library_from_action(
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
     frame_s: float,
-    about: About,
+    about: LibraryMetadata,
     count: int | None = None,
 ) -> Library:
     """Turn the motion that an Action holds for an actor into a library.

@@ -11,7 +11,7 @@ import bpy
 from ....core.body.actor import Actor
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
-from ....core.library.texts import told_apart
+from ....core.library.texts import unique_name
 
 if TYPE_CHECKING:
     from ....core.body.actor import Actor
@@ -150,7 +150,7 @@ def postures_of(group: bpy.types.PropertyGroup) -> "dict[str, LibraryPosture]":
             continue
         posture = read_asset(entry.action)
         name = entry.name if posture.name == entry.named else posture.name
-        name = told_apart(name, [other.name for other in found.values()])
+        name = unique_name(name, [other.name for other in found.values()])
         exact = tuple(json.loads(entry.exact_tags or "[]"))
         tags = posture.tags if entry.tags == SEPARATOR.join(exact) else _split(entry.tags)
         found[entry.name] = replace(posture, name=name, tags=tags)
@@ -224,7 +224,7 @@ def posture_changed(entry: bpy.types.PropertyGroup) -> None:
         return
     with _quiet():
         others = [other.name for other in group.postures if other != entry]
-        entry.name = told_apart(entry.name.strip() or "Posture", others)
+        entry.name = unique_name(entry.name.strip() or "Posture", others)
         _rename_steps(group, entry.named, entry.name)
     show_again(group)
 

@@ -12,7 +12,7 @@ from ....core.errors import InputError
 from ....core.library.library import LibraryMotion, LibraryPosture, MotionStep
 from ....core.library.library_fields import LONGEST_TAG, MOST_POSTURES
 from ....core.library.mirroring import with_mirrored
-from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
+from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ...bridge.library.pose_assets import add_asset
 from ...bridge.library.poses import as_kept
 from ...bridge.posture_curves import rewrite_posture_curves
@@ -71,7 +71,7 @@ def add_named(group: bpy.types.PropertyGroup, postures: Sequence[LibraryPosture]
     library = draft(group)
     names = []
     for posture in postures:
-        name = told_apart(posture.name, [entry.name for entry in group.postures])
+        name = unique_name(posture.name, [entry.name for entry in group.postures])
         named = replace(posture, name=name)
         add_posture_to(group, named, add_asset(library, named, len(group.postures)))
         names.append(name)
@@ -122,7 +122,7 @@ def keep_motion(
     if fault:
         raise InputError(f"the motion's name is '{name}'; it {fault}")
     times = [round(float(value), DECIMALS_S) for value in time_s]
-    free = told_apart(name.strip(), [motion.name for motion in group.motions])
+    free = unique_name(name.strip(), [motion.name for motion in group.motions])
     steps = tuple(MotionStep(posture, when) for posture, when in zip(postures, times, strict=False))
     motion = add_motion_to(group, LibraryMotion(free, steps, times[-1], cyclic))
     group.active_motion = len(group.motions) - 1
@@ -154,7 +154,7 @@ def add_mirrored(group: bpy.types.PropertyGroup, *, only_chosen: bool) -> int:
     for motion in motions:
         steps = tuple(replace(step, posture=now.get(step.posture, step.posture)) for step in motion.steps)
         taken = [other.name for other in group.motions]
-        add_motion_to(group, replace(motion, name=told_apart(motion.name, taken), steps=steps))
+        add_motion_to(group, replace(motion, name=unique_name(motion.name, taken), steps=steps))
     show_again(group)
     return len(names)
 

@@ -25,7 +25,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.frame_checks import FrameWatch
+from keymark.core.footage.clips.frame_checks import FrameChecks
 from keymark.core.progress import run
 from keymark.core.take import take
 from keymark.core.take.read_footage import read_footage
@@ -56,10 +56,10 @@ def numbers(clip: Clip) -> list[int]:
 
 def noticed(clip: Clip) -> tuple[str, ...]:
     """What is said of a clip's frames."""
-    watch = FrameWatch()
+    checks = FrameChecks()
     for index, _, image in clip.frames():
-        watch.add(index, image)
-    return watch.noticed().notes(1)
+        checks.add(index, image)
+    return checks.findings().notes(1)
 
 
 @pytest.mark.parametrize(
@@ -228,11 +228,11 @@ def test_no_take_of_ours_is_suspected(take_folder: Callable[[str], Path], reposi
     """Neither combed nor cut nor blank: every sixth frame of each."""
     folders = [take_folder(name) for name in ("walk", "reach", "real_balance")]
     for folder in [*folders, repository / "presets" / "demo" / "aerobic"]:
-        watch = FrameWatch()
+        checks = FrameChecks()
         clip = Clip.open(folder / "clip.mp4")
         for place, (_, image) in enumerate(clip.source.at(range(0, clip.frame_count, 6))):
-            watch.add(15 * place, image)
-        assert watch.noticed().notes(1) == () and watch.nothing_seen() is None
+            checks.add(15 * place, image)
+        assert checks.findings().notes(1) == () and checks.nothing_seen() is None
 
 
 @pytest.mark.parametrize(
@@ -246,10 +246,10 @@ def test_no_take_of_ours_is_suspected(take_folder: Callable[[str], Path], reposi
 )
 def test_why_nothing_can_be_found_is_known(picture: np.ndarray, why: str) -> None:
     """Of clips in which no color could be."""
-    watch = FrameWatch()
+    checks = FrameChecks()
     for index in range(3):
-        watch.add(index, picture)
-    assert why in (watch.nothing_seen() or "")
+        checks.add(index, picture)
+    assert why in (checks.nothing_seen() or "")
 
 
 def test_a_clip_of_hours_is_refused_before_it_is_read(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:

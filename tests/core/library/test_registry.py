@@ -7,7 +7,7 @@ import pytest
 from _libraries import small_library
 from keymark.core.errors import InputError
 from keymark.core.library.library_file import write_library
-from keymark.core.library.registry import find_library, library_path, shelved
+from keymark.core.library.registry import find_library, library_path, registered_libraries
 
 LIBRARY = small_library()
 
@@ -24,7 +24,7 @@ def folders(tmp_path: Path) -> list[Path]:
 
 def test_the_earliest_folder_counts(folders: list[Path]) -> None:
     """One entry a library, the user's own before a shipped one of the same name, by title."""
-    shelf = shelved(folders)
+    shelf = registered_libraries(folders)
     assert [(entry.identifier, entry.title, entry.version) for entry in shelf] == [
         ("walk", "A walk", 3),
         ("small_steps", "Mine", 1),
@@ -43,9 +43,9 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
     (folders[0] / "broken.json").write_text('{"schema": "keymark-library", ')
     (folders[0] / "notes.txt").write_text("no library")
     (folders[0] / "folder.json").mkdir()
-    broken = next(entry for entry in shelved(folders) if entry.library is None)
+    broken = next(entry for entry in registered_libraries(folders) if entry.library is None)
     assert broken.identifier == "broken" and "no valid JSON" in broken.problem and "\n" not in broken.problem
-    assert len(shelved(folders)) == 3
+    assert len(registered_libraries(folders)) == 3
     with pytest.raises(InputError, match="no valid JSON"):
         find_library("broken", folders)
 

@@ -66,7 +66,7 @@ def test_the_map_shows_the_nearest_part() -> None:
         vector[:, HUMAN.dof_names.index(name)] = value
     posture = posture.from_vector(HUMAN, vector)
     pose = BODY.pose(posture)
-    parts = MODEL.covers(pose, FRAME)
+    parts = MODEL.part_outlines(pose, FRAME)
     labels = part_map(parts, 0, (320, 240), 1.0)
     for name in ("forearm.L", "shin.R", "head"):
         middle = 0.5 * sum(CAMERA.project(end)[0][0] for end in BODY.segment_ends(pose, name))
