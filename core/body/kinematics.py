@@ -52,12 +52,8 @@ class Pose:
         """World places (..., 3) of a point given in a joint's frame [m]."""
         return np.asarray(self.origin[..., joint, :] + self.rotation[..., joint, :, :] @ local)
 
-    def place_jacobian(self, joint: int, world: Array) -> Array:
-        """d place / d tangent, (..., 3, D), of points `world` (..., 3) fixed in a joint's frame."""
-        return self.places_jacobian([joint], world[..., None, :])[..., 0, :, :]
-
     def places_jacobian(self, joints: Sequence[int], world: Array) -> Array:
-        """The same, (..., N, 3, D), of points `world` (..., N, 3), one fixed in each joint's frame."""
+        """d world / d tangent (..., N, 3, D) of points `world` (..., N, 3), each fixed in a joint's frame."""
         # v + ω × p for all points in one product: the rows 1 and -[p]× with all screws.
         unit = np.broadcast_to(np.eye(3), (*world.shape, 3))
         rows = np.concatenate([unit, -rotations.cross_matrix(world)], axis=-1)

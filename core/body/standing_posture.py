@@ -4,7 +4,6 @@ import numpy as np
 
 from ..arrays import Array
 from .body_volume import HEAD_OVERSHOOT
-from .heading import yawed_at
 from .kinematics import Body
 from .posture import Posture
 from .skeleton import SIDES
@@ -51,15 +50,3 @@ def standing_height_m(body: Body) -> float:
     """From the soles to the crown of a body that stands upright [m]."""
     lengths = body.actor.segments_m
     return hip_height_m(body) + lengths["trunk"] + HEAD_OVERSHOOT * lengths["neck_head"]
-
-
-def facing_rad(direction: Array) -> float:
-    """The heading of someone who looks along a world direction (3,); straight up or down counts as -Y."""
-    x, y = float(direction[0]), float(direction[1])
-    return float(np.arctan2(x, -y)) if np.hypot(x, y) > 1e-9 else 0.0
-
-
-def yawed_in_place(posture: Posture, angle_rad: Array) -> Posture:
-    """A posture turned about the vertical through its hips by each of N angles: a batch of N."""
-    batch = Posture.stack([posture] * len(angle_rad))
-    return yawed_at(batch, angle_rad, batch.translation)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import yaw_rotation
+from ..body.heading import headings_rad, turned_and_shifted, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_spline import linear_spline
 from .library import Travel
-from .posture_shape import headings_rad, shape_vectors, turned_and_shifted
+from .posture_shape import shape_vectors
 
 FEWEST_CYCLES = 1.9
 """So many must be seen: two, but for what is missing at the clip's ends."""

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import yaw_rotation
+from ..body.heading import headings_rad, turned_and_shifted, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .posture_shape import ankle_heights, headings_rad, shape_vectors, turned_and_shifted
+from .posture_shape import ankle_heights, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
 FEWEST, MOST = 10, 40

@@ -3,34 +3,13 @@
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import yaw_rotation, yawed_at
+from ..body.heading import headings_rad, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 
 ANKLE_OVER_SOLE = 0.36
 """Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
-
-
-def headings_rad(posture: Posture) -> Array:
-    """Turn (F,) about the vertical from facing -Y; that of the hips' line where the hips face up or down."""
-    hips = posture.rotations[..., 0, :, :]
-    ahead = np.arctan2(-hips[..., 0, 1], hips[..., 1, 1])
-    across = np.arctan2(hips[..., 1, 0], hips[..., 0, 0])
-    level = np.hypot(hips[..., 0, 1], hips[..., 1, 1])
-    return np.where(level > np.sqrt(0.5), ahead, across)
-
-
-def turned_and_shifted(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
-    """Postures turned about the world's vertical axis, then shifted.
-
-    Args:
-        posture: A batch of F.
-        angle_rad: (F,) or one angle.
-        shift: (F, 3) or (3,) [m].
-    """
-    place = (yaw_rotation(angle_rad) @ posture.translation[..., None])[..., 0] + shift
-    return yawed_at(posture, angle_rad, place)
 
 
 def shape_vectors(body: Body, posture: Posture) -> Array:

@@ -12,8 +12,9 @@ from ..errors import InputError
 from ..files.digest import digest
 from ..footage.reading import Reading
 from ..library.library import Library
+from ..prior.keyframe_proposals import propose_keyframes
 from ..prior.keyframes import Keyframe, Matched
-from ..prior.marker_speed import marker_speed, propose_keyframes
+from ..prior.marker_speed import marker_speed
 from ..progress import Job, Progress, stretch, within
 from ..take.description import Description
 from ..take.read_footage import read_footage

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..body.heading import yawed_in_place
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..body.standing_posture import yawed_in_place
 from ..observation.depths import DEPTH_STD_M
 from .interpolation import interpolate
 from .keyframes import Keyframe

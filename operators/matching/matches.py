@@ -71,7 +71,7 @@ def _heading(posture: "Posture") -> float:
     """Where the hips face, about the vertical [rad]."""
     import numpy as np
 
-    from ...core.body.standing_posture import facing_rad
+    from ...core.body.heading import facing_rad
 
     return facing_rad(posture.rotations[0] @ np.array([0.0, -1.0, 0.0]))
 

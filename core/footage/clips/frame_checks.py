@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 
 from ...arrays import Image
-from .blank_frames import is_blank
 from .interlacing import combed_shares
 
 SIDE = 64
@@ -26,6 +25,13 @@ CUT_MORE = 5.0
 FEW_PIXELS = 4
 """So many of a small picture may have colors by accident."""
 NAMED = 3
+"""Ranges of frames that a note lists."""
+BLANK_SAMPLES = 64
+"""Sampled rows and columns, about, in the test for a blank frame."""
+BLANK_CONTRAST = 12
+"""Levels between the darkest and the brightest pixel of a blank frame, but for stray pixels."""
+BLANK_STRAY_SHARE = 0.005
+"""Share of pixels that noise or a clock in a corner may make brighter or darker."""
 
 
 @dataclass(frozen=True)
@@ -135,3 +141,17 @@ def _ranges(frames: Sequence[int], first: int) -> str:
             runs.append([frame, frame])
     named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:NAMED]]
     return ", ".join(named) + (f" and {len(runs) - NAMED} more times" if len(runs) > NAMED else "")
+
+
+def is_blank(image: Image) -> bool:
+    """Whether a picture (rows, columns, 3) shows one even color and nothing else."""
+    step = max(min(image.shape[:2]) // BLANK_SAMPLES, 1)
+    sampled = image[step // 2 :: step, step // 2 :: step]
+    # Channel by channel: the first tells of almost every picture, and partitions along an axis are slow.
+    return not any(_has_contrast(sampled[..., channel].ravel()) for channel in range(3))
+
+
+def _has_contrast(levels: Image) -> bool:
+    stray = int(BLANK_STRAY_SHARE * len(levels))
+    ordered = np.partition(levels, (stray, len(levels) - 1 - stray))
+    return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > BLANK_CONTRAST)

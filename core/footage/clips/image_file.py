@@ -12,7 +12,7 @@ from ... import MOST_PIXELS
 from ...arrays import Image
 from ...errors import InputError
 from ...files.regular_file import ordinary_size
-from .opencv_silence import opencv_silence
+from .opencv_workarounds import opencv_silence
 
 LARGEST_BYTES = 2**31
 """Of one image: four times the pixels that are read, at sixteen bits."""

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from ...arrays import Array
-from .opencv_silence import opencv_silence
+from .opencv_workarounds import opencv_silence
 
 MOST_PACKETS = 20_000
 """Of a longer file no more are read: ten minutes of it tell whether the rate varies."""

@@ -11,8 +11,7 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from .container import check_container, check_pixels
-from .opencv_silence import opencv_silence
-from .opencv_workarounds import fill_last_rows
+from .opencv_workarounds import fill_last_rows, opencv_silence
 from .video_notes import video_notes
 
 FALLBACK_FPS = 24.0

@@ -22,7 +22,6 @@ SURE = 230
 """A region must hold pixels this sure (in 1/255) to be more than a blend of other colors."""
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-SQUARE = np.ones((3, 3), dtype=np.uint8)
 
 
 class Regions(NamedTuple):

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....core.body.actor import Actor
+from ....core.body.heading import headings_rad, turned_and_shifted
 from ....core.body.kinematics import Body
 from ....core.body.mirror import mirrored
 from ....core.body.posture import Posture
 from ....core.body.soles import lower_sole_m
 from ....core.errors import InputError
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.posture_shape import headings_rad, turned_and_shifted
 from ....core.library.transfer import transferred
 
 

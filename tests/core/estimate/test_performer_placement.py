@@ -5,13 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
+from keymark.core.body.heading import yawed_in_place
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import (
-    hip_height_m,
-    standing_height_m,
-    standing_posture,
-    yawed_in_place,
-)
+from keymark.core.body.standing_posture import hip_height_m, standing_height_m, standing_posture
 from keymark.core.errors import InputError
 from keymark.core.estimate.performer_placement import ground_place, place_standing
 from keymark.core.footage.camera import Camera

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
+from keymark.core.body.heading import headings_rad, turned_and_shifted
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.posture_spline import linear_spline
@@ -15,7 +16,7 @@ from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, find_period_s
 from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.posture_shape import ankle_heights, headings_rad, shape_vectors, turned_and_shifted
+from keymark.core.library.posture_shape import ankle_heights, shape_vectors
 
 BODY = Body(Actor.from_stature(1.8))
 COLUMN = {name: place for place, name in enumerate(BODY.skeleton.dof_names)}
