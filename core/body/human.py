@@ -4,7 +4,7 @@ from .joint_limits import joint_limits_deg
 from .skeleton import SIDES, Joint, JointKind, Placement, PrincipalPoint, Segment, Skeleton
 
 WAIST_HEIGHT = 0.4
-"""Share of the trunk below the waist joint. The real spine bends all along; one joint here bends best."""
+"""Share of the trunk below the waist joint. The real spine bends all along; a single joint fits best here."""
 XYZ = ("x", "y", "z")
 ROTATIONS = tuple(f"rotation_{axis}" for axis in XYZ)
 HERE: Placement = {}

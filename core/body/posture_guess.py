@@ -1,4 +1,4 @@
-"""A first posture from thirteen points by geometry alone, close enough for a local fit to succeed."""
+"""Initial posture from thirteen points by geometry alone, close enough for a local fit to converge."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .posture import Posture
 from .skeleton import SIDES
 
 STRAIGHT = 0.15
-"""Sine of the bend below which a limb's plane is taken from its rest pose rather than from its bend."""
+"""Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend."""
 
 
 def _unit(vector: Array) -> Array:
@@ -25,7 +25,7 @@ def _least_turn(start: Array, goal: Array) -> Array:
     axis = np.cross(start, goal)
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.arctan2(sine, np.sum(start * goal, axis=-1, keepdims=True))
-    # Opposite vectors leave the axis free; any axis across `start` will do.
+    # Opposite vectors leave the axis free; any axis perpendicular to `start` will do.
     across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
     axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), _unit(across))
     return rotations.exponential(axis * angle)
@@ -90,7 +90,7 @@ def _in_frame(frame: Array, direction: Array) -> Array:
 
 
 def _nearest_rotation(matrix: Array) -> Array:
-    """The rotation nearest to each matrix (N, 3, 3); some rotation where coinciding points left no frame."""
+    """The nearest rotation to each matrix (N, 3, 3); an arbitrary one where points coincide."""
     left, _, right = np.linalg.svd(matrix)
     left[..., 2] *= np.linalg.det(left @ right)[..., None]
     return np.asarray(left @ right)

@@ -1,4 +1,4 @@
-"""Postures as they are compared: their shape, whatever place and heading they have, and these."""
+"""Shape of postures, independent of location and heading, for comparing them; and heights of the ankles."""
 
 import numpy as np
 
@@ -9,13 +9,13 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 
 ANKLE_OVER_SOLE = 0.36
-"""Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
+"""Height of an ankle over flat soles, as a share of the foot's length; as in the standing skeleton."""
 
 
 def shape_vectors(body: Body, posture: Posture) -> Array:
-    """The bodies' shapes (F, 3 P), as vectors whose distance is the points' mean square distance's root [m].
+    """Shape vectors (F, 3 P); their distance is the root mean square distance of the points [m].
 
-    They are the points over the ground below the hips, the performer facing -Y.
+    They are the principal points relative to the ground below the hips, the performer facing -Y.
     """
     points = body.points(body.pose(posture))
     ground = posture.translation * [1.0, 1.0, 0.0]
@@ -25,9 +25,9 @@ def shape_vectors(body: Body, posture: Posture) -> Array:
 
 
 def ankle_heights(body: Body, posture: Posture) -> Array:
-    """How far (F, 2) the left and the right ankle lie above where those of feet flat on z = 0 lie [m].
+    """Heights (F, 2) of the left and the right ankle over those of feet flat on z = 0 [m].
 
-    That tells where the floor is, as soles do not: the skeleton's feet, rigid with the shins, point into the
+    Ankles tell the floor's height, as soles do not: the skeleton's feet, rigid with the shins, point into the
     floor at the end of a step.
     """
     points = body.points(body.pose(posture))

@@ -1,8 +1,8 @@
-"""Where the visible outline of a tapered elliptical cylinder lies, as weighted sample points.
+"""The silhouette of tapered elliptical cylinders, as weighted sample points.
 
 Samples fill the silhouette between the two contour lines, and the elliptical ends. Each is a point of
 the solid: a contour line touches the surface where the cross-section reaches farthest across the view,
-so moving the samples rigidly with the segment moves the silhouette rightly to first order.
+so moving the samples rigidly with the segment moves the silhouette correctly to first order.
 
 Arrays lead with F frames and Q pieces.
 """
@@ -24,7 +24,7 @@ TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Pieces' axes as the camera sees them, in the world: (F, Q, 3), or (F, Q) for lengths."""
+    """Viewing geometry of pieces in world axes: (F, Q, 3), or (F, Q) for lengths."""
 
     start: Array
     end: Array
@@ -66,14 +66,14 @@ def _unit(vector: Array) -> tuple[Array, Array]:
 
 
 def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> View:
-    """How the camera sees each piece in each frame."""
+    """Viewing geometry of each piece in each frame."""
     start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)
     matrix = camera.matrix_world[frame][:, None] if camera.is_moving else camera.matrix_world
     toward, _ = _unit(0.5 * (start + end) - matrix[..., :3, 3])
     lateral, sagittal = pieces.turn(pose, pieces.lateral), pieces.turn(pose, pieces.sagittal)
     axis = end - start
     along, length = _unit(axis - _dot(axis, toward)[..., None] * toward)
-    # Seen end on, any direction across the view will do.
+    # Seen end on, the axis has no direction across the view: take the piece's lateral one.
     spare, _ = _unit(lateral - _dot(lateral, toward)[..., None] * toward)
     along = np.where(length[..., None] > 1e-6, along, spare)
     return View(start, end, toward, cross(toward, along), along, length, lateral, sagittal)
@@ -88,9 +88,9 @@ def sample_silhouette(pieces: PieceStack, view: View) -> Silhouette:
 
 
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
-    """Samples between the contour lines: places (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
+    """Samples between the contour lines: points (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
 
-    A place is four coordinates: one, the share of the axis, and meters along the cross-section's axes.
+    A point has four coordinates: one, the share of the axis, and meters along the cross-section's axes.
     """
     u = (np.arange(ALONG) + 0.5) / ALONG
     v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
@@ -104,7 +104,7 @@ def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
     # d half = touch · d reach; d length = ω · (axis × along).
     half_rate = np.swapaxes(_reach_rate(view, axis), -1, -2) @ touch  # (F, Q, 3, U)
     rate = cell * (cross(axis, view.along)[..., None] * half + length * half_rate)
-    # A product with a constant matrix makes a row's samples of each of its U places.
+    # A product with a constant matrix repeats each of the U cross-sections for its row of samples.
     alike, spread = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), v)  # (U, S)
     places = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
     places[:, :, 0], places[:, :, 1] = 1.0, u @ alike
@@ -126,7 +126,7 @@ def _reach_rate(view: View, axis: Array) -> Array:
 
 
 def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]:
-    """The same of the half of the first or last elliptical end that shows beyond the contour lines."""
+    """Like `_wall`, for the half of the first or last elliptical end beyond the contour lines."""
     widths = half_widths[:, end]
     pole, length = _unit((1.0 if end else -1.0) * widths * view.reach(view.along))
     pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
@@ -137,7 +137,7 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
     places = np.empty((*pole.shape[:2], 4, disc.shape[1]))
     places[:, :, 0], places[:, :, 1] = 1.0, end
     np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=places[:, :, 2:])
-    # The end's plane shows by the cosine between its normal and the view.
+    # The end's disc is foreshortened by the cosine between its normal and the view.
     normal = cross(view.lateral, view.sagittal)
     cosine = _dot(normal, view.toward)[..., None]
     full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / disc.shape[1]  # (Q, 1)

@@ -1,4 +1,4 @@
-"""The prior between keyframes: a course through them, smooth or straight, for every frame of the clip.
+"""The prior mean between keyframes: a spline through them, cubic or linear, for every frame of the clip.
 
 Before the first and after the last keyframe the posture is held.
 """
@@ -25,7 +25,7 @@ def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
 
 
 def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest comparison."""
+    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest baseline."""
     return linear_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
 

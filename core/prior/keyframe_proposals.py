@@ -24,21 +24,20 @@ GAP_SLACK = 1.5
 def propose_keyframes(
     speed: ArrayLike, count: int | None = None, largest_gap: int | None = None
 ) -> IndexArray:
-    """Frames worth posing: evenly spaced, then moved to a minimum of the speed nearby.
+    """Propose keyframes: evenly spaced frames, each moved to a minimum of the speed nearby.
 
-    The first and the last frame are always among them.
+    The first and the last frame are always included.
 
     Args:
         speed: (F,) V_sum; a NaN is never chosen as a minimum.
-        count: how many keyframes; 10 per 100 frames where None. More are proposed where `largest_gap`
-            needs them.
-        largest_gap: most frames from one keyframe to the next; 1.5 even gaps where None.
+        count: Number of keyframes; 10 per 100 frames where None. `largest_gap` may require more.
+        largest_gap: Most frames from one keyframe to the next; 1.5 even gaps where None.
 
     Returns:
-        (K,) increasing indices.
+        (K,) increasing frame indices.
 
     Raises:
-        InputError: fewer than two frames, a count that is not between 2 and F, or a gap below 1.
+        InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.
     """
     V = np.asarray(speed, dtype=np.float64)
     frames = len(V)
@@ -64,7 +63,7 @@ def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
     padded = np.concatenate([[np.inf], V, [np.inf]])
     minimum = np.isfinite(V) & (V <= padded[:-2]) & (V <= padded[2:])
     spacing = np.diff(even)
-    # With this reach the even place of the next keyframe stays allowed whatever is chosen for this one.
+    # Within this reach the next keyframe's evenly spaced frame stays allowed for any choice of this one.
     reach = min(int(SNAP_SHARE * spacing.min()), largest_gap - int(spacing.max()))
     chosen = even.copy()
     for i in range(1, len(even) - 1):

@@ -13,13 +13,13 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     """V_sum(t), the sum of the speeds of the markers' centroids in the image (paper, eq. 8).
 
     The text calls it a square sum, the equation is a sum of speeds; the equation is followed. A hidden
-    marker moves evenly from where it vanished to where it reappears; before its first and after its last
-    sight it keeps its nearest known speed, so that hiding alone makes no minimum. A marker that is seen in
-    fewer than two frames adds nothing.
+    marker is interpolated linearly between its detections; before the first and after the last it keeps
+    its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
+    frames adds nothing.
 
     Args:
         tracks: F frames of M regions; uneven time stamps are respected.
-        smoothing_frames: standard deviation of a Gaussian over the sum [frames]; 0 for none.
+        smoothing_frames: Standard deviation of a Gaussian filter over the sum [frames]; 0 for none.
 
     Returns:
         (F,) [px per frame of the clip's median duration].
@@ -42,7 +42,7 @@ def _frame_times(time_s: Array) -> Array:
 
 
 def _speed(centroid: Array, time: Array) -> Array:
-    """Speed (F,) of one centroid (F, 2) [px]; zero where it is seen in fewer than two frames."""
+    """Speed (F,) of one centroid (F, 2) [px]; zero if it is detected in fewer than two frames."""
     seen = np.flatnonzero(np.all(np.isfinite(centroid), axis=-1))
     if len(seen) < 2:
         return np.zeros(len(time))

@@ -47,7 +47,7 @@ def test_nothing_is_overwritten_without_a_word() -> None:
     """Equal libraries need none; a newer one does, and an older one too."""
     assert choose_version(MINE, small_library()) is MINE
     for offered in (THEIRS, newer(), replace(MINE, version=2), replace(MINE, title="Other")):
-        with pytest.raises(InputError, match=f"differs from version {offered.version}"):
+        with pytest.raises(InputError, match=f"differs from the offered version {offered.version}"):
             choose_version(MINE, offered)
         assert choose_version(MINE, offered, Choice.KEEP) is MINE
         assert choose_version(MINE, offered, Choice.REPLACE) is offered
@@ -57,7 +57,7 @@ def test_different_libraries_never_touch() -> None:
     """Only equal identifiers are compared, chosen between or merged."""
     stranger = replace(MINE, identifier="walking")
     for act in (compare, merge_versions, lambda a, b: choose_version(a, b, Choice.REPLACE)):
-        with pytest.raises(InputError, match="'small_steps' and 'walking' are different"):
+        with pytest.raises(InputError, match="'small_steps' and 'walking' have different identifiers"):
             act(MINE, stranger)
 
 
