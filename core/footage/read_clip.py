@@ -1,4 +1,4 @@
-"""Reading a clip once for everything that follows, and not at all where what is kept of it still holds."""
+"""One pass over a clip for all later steps, or none where a cached reading is still valid."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
@@ -22,26 +22,25 @@ def read_clip(
     with_album: bool = True,
     kept: Reading | None = None,
 ) -> Generator[float, None, Reading]:
-    """Follow the markers through a clip and keep a picture of every frame.
+    """Track the markers through a clip, check its frames and keep a small picture of each.
 
     Args:
-        clip: the footage.
-        styles: the markers.
-        expected: where they are expected; never required.
-        with_album: whether pictures are wanted.
-        kept: what was read before, of whatever clip. Where it still holds, the clip is not gone through: as a
-            whole if all it was read from is as it was, and but for which regions are the markers' if only
-            these are expected elsewhere and that changes nothing of the colors learned.
+        clip: The footage.
+        styles: The markers.
+        expected: Expected regions of the markers; optional.
+        with_album: Whether pictures are kept.
+        kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
+            if only the expected regions differ and the colors would be learned alike, its detections are
+            assigned to the markers anew.
 
     Yields:
         The fraction done, from 0 to 1.
 
     Returns:
-        The same, to the last digit, as without what was kept.
+        The reading, to the last digit the same as without a cached one.
 
     Raises:
-        InputError: nothing is to be seen in the clip, a marker's color matches nothing, or a frame cannot be
-            read.
+        InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
     """
     yield 0.0
     key = reading_key(clip.path, clip.fps, styles, expected)

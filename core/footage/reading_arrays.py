@@ -1,4 +1,7 @@
-"""A reading as arrays of numbers and text, and back: the form in which it is kept in a file."""
+"""A reading as named arrays of numbers and text, and back: its form in the cache.
+
+Names of arrays stay as they are, so that stored readings can be loaded.
+"""
 
 import itertools
 from collections.abc import Mapping
@@ -20,7 +23,7 @@ TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
 
 
 def reading_arrays(reading: Reading) -> Arrays:
-    """Return everything a reading holds, by name."""
+    """A reading as arrays by name."""
     tracks, findings = reading.tracks, reading.frame_findings
     arrays: Arrays = {f"tracks.{name}": getattr(tracks, name) for name in TRACKED}
     arrays |= {
@@ -41,7 +44,7 @@ def reading_arrays(reading: Reading) -> Arrays:
 
 
 def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
-    """Return the reading that was kept as arrays.
+    """The reading that `reading_arrays` gave as arrays.
 
     Raises:
         KeyError, ValueError: They are not of a reading.
@@ -72,7 +75,7 @@ def _text(lines: tuple[str, ...]) -> NDArray[Any]:
 
 
 def _detections_arrays(seen: Detections) -> Arrays:
-    """Regions one after the other with where each frame's begin, learning_rounds likewise."""
+    """Concatenated regions with the index of each frame's first one; learning rounds likewise."""
     counts = [len(found.color) for found in seen.regions]
     learned = [len(one.frames) for one in seen.learning_rounds]
     frames = sorted(seen.samples)

@@ -1,4 +1,4 @@
-"""Which of the regions of its color are each marker's: what extraction and a look at samples share."""
+"""Assignment of detected regions to markers, for tracking and for the marker check."""
 
 from collections.abc import Callable, Sequence
 
@@ -11,7 +11,7 @@ from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
 
 HIGHEST_FRAGMENT_COST = 10.0
-"""Highest cost of what is taken for a piece of a marker."""
+"""Highest cost of a region that counts as a fragment of a marker."""
 
 
 def assign_regions(
@@ -20,14 +20,14 @@ def assign_regions(
     expected: ExpectedRegions | None,
     choose: Callable[[Candidates, Array, float], IntArray],
 ) -> dict[int, MarkerRegion]:
-    """Return what is each marker's in every frame, by the marker's index.
+    """Assign regions to markers in every frame; return each marker's by its index.
 
     Args:
-        found: of each color, its regions.
-        groups: of each color, the markers that bear it.
-        expected: where the markers are expected.
-        choose: from a color's regions, their costs (N,) and the marker's length in px, the index of its main
-            region in each frame, (F,); -1 where it is hidden.
+        found: The regions of each color.
+        groups: The markers of each color.
+        expected: Expected regions of the markers.
+        choose: Function of a color's regions, their costs (N,) and the marker's length in px that gives the
+            index of its main region in each frame (F,), -1 where it is hidden.
     """
     alone = [len(group) == 1 for group in groups]
     clutter = [
@@ -51,7 +51,7 @@ def assign_regions(
 
 
 def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
-    """Return the marker's length in px: the long axis of regions of the usual size."""
+    """The marker's length in px: the long axis of regions of the usual size."""
     full = ~clutter & (found.area >= 0.7 * usual_area)
     if not full.any():
         return 1.0

@@ -1,4 +1,4 @@
-"""The markers' regions in a single frame, where the clip as a whole has not been gone through."""
+"""The markers' regions in a single frame, without a pass over the clip."""
 
 from collections.abc import Sequence
 
@@ -21,19 +21,19 @@ SAMPLED_FRAMES = 12
 def regions_of_frame(
     clip: Clip, time_s: float, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Find the markers in one frame, by colors learned from frames spread over the clip.
+    """Detect the markers in one frame, by colors learned from frames spread over the clip.
 
     Args:
-        clip: the footage.
-        time_s: time of the frame in seconds from the first.
-        styles: the markers, M of them, in the order of the result.
-        expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its color.
+        clip: The footage.
+        time_s: Time of the frame in seconds from the first.
+        styles: The markers, M of them, in the order of the result.
+        expected: Expected regions in this frame, (1, M), which tell markers from clutter of their colors.
 
     Returns:
         Tracks of one frame.
 
     Raises:
-        InputError: a marker's color matches nothing in the clip, or there is no such frame.
+        InputError: A marker's color matches nothing in the clip, or there is no such frame.
     """
     image = FrameReader(clip).image_at(time_s)
     if image is None:

@@ -121,7 +121,7 @@ def test_frames_lost_in_the_middle_leave_the_others_in_their_places(video: Calla
     assert 0 < len(lost) < 12 and read[-1] == FRAMES - 1
     np.testing.assert_allclose(np.diff(clip.time_stamps()), 1.0 / FPS, atol=1e-6)
     (note,) = noticed(clip)
-    assert "nothing is to be seen in" in note and "damaged" in note
+    assert "frames are blank" in note and "damaged" in note
     sampled = dict(clip.source.at([2, FRAMES - 1]))
     assert {index: number_of(image) for index, image in sampled.items()} == {2: 2, FRAMES - 1: FRAMES - 1}
 
@@ -210,7 +210,7 @@ def test_what_the_file_says_of_itself_is_told(
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames (13 to 24)"),
+        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames are blank (13 to 24)"),
         (("-vf", "tinterlace=interleave_top,fieldorder=tff", "-flags", "+ilme+ildct"), "interlaced"),
         (("-vf", "negate=enable='gte(n,10)'"), "changes at frame 11:"),
     ],

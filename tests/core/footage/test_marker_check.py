@@ -113,7 +113,7 @@ def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
     assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
     share = 22 * 16 / (22 * 16 + 16 * 6)
     assert red.distinctness == pytest.approx(1.0 - share, abs=0.05) and blue.distinctness > 0.95
-    assert "% of what has the color of red is something else" in words(result)
+    assert "% of the pixels with the color of red are something else" in words(result)
 
 
 def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
@@ -154,7 +154,7 @@ def test_sentences_say_with_what_a_color_is_confused() -> None:
     (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
     assert other == "red and blue have colors too alike: 30 % of red would pass for blue"
     (wall,) = marker_warnings("red", 24, 24, 300.0, clear._replace(background=0.25))
-    assert wall.startswith("the background wears the color of red: 25 %")
+    assert wall.startswith("the background has the color of red: 25 %")
 
 
 def test_a_tiny_marker_is_called_small() -> None:
