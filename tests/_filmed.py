@@ -1,4 +1,4 @@
-"""Small pictures of the performer of `_scene`, drawn part by part before a still, cluttered background."""
+"""An album of the performer of `_scene`, drawn part by part before a static, cluttered background."""
 
 import cv2
 import numpy as np

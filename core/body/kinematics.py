@@ -72,10 +72,10 @@ class Body:
 
     def local(self, placement: Placement) -> Array:
         """A placement of the skeleton in meters (3,), for this actor."""
-        place = np.zeros(3)
+        position = np.zeros(3)
         for length, factors in placement.items():
-            place += self.actor.segments_m[length] * np.asarray(factors)
-        return place
+            position += self.actor.segments_m[length] * np.asarray(factors)
+        return position
 
     @cached_property
     def offsets(self) -> Array:

@@ -125,11 +125,11 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     if not len(found.frame):
         return np.zeros(0, dtype=np.bool_)
     steps = np.array([STILL_STEP_PX, STILL_STEP_PX, STILL_LOG_AREA]) * STILL_CELL
-    place = np.column_stack([found.centroid, np.log(found.area)]) / steps
-    place = np.floor(place - place.min(axis=0)).astype(np.int64) + 1
-    sides = place.max(axis=0) + 2
+    cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
+    cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
+    sides = cells.max(axis=0) + 2
     cell, index, count = np.unique(
-        np.ravel_multi_index(tuple(place.T), tuple(sides)), return_inverse=True, return_counts=True
+        np.ravel_multi_index(tuple(cells.T), tuple(sides)), return_inverse=True, return_counts=True
     )
     around = np.zeros(len(cell), dtype=np.int64)
     for offset in np.ndindex(3, 3, 3):
@@ -151,7 +151,7 @@ def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """
     # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
     frame, start = found.frame.tolist(), found.start.tolist()
-    place = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
+    position = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
     own = unary.tolist()
     total: list[float] = []
     previous: list[int] = []
@@ -161,12 +161,12 @@ def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
         restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
         for here in range(start[now], start[now + 1]):
             least, source = restart, best_index
-            x, y = place[here]
+            x, y = position[here]
             for before in range(start[now] - 1, first - 1, -1):
                 gap = now - frame[before]
                 through = total[before] + (HIDING_COST + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
                 if through < least:
-                    across, down = place[before]
+                    across, down = position[before]
                     squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
                     through += STEP_TAIL * math.log1p(0.5 * squared / STEP_TAIL)
                     if through < least:

@@ -18,8 +18,8 @@ class LibraryPosture:
     name: str
     """Unique within its library."""
     posture: Posture
-    """A single posture of the library's actor. The floor is z = 0, and facing -Y is straight ahead; places on
-    the floor count within a motion only."""
+    """A single posture of the library's actor. The floor is z = 0, and facing -Y is straight ahead;
+    positions on the floor count within a motion only."""
     tags: tuple[str, ...] = ()
 
 

@@ -65,8 +65,8 @@ def after_cycles(posture: Posture, motion: LibraryMotion, cycles: Array) -> Post
     size = np.asarray(cycles) if abs(half) < 1e-9 else np.sin(cycles * half) / np.sin(half)
     direction = yaw_rotation((np.asarray(cycles) - 1.0) * half)
     moved = size[:, None] * (direction @ np.array([*way, 0.0]))
-    place = (yaw_rotation(angle) @ posture.translation[..., None])[..., 0] + moved
-    return yawed_at(posture, angle, place)
+    hips = (yaw_rotation(angle) @ posture.translation[..., None])[..., 0] + moved
+    return yawed_at(posture, angle, hips)
 
 
 def _interpolated(library: Library, posed: Posture, knots: Array, at: Array) -> Posture:

@@ -63,14 +63,14 @@ class LineEnds:
         local: list[Array] = []
         shares: list[tuple[int, int, float]] = []
         for marker, name in enumerate(self.segments):
-            for end, places in enumerate(_segment_ends(self.body, name)):
-                for joint, place in places:
+            for end, points in enumerate(_segment_ends(self.body, name)):
+                for joint, point in points:
                     joints.append(joint)
-                    local.append(place)
-                    shares.append((marker, end, 1.0 / len(places)))
+                    local.append(point)
+                    shares.append((marker, end, 1.0 / len(points)))
         share = np.zeros((len(self.segments), 2, len(joints)))
-        for place_index, (marker, end, value) in enumerate(shares):
-            share[marker, end, place_index] = value
+        for point_index, (marker, end, value) in enumerate(shares):
+            share[marker, end, point_index] = value
         return np.array(joints, dtype=np.intp), np.stack(local), share
 
     def evaluate(self, pose: Pose, frame: ArrayLike | None = None) -> Array:

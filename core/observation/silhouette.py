@@ -82,9 +82,9 @@ def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: IndexArra
 def sample_silhouette(pieces: PieceStack, view: View) -> Silhouette:
     """Samples of the pieces' silhouettes."""
     parts = [_wall(pieces.half_widths, view), *(_cap(pieces.half_widths, end, view) for end in (0, 1))]
-    places, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
+    points, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
     axes = np.stack([view.start, view.end - view.start, view.lateral, view.sagittal], axis=-1)
-    return Silhouette(np.swapaxes(axes @ places, -1, -2), area, np.swapaxes(rate, -1, -2))
+    return Silhouette(np.swapaxes(axes @ points, -1, -2), area, np.swapaxes(rate, -1, -2))
 
 
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
@@ -106,10 +106,10 @@ def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
     rate = cell * (cross(axis, view.along)[..., None] * half + length * half_rate)
     # A product with a constant matrix repeats each of the U cross-sections for its row of samples.
     alike, spread = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), v)  # (U, S)
-    places = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
-    places[:, :, 0], places[:, :, 1] = 1.0, u @ alike
-    np.matmul(touch, spread, out=places[:, :, 2:])
-    return places, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
+    points = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
+    points[:, :, 0], points[:, :, 1] = 1.0, u @ alike
+    np.matmul(touch, spread, out=points[:, :, 2:])
+    return points, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
 
 
 def _reach_rate(view: View, axis: Array) -> Array:
@@ -134,9 +134,9 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
     radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
     angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
     disc = (radius[:, None] * np.stack([np.cos(angle), np.sin(angle)])[:, None]).reshape(2, -1)
-    places = np.empty((*pole.shape[:2], 4, disc.shape[1]))
-    places[:, :, 0], places[:, :, 1] = 1.0, end
-    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=places[:, :, 2:])
+    points = np.empty((*pole.shape[:2], 4, disc.shape[1]))
+    points[:, :, 0], points[:, :, 1] = 1.0, end
+    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=points[:, :, 2:])
     # The end's disc is foreshortened by the cosine between its normal and the view.
     normal = cross(view.lateral, view.sagittal)
     cosine = _dot(normal, view.toward)[..., None]
@@ -144,7 +144,7 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
     rate = full * np.sign(cosine) * cross(normal, view.toward)
     shape = (*pole.shape[:2], 3, disc.shape[1])
     return (
-        places,
+        points,
         np.broadcast_to(full * np.abs(cosine), (*shape[:2], shape[3])),
         np.broadcast_to(rate[..., None], shape),
     )

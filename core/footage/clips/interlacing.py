@@ -33,8 +33,8 @@ def _teeth(levels: NDArray[np.int16]) -> float:
     if len(step) < TEETH:
         return 0.0
     step[1::2] *= -1
-    places = len(step) - TEETH + 1
+    windows = len(step) - TEETH + 1
     up, down = step > STEP, step < -STEP
-    rising = np.logical_and.reduce([up[tooth : tooth + places] for tooth in range(TEETH)])
-    falling = np.logical_and.reduce([down[tooth : tooth + places] for tooth in range(TEETH)])
+    rising = np.logical_and.reduce([up[tooth : tooth + windows] for tooth in range(TEETH)])
+    falling = np.logical_and.reduce([down[tooth : tooth + windows] for tooth in range(TEETH)])
     return float(np.mean(rising | falling))

@@ -41,7 +41,7 @@ def test_what_a_performer_who_stays_hides_is_not_known() -> None:
 
 @pytest.mark.parametrize("shake", [2, 6])
 def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
-    """Two pixels of shake are told from a tripod."""
+    """Two pixels of shake make a camera that is not static."""
     assert not walk_by(shake).steady
 
 

@@ -98,7 +98,7 @@ def alike(index: int) -> list[tuple[float, float]]:
 
 
 def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
-    """Either keeps to its own path, and one note says that their colors do not tell them apart."""
+    """Each keeps its own path, and one note says that their colors do not tell them apart."""
     rng = np.random.default_rng(6)
     other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
     styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))

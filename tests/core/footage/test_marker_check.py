@@ -79,7 +79,7 @@ def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
 
 
 def test_a_wall_of_a_markers_color_is_named() -> None:
-    """Nothing tells the marker from the wall; the other marker is well."""
+    """One marker is indistinguishable from the wall; the other marker passes."""
     rng = np.random.default_rng(4)
     styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
     wall, blue = check([draw(moving(index), rng) for index in range(20)], styles).readouts
@@ -117,7 +117,7 @@ def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
 
 
 def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
-    """Their expected places tell them apart."""
+    """Their expected regions tell them apart."""
     rng = np.random.default_rng(7)
     other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
     styles = (*STYLES, MarkerStyle("twin", "shin.L", (RED[0] - 4, RED[1], RED[2] + 3)))

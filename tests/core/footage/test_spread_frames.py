@@ -1,4 +1,4 @@
-"""Glances at clips that are too long or too large to go through, and what their files tell undecoded."""
+"""Sampling of clips that are too long or too large to decode, and the packets of their files."""
 
 from pathlib import Path
 

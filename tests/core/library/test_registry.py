@@ -1,4 +1,4 @@
-"""Libraries on their shelf."""
+"""The library registry."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -24,12 +24,12 @@ def folders(tmp_path: Path) -> list[Path]:
 
 def test_the_earliest_folder_counts(folders: list[Path]) -> None:
     """One entry a library, the user's own before a shipped one of the same name, by title."""
-    shelf = registered_libraries(folders)
-    assert [(entry.identifier, entry.title, entry.version) for entry in shelf] == [
+    registered = registered_libraries(folders)
+    assert [(entry.identifier, entry.title, entry.version) for entry in registered] == [
         ("walk", "A walk", 3),
         ("small_steps", "Mine", 1),
     ]
-    assert shelf[1].path.parent == folders[0]
+    assert registered[1].path.parent == folders[0]
 
 
 def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
@@ -39,7 +39,7 @@ def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
 
 
 def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path]) -> None:
-    """It stands on the shelf with its sentence; other JSON files do too, the rest does not."""
+    """It is registered with its sentence, and so are other JSON files; files of other kinds are not."""
     (folders[0] / "broken.json").write_text('{"schema": "keymark-library", ')
     (folders[0] / "notes.txt").write_text("no library")
     (folders[0] / "folder.json").mkdir()
@@ -51,7 +51,7 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
 
 
 def test_libraries_are_found_by_name_and_by_file(folders: list[Path]) -> None:
-    """By identifier, by title, however written; a file need not lie on the shelf."""
+    """By identifier or title, in any case of letters; a file need not be in a registered folder."""
     assert find_library("WALK", folders).identifier == "walk"
     assert find_library("a walk", folders).identifier == "walk"
     assert find_library(folders[2] / "small_steps.json", folders).title == LIBRARY.title

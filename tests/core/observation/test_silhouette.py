@@ -14,7 +14,7 @@ FRAME = np.zeros(1, dtype=np.intp)
 
 
 def upright(first: float = 1.0, last: float = 1.0) -> PieceStack:
-    """An upright cylinder at the hips, as wide as it is told at either end."""
+    """An upright cylinder at the hips, with given half-widths at either end."""
     widths = np.array([[WIDE, DEEP]]) * np.array([[first], [last]])
     return PieceStack.of(
         [

@@ -29,7 +29,7 @@ def in_order(*keyframes: Keyframe) -> tuple[Keyframe, ...]:
 
 
 def test_a_difference_that_lasts_is_taken_out_of_all_matched_keyframes() -> None:
-    """Two posed keyframes take most of a style away, and more than one does."""
+    """Two posed keyframes remove most of the performer's offset, and more of it than one does."""
     library = TRUTH.plus(np.tile(STYLE, (91, 1)))
     every = matched(list(range(3, 90, 6)), library)
     before = in_order(*every)
@@ -50,7 +50,7 @@ def test_posed_keyframes_stay_and_are_not_doubted() -> None:
 
 
 def test_without_posed_or_without_matched_ones_nothing_changes() -> None:
-    """There is nothing to learn from, or nobody to tell."""
+    """Without posed keyframes, or without matched ones, nothing changes."""
     unposed = in_order(*matched([0, 40, 80], TRUTH))
     posed = in_order(Keyframe(0, TRUTH[0]), Keyframe(80, TRUTH[80]))
     assert with_offset(unposed, FPS)[0] is unposed and with_offset(unposed, FPS)[1].tolist() == [1.0] * 3
@@ -58,7 +58,7 @@ def test_without_posed_or_without_matched_ones_nothing_changes() -> None:
 
 
 def test_a_posed_keyframe_far_from_all_matched_ones_says_little() -> None:
-    """What the library would have there is not known, so the difference is not taken for style."""
+    """The library's posture there is unknown, so the difference does not count as the performer's offset."""
     near = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(12, TRUTH[60])), FPS)[0]
     far = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(60, TRUTH[60])), FPS)[0]
     moved = [np.abs(one[1].posture.minus(TRUTH[10])).mean() for one in (near, far)]
@@ -66,7 +66,7 @@ def test_a_posed_keyframe_far_from_all_matched_ones_says_little() -> None:
 
 
 def test_the_nearer_of_two_posed_keyframes_counts_more() -> None:
-    """A style that changes along the clip is followed."""
+    """An offset that changes along the clip is followed."""
     drift = STYLE * np.linspace(0.0, 1.0, 91)[:, None]
     library = TRUTH.plus(drift)
     given = in_order(*matched(list(range(3, 90, 6)), library), Keyframe(2, TRUTH[2]), Keyframe(88, TRUTH[88]))
