@@ -29,7 +29,7 @@ LONG_REPEATS = 2
 load_project()
 
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.footage.colors.clip_colors import ClipColors  # noqa: E402
+from keymark.core.footage.colors.streaming_color_learning import StreamingColorLearner  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.footage.markers import track_markers  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
@@ -102,17 +102,17 @@ class LearningTime:
     def __enter__(self) -> "LearningTime":
         """Begin to measure."""
         self.seconds = 0.0
-        self._learn = ClipColors._learn
+        self._learn = StreamingColorLearner._learn
 
-        def learn(colors: ClipColors) -> None:
+        def learn(colors: StreamingColorLearner) -> None:
             self.seconds += processor_time(lambda: self._learn(colors))
 
-        ClipColors._learn = learn
+        StreamingColorLearner._learn = learn
         return self
 
     def __exit__(self, *_: object) -> None:
         """Stop measuring."""
-        ClipColors._learn = self._learn
+        StreamingColorLearner._learn = self._learn
 
 
 def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:

@@ -17,7 +17,7 @@ from trials import Trial, read_trial
 
 load_project()
 
-from keymark.core.library.learning import About, learn_library  # noqa: E402
+from keymark.core.library.learning import LibraryMetadata, learn_library  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.matching.match_take import match_take, with_matches  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
@@ -30,7 +30,7 @@ COUNTS = (0, 2, 3, 4, 6, 8, 10, 12)
 def learned(folder: Path) -> Library:
     """The library of a take's own motion, as it is reconstructed from keyframes posed by hand."""
     motion = read_trial(folder, folder / "keyframes_noisy.json").estimated("map")
-    about = About(folder.name, "Keymark")
+    about = LibraryMetadata(folder.name, "Keymark")
     return learn_library(motion.body, motion.posture, motion.time_s, about)
 
 

@@ -23,7 +23,7 @@ from keymark.core.estimate.performer_placement import place_standing  # noqa: E4
 from keymark.core.estimate.single_frame import FrameFit, calibrated, fit_frame, uncalibrated  # noqa: E402
 from keymark.core.estimate.terms.regions import ObservedRegions  # noqa: E402
 from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
-from keymark.core.prior.frame_prior import Belief, belief_from_keyframes, belief_from_standing  # noqa: E402
+from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_standing  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
 STARTS = ("standing", "earlier", "between")
@@ -80,17 +80,17 @@ def fitted(trial: Trial, index: int, posed: tuple[Keyframe, ...]) -> Fit:
     body, segments = take.body, take.marker_segments
     model = RegionModel(body, take.camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
     observed = ObservedRegions.from_tracks(trial.tracks)
-    results: list[tuple[Belief, FrameFit]] = []
+    results: list[tuple[FramePrior, FrameFit]] = []
 
     def fit() -> None:
         if posed:
-            belief = belief_from_keyframes(posed, index, take.fps)
+            belief = prior_from_keyframes(posed, index, take.fps)
             frames = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
             postures = Posture.stack([keyframe.posture for keyframe in posed])
             evidence = calibrated(model, observed[frames], postures, frames)
         else:
             standing = place_standing(body, take.camera, index, trial.tracks.frame(index), segments)
-            belief, evidence = belief_from_standing(standing), uncalibrated(model)
+            belief, evidence = prior_from_standing(standing), uncalibrated(model)
         seen = observed[np.array([index], dtype=np.intp)]
         results.append((belief, fit_frame(evidence, seen, belief, index)))
 

@@ -1,4 +1,4 @@
-"""Small pictures of the performer of `_scene`, drawn part by part before a still, cluttered background."""
+"""An album of the performer of `_scene`, drawn part by part before a static, cluttered background."""
 
 import cv2
 import numpy as np
@@ -30,7 +30,7 @@ def photograph(posture: Posture, shake_px: int = 0, seed: int = 3) -> Album:
     frames = posture.batch[0]
     place = background(rng)
     model = ContourModel.average(BODY, CAMERA)
-    parts = model.covers(BODY.pose(posture), np.arange(frames))
+    parts = model.part_outlines(BODY.pose(posture), np.arange(frames))
     colors = part_colors(len(model.parts.segments))
     album = Album()
     for frame in range(frames):

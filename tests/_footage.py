@@ -1,7 +1,7 @@
-"""Footage as people send it: files of every kind and every fault, made with ffmpeg from one drawn performer.
+"""Test footage of many formats and faults, made with ffmpeg from one drawn performer.
 
-Each frame carries its own number as black and white blocks along its upper border, so that whatever a decoder
-makes of a file, it can be told which frame it shows.
+Each frame carries its own number as black and white blocks along its upper border, so that a decoded frame
+can be identified.
 """
 
 import json

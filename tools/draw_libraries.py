@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from keymark.core.body.kinematics import Body
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.registry import SHIPPED, shelved
+from keymark.core.library.registry import SHIPPED, registered_libraries
 from keymark.core.report.canvas import GRAY, INK, Canvas
 from keymark.core.report.posture_picture import posture_picture
 
@@ -27,7 +27,7 @@ def some_postures(library: Library) -> list[LibraryPosture]:
 
 def main(output: str) -> None:
     """Draw a row a library."""
-    libraries = [found.library for found in shelved([SHIPPED]) if found.library is not None]
+    libraries = [found.library for found in registered_libraries([SHIPPED]) if found.library is not None]
     row = CELL + GAP
     canvas = Canvas(TITLE + FIGURES * (CELL + GAP), len(libraries) * row)
     for number, library in enumerate(libraries):

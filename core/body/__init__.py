@@ -1,1 +1,1 @@
-"""What moves: rotations, the skeleton, the actor's sizes, postures, kinematics and body shape."""
+"""The body model: rotations, skeleton, joint limits, actor, postures, kinematics and volume."""

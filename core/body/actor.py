@@ -1,4 +1,4 @@
-"""The performer's sizes: segment lengths in meters, and a body of average proportions where none is given.
+"""The performer's segment lengths in meters, by default of average proportions.
 
 Proportions of stature: Drillis & Contini (1966), *Body Segment Parameters*, as tabulated in Winter,
 *Biomechanics and Motor Control of Human Movement*.
@@ -47,7 +47,7 @@ class Actor:
     """
 
     segments_m: Mapping[str, float] = field(hash=False)
-    """Length of every segment [m]; hands and feet are derived from stature where not given."""
+    """Length of every segment [m]; hands and feet follow from the stature where not given."""
 
     def __post_init__(self) -> None:
         """Check the lengths and add those that follow from stature."""
@@ -69,12 +69,12 @@ class Actor:
 
     @property
     def stature_m(self) -> float:
-        """Height that the legs suggest [m], from average proportions."""
+        """Stature [m], estimated from the legs by average proportions."""
         return self._stature(self.segments_m)
 
     @classmethod
     def from_stature(cls, stature_m: float) -> "Actor":
-        """An actor of average proportions and a height of `stature_m` [m].
+        """An actor of average proportions and the stature `stature_m` [m].
 
         Raises:
             InputError: The height is not between 0.5 and 3 m.

@@ -1,15 +1,10 @@
-"""The default body: ten joints, 34 degrees of freedom, thirteen principal points.
+"""The default body: ten joints, 34 degrees of freedom, thirteen principal points."""
 
-Ranges of motion: American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring
-and Recording*, widened by about a quarter because performers are no patients and because a ball's
-range is stated on the components of its rotation vector from rest, which is only a box around the
-true, rounder range.
-"""
-
+from .joint_limits import joint_limits_deg
 from .skeleton import SIDES, Joint, JointKind, Placement, PrincipalPoint, Segment, Skeleton
 
 WAIST_HEIGHT = 0.4
-"""Share of the trunk below the waist joint. The real spine bends all along; one joint here bends best."""
+"""Share of the trunk below the waist joint. The real spine bends all along; a single joint fits best here."""
 XYZ = ("x", "y", "z")
 ROTATIONS = tuple(f"rotation_{axis}" for axis in XYZ)
 HERE: Placement = {}
@@ -31,7 +26,7 @@ def _joints() -> tuple[Joint, ...]:
             JointKind.BALL,
             {"trunk": (0.0, 0.0, WAIST_HEIGHT)},
             components=ROTATIONS,
-            limits_deg=((-40.0, 110.0), (-45.0, 45.0), (-60.0, 60.0)),
+            limits_deg=joint_limits_deg("waist"),
             deviations=(0.08, 0.06, 0.06),
         ),
         Joint(
@@ -40,7 +35,7 @@ def _joints() -> tuple[Joint, ...]:
             JointKind.BALL,
             {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)},
             components=ROTATIONS,
-            limits_deg=((-75.0, 60.0), (-55.0, 55.0), (-100.0, 100.0)),
+            limits_deg=joint_limits_deg("neck"),
             deviations=(0.25, 0.08, 0.12),
         ),
     ]
@@ -54,9 +49,6 @@ def _joints() -> tuple[Joint, ...]:
 def _arm(side: str, first: int) -> list[Joint]:
     out = 1.0 if side == "L" else -1.0
     chest = 1
-    # Mirrored in the sagittal plane, rotations about y and z change their sign and those about x do not.
-    raised, forward = (-100.0, 110.0), (-140.0, 60.0)
-    mirrored = [pair if side == "L" else (-pair[1], -pair[0]) for pair in (raised, forward)]
     return [
         Joint(
             f"girdle.{side}",
@@ -65,7 +57,7 @@ def _arm(side: str, first: int) -> list[Joint]:
             {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)},
             axis=(0.0, -out, 0.0),
             components=("elevation",),
-            limits_deg=((-15.0, 45.0),),
+            limits_deg=joint_limits_deg(f"girdle.{side}"),
             deviations=(0.03,),
         ),
         Joint(
@@ -74,7 +66,7 @@ def _arm(side: str, first: int) -> list[Joint]:
             JointKind.BALL,
             {"shoulder_width": (0.5 * out, 0.0, 0.0)},
             components=ROTATIONS,
-            limits_deg=((-130.0, 130.0), mirrored[0], mirrored[1]),
+            limits_deg=joint_limits_deg(f"shoulder.{side}"),
             deviations=(0.12, 0.12, 0.14),
         ),
         Joint(
@@ -84,7 +76,7 @@ def _arm(side: str, first: int) -> list[Joint]:
             {f"upper_arm.{side}": (out, 0.0, 0.0)},
             axis=(0.0, 0.0, -out),
             components=("flexion",),
-            limits_deg=((-5.0, 155.0),),
+            limits_deg=joint_limits_deg(f"elbow.{side}"),
             deviations=(0.15,),
         ),
         Joint(
@@ -94,7 +86,7 @@ def _arm(side: str, first: int) -> list[Joint]:
             HERE,
             axis=(out, 0.0, 0.0),
             components=("pronation",),
-            limits_deg=((-100.0, 100.0),),
+            limits_deg=joint_limits_deg(f"forearm.{side}"),
             deviations=(0.15,),
         ),
     ]
@@ -102,8 +94,6 @@ def _arm(side: str, first: int) -> list[Joint]:
 
 def _leg(side: str, first: int) -> list[Joint]:
     out = 1.0 if side == "L" else -1.0
-    apart, turned = (-70.0, 40.0), (-60.0, 60.0)
-    spread = apart if side == "L" else (-apart[1], -apart[0])
     return [
         Joint(
             f"hip.{side}",
@@ -111,7 +101,7 @@ def _leg(side: str, first: int) -> list[Joint]:
             JointKind.BALL,
             {"hip_width": (0.5 * out, 0.0, 0.0)},
             components=ROTATIONS,
-            limits_deg=((-145.0, 45.0), spread, turned),
+            limits_deg=joint_limits_deg(f"hip.{side}"),
             deviations=(0.11, 0.08, 0.11),
         ),
         Joint(
@@ -121,7 +111,7 @@ def _leg(side: str, first: int) -> list[Joint]:
             {f"thigh.{side}": (0.0, 0.0, -1.0)},
             axis=(1.0, 0.0, 0.0),
             components=("flexion",),
-            limits_deg=((-5.0, 155.0),),
+            limits_deg=joint_limits_deg(f"knee.{side}"),
             deviations=(0.2,),
         ),
         Joint(
@@ -131,7 +121,7 @@ def _leg(side: str, first: int) -> list[Joint]:
             HERE,
             axis=(0.0, 0.0, -1.0),
             components=("axial",),
-            limits_deg=((-40.0, 40.0),),
+            limits_deg=joint_limits_deg(f"shin.{side}"),
             deviations=(0.08,),
         ),
     ]

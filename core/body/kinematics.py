@@ -16,13 +16,13 @@ from .skeleton import Placement, Skeleton
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Promise that forward kinematics has been run: every joint's frame in the world."""
+    """Result of forward kinematics: every joint's frame in the world."""
 
     posture: Posture
     rotation: Array
     """(..., J, 3, 3) world orientation of each joint's frame."""
     origin: Array
-    """(..., J, 3) world place of each joint's frame [m]."""
+    """(..., J, 3) world position of each joint's frame [m]."""
 
     def __getitem__(self, index: slice) -> "Pose":
         """The poses of some postures along the first batch axis."""
@@ -32,7 +32,7 @@ class Pose:
     def screws(self) -> Array:
         """(..., 6, D) spatial velocity per unit tangent step: rows 0:3 linear (at the origin), 3:6 angular.
 
-        A point p of a frame that a degree of freedom moves has the derivative v + ω × p.
+        Where a degree of freedom moves a frame, a point p of that frame has the derivative v + ω × p.
         """
         skeleton = self.posture.skeleton
         screws = np.zeros((*self.posture.batch, 6, skeleton.dof_count))
@@ -49,15 +49,11 @@ class Pose:
         return screws
 
     def place(self, joint: int, local: Array) -> Array:
-        """World places (..., 3) of a point given in a joint's frame [m]."""
+        """World position (..., 3) of a point given in a joint's frame [m]."""
         return np.asarray(self.origin[..., joint, :] + self.rotation[..., joint, :, :] @ local)
 
-    def place_jacobian(self, joint: int, world: Array) -> Array:
-        """d place / d tangent, (..., 3, D), of points `world` (..., 3) fixed in a joint's frame."""
-        return self.places_jacobian([joint], world[..., None, :])[..., 0, :, :]
-
     def places_jacobian(self, joints: Sequence[int], world: Array) -> Array:
-        """The same, (..., N, 3, D), of points `world` (..., N, 3), one fixed in each joint's frame."""
+        """d world / d tangent (..., N, 3, D) of points `world` (..., N, 3), each fixed in a joint's frame."""
         # v + ω × p for all points in one product: the rows 1 and -[p]× with all screws.
         unit = np.broadcast_to(np.eye(3), (*world.shape, 3))
         rows = np.concatenate([unit, -rotations.cross_matrix(world)], axis=-1)
@@ -69,26 +65,26 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A skeleton with an actor's sizes."""
+    """A skeleton with an actor's segment lengths."""
 
     actor: Actor
     skeleton: Skeleton = HUMAN
 
     def local(self, placement: Placement) -> Array:
-        """A placement of the skeleton in meters, (3,)."""
-        place = np.zeros(3)
+        """A placement of the skeleton in meters (3,), for this actor."""
+        position = np.zeros(3)
         for length, factors in placement.items():
-            place += self.actor.segments_m[length] * np.asarray(factors)
-        return place
+            position += self.actor.segments_m[length] * np.asarray(factors)
+        return position
 
     @cached_property
     def offsets(self) -> Array:
-        """(J, 3) place of each joint in its parent's frame [m]."""
+        """(J, 3) position of each joint in its parent's frame [m]."""
         return np.stack([self.local(joint.placement) for joint in self.skeleton.joints])
 
     @cached_property
     def point_places(self) -> Array:
-        """(P, 3) place of each principal point in its joint's frame [m]."""
+        """(P, 3) position of each principal point in its joint's frame [m]."""
         return np.stack([self.local(point.placement) for point in self.skeleton.points])
 
     def pose(self, posture: Posture) -> Pose:
@@ -119,7 +115,7 @@ class Body:
         return turns
 
     def points(self, pose: Pose) -> Array:
-        """World places (..., P, 3) of the principal points [m]."""
+        """World positions (..., P, 3) of the principal points [m]."""
         joints = [point.joint for point in self.skeleton.points]
         turned = pose.rotation[..., joints, :, :] @ self.point_places[..., None]
         return np.asarray(pose.origin[..., joints, :] + turned[..., 0])
@@ -129,7 +125,7 @@ class Body:
         return pose.places_jacobian([point.joint for point in self.skeleton.points], self.points(pose))
 
     def segment_ends(self, pose: Pose, name: str) -> tuple[Array, Array]:
-        """World places (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""
+        """World positions (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""
         for segment in self.skeleton.segments:
             if segment.name == name:
                 start, end = self.local(segment.start), self.local(segment.end)

@@ -1,4 +1,4 @@
-"""Left and right exchanged, about the plane x = 0 of the world."""
+"""Mirror images: left and right exchanged about the plane x = 0 of the world."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,19 +11,19 @@ from .posture import Posture
 from .skeleton import Skeleton
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
-"""What the plane makes of each coordinate."""
+"""Factors of the reflection on x, y and z."""
 OTHER_SIDE = {".L": ".R", ".R": ".L"}
 
 
 def other_side(name: str) -> str:
-    """The name of what lies opposite: `knee.L` for `knee.R`; what lies in the middle is its own opposite."""
+    """The name on the opposite side: `knee.L` for `knee.R`; a name without a side stays."""
     return name[:-2] + OTHER_SIDE.get(name[-2:], name[-2:])
 
 
 def mirrored(posture: Posture) -> Posture:
-    """A posture, or a batch of them, as a mirror at x = 0 shows it.
+    """The mirror image of a posture, or of a batch.
 
-    Exact: only signs and places change, so that mirroring twice gives the very same numbers.
+    Exact: only signs and the order of joints change, so mirroring twice gives the very same numbers.
 
     Raises:
         ValueError: The skeleton has a joint whose opposite is missing or bends about another axis.
@@ -36,7 +36,7 @@ def mirrored(posture: Posture) -> Posture:
 
 
 def mirrored_actor(actor: Actor) -> Actor:
-    """An actor with the lengths of the left side on the right and the other way round."""
+    """An actor with the lengths of left and right exchanged."""
     return Actor({name: actor.segments_m[other_side(name)] for name in actor.segments_m})
 
 

@@ -1,4 +1,4 @@
-"""Postures: values of the degrees of freedom, changed by tangent steps and never by adding Euler angles."""
+"""Postures: values of the degrees of freedom, changed by tangent steps, never by adding Euler angles."""
 
 from dataclasses import dataclass
 
@@ -22,14 +22,14 @@ class Posture:
 
     skeleton: Skeleton
     translation: Array
-    """(..., 3) place of the hips' midpoint [m], world axes."""
+    """(..., 3) position of the hips' midpoint [m], world axes."""
     rotations: Array
     """(..., B, 3, 3) rotation of each ball relative to its parent."""
     angles: Array
     """(..., H) hinge angles [rad]."""
 
     def __post_init__(self) -> None:
-        """Freeze the arrays."""
+        """Keep read-only copies of the arrays."""
         for name in ("translation", "rotations", "angles"):
             value = np.array(getattr(self, name), dtype=np.float64)
             value.setflags(write=False)
@@ -78,11 +78,11 @@ class Posture:
         return self.translation.shape[:-1]
 
     def __getitem__(self, index: Index) -> "Posture":
-        """Postures picked along the batch axes."""
+        """Postures selected along the batch axes."""
         return Posture(self.skeleton, self.translation[index], self.rotations[index], self.angles[index])
 
     def to_vector(self) -> Array:
-        """The posture vector (..., D): what `from_vector` reads; rotation vectors of at most π."""
+        """The posture vector (..., D) for `from_vector`; rotation vectors of at most π."""
         return self.minus(Posture.rest(self.skeleton, self.batch))
 
     def plus(self, delta: Array) -> "Posture":

@@ -1,4 +1,4 @@
-"""Postures in files: values by name of degree of freedom, in meters and radians."""
+"""Postures as JSON fields: values by name of degree of freedom, in meters and radians."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,16 +15,16 @@ from .skeleton import Skeleton
 FARTHEST_M = 1000.0
 LARGEST_ANGLE_RAD = 4.0 * np.pi
 DECIMALS = 6
-"""Micrometers and microradians: far below any measurement, and files stay short."""
+"""Micrometers and microradians: far below any measurement error, and files stay short."""
 
 
 def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
     """A posture, or a batch along the first axis, by name of degree of freedom [m, rad].
 
-    What `read_posture` reads gives the same numbers again.
+    `read_posture` gives the same numbers back.
     """
     vector = posture.to_vector()  # (..., D)
-    # Rounded up past π, half a turn would come back as half a turn the other way.
+    # Rounded up past π, half a turn would be read as half a turn the other way.
     turns = vector[..., posture.skeleton.ball_dofs]  # (..., B, 3)
     size = np.linalg.norm(turns, axis=-1, keepdims=True)
     longest = np.pi - 2.0 * 10.0**-decimals
@@ -40,13 +40,13 @@ def rounded(values: Array, decimals: int = DECIMALS) -> Any:
 def read_posture(
     fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHEST_M, *, zeros_left_out: bool = False
 ) -> Posture:
-    """The single posture that `posture_to_json` wrote.
+    """Read the single posture that `posture_to_json` wrote.
 
     Args:
         fields: The values by name of degree of freedom.
-        skeleton: Whose degrees of freedom these are.
+        skeleton: The skeleton with these degrees of freedom.
         farthest_m: Largest distance from the origin along an axis [m].
-        zeros_left_out: Whether a degree of freedom that is not there is zero.
+        zeros_left_out: Whether an absent degree of freedom counts as zero; else it is an error.
 
     Raises:
         InputError: A degree of freedom is missing, unknown or out of range.
@@ -65,5 +65,5 @@ def read_posture(
 
 
 def _bounds(skeleton: Skeleton, farthest_m: float) -> Mapping[str, float]:
-    """Largest size of each degree of freedom: meters for places, radians for angles."""
+    """Largest absolute value of each degree of freedom: meters for locations, radians for angles."""
     return {name: farthest_m if ".location_" in name else LARGEST_ANGLE_RAD for name in skeleton.dof_names}

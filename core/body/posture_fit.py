@@ -1,8 +1,8 @@
-"""Fitting postures to thirteen points: Levenberg-Marquardt on the manifold from a geometric guess.
+"""Inverse kinematics from thirteen points: Levenberg-Marquardt on the manifold from a geometric guess.
 
 Thirteen points leave some degrees of freedom free (forearm pronation, axial rotations, the share of
-pelvis and waist in a bend). Weak priors hold those near neutral, and a step is taken only when it
-lowers the cost: plain Gauss-Newton wanders off by decimeters here.
+pelvis and waist in a bend). Weak priors hold those near neutral, and a step is accepted only if it
+lowers the cost: plain Gauss-Newton diverges by decimeters here.
 """
 
 from dataclasses import dataclass
@@ -26,9 +26,9 @@ NEUTRAL_STD_RAD = {
     "knee": 3.0,
     "shin": 0.2,
 }
-"""How far each joint is expected from rest: weak wherever the points say something."""
+"""Prior standard deviation of each joint from rest: weak wherever the points determine it."""
 LIMIT_STD_RAD = 0.02
-"""How far past its range a hinge may be pulled by the points."""
+"""Standard deviation of a hinge's excess over its joint limits."""
 ITERATIONS = 60
 CONVERGED = 1e-9
 
@@ -73,16 +73,16 @@ def _residuals(body: Body, posture: Posture, targets: Array, weights: Array) -> 
 
 
 def fit_posture(body: Body, points: Array, start: Posture | None = None) -> PostureFit:
-    """Postures of an actor that reach given points as closely as its segment lengths allow.
+    """Fit postures of an actor to given points, as closely as its segment lengths allow.
 
     Args:
         body: The actor's body.
-        points: (N, 13, 3) principal points in the world [m]; NaN for a point that is not known
-            (then `start` is required).
+        points: (N, 13, 3) principal points in the world [m]; NaN for an unknown point (then `start` is
+            required).
         start: A batch of N postures to start from; by default a geometric guess.
 
     Returns:
-        The fitted postures and what is left of the distance to each point.
+        The fitted postures and the residual distance of each point.
     """
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start

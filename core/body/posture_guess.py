@@ -1,4 +1,4 @@
-"""A first posture from thirteen points by geometry alone, close enough for a local fit to succeed."""
+"""Initial posture from thirteen points by geometry alone, close enough for a local fit to converge."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .posture import Posture
 from .skeleton import SIDES
 
 STRAIGHT = 0.15
-"""Sine of the bend below which a limb's plane is taken from its rest pose rather than from its bend."""
+"""Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend."""
 
 
 def _unit(vector: Array) -> Array:
@@ -25,7 +25,7 @@ def _least_turn(start: Array, goal: Array) -> Array:
     axis = np.cross(start, goal)
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.arctan2(sine, np.sum(start * goal, axis=-1, keepdims=True))
-    # Opposite vectors leave the axis free; any axis across `start` will do.
+    # Opposite vectors leave the axis free; any axis perpendicular to `start` will do.
     across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
     axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), _unit(across))
     return rotations.exponential(axis * angle)
@@ -60,26 +60,26 @@ def guess_posture(body: Body, points: Array) -> Posture:
         A batch of N postures.
     """
     skeleton = body.skeleton
-    place = {name: points[:, i] for i, name in enumerate(skeleton.point_names)}
-    hips = 0.5 * (place["hip.L"] + place["hip.R"])
-    shoulders = 0.5 * (place["shoulder.L"] + place["shoulder.R"])
+    point = {name: points[:, i] for i, name in enumerate(skeleton.point_names)}
+    hips = 0.5 * (point["hip.L"] + point["hip.R"])
+    shoulders = 0.5 * (point["shoulder.L"] + point["shoulder.R"])
     trunk = _unit(shoulders - hips)
-    across = _unit(place["hip.L"] - place["hip.R"])
+    across = _unit(point["hip.L"] - point["hip.R"])
     back = _unit(np.cross(trunk, across))
     pelvis = _frame(across, back, np.cross(across, back))
-    level = place["shoulder.L"] - place["shoulder.R"]
+    level = point["shoulder.L"] - point["shoulder.R"]
     level = _unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
     chest = _frame(level, np.cross(trunk, level), trunk)
     turns = {"pelvis": pelvis, "waist": np.swapaxes(pelvis, -1, -2) @ chest}
-    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, _unit(place["head"] - shoulders)))
+    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, _unit(point["head"] - shoulders)))
     angles: dict[str, Array] = {}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
         for ball, middle, end, above, start, bend in (
             ("shoulder", "elbow", "wrist", chest, np.array([out, 0.0, 0.0]), -1.0),
             ("hip", "knee", "ankle", pelvis, np.array([0.0, 0.0, -1.0]), 1.0),
         ):
-            upper = _unit(place[f"{middle}.{side}"] - place[f"{ball}.{side}"])
-            lower = _unit(place[f"{end}.{side}"] - place[f"{middle}.{side}"])
+            upper = _unit(point[f"{middle}.{side}"] - point[f"{ball}.{side}"])
+            lower = _unit(point[f"{end}.{side}"] - point[f"{middle}.{side}"])
             turn, flexion = _limb(start, _in_frame(above, upper), _in_frame(above, lower), bend)
             turns[f"{ball}.{side}"], angles[f"{middle}.{side}"] = turn, flexion
     return _assemble(body, hips, turns, angles)
@@ -90,7 +90,7 @@ def _in_frame(frame: Array, direction: Array) -> Array:
 
 
 def _nearest_rotation(matrix: Array) -> Array:
-    """The rotation nearest to each matrix (N, 3, 3); some rotation where coinciding points left no frame."""
+    """The nearest rotation to each matrix (N, 3, 3); an arbitrary one where points coincide."""
     left, _, right = np.linalg.svd(matrix)
     left[..., 2] *= np.linalg.det(left @ right)[..., None]
     return np.asarray(left @ right)

@@ -1,8 +1,8 @@
-"""A smooth course through postures: curves per degree of freedom, on the manifold.
+"""Splines through postures, on the manifold: monotone cubic and linear, one curve a degree of freedom.
 
-Each stretch between two postures is a cubic Hermite curve in the tangent space at the earlier one.
-Tangents are the three-point (parabolic) estimate where neighboring stretches agree in direction and
-fall to zero where they do not, limited so that no component overshoots its postures (Fritsch & Carlson
+Each interval between two knots is a cubic Hermite curve in the tangent space at the earlier posture.
+Tangents are the three-point (parabolic) estimate where neighboring intervals agree in direction and
+zero where they do not, limited so that no component overshoots its postures (Fritsch & Carlson
 1980, *Monotone Piecewise Cubic Interpolation*; the tangents are Hyman's 1983 form of the limit).
 """
 
@@ -16,15 +16,13 @@ MONOTONE_LIMIT = 3.0
 """Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone."""
 
 
-def smooth_course(posed: Posture, knots: Array, at: Array) -> Posture:
-    """The posture at any time, led smoothly through those given.
-
-    Before the first and after the last the posture is held.
+def cubic_spline(posed: Posture, knots: Array, times: Array) -> Posture:
+    """Monotone cubic spline through given postures, held before the first knot and after the last.
 
     Args:
         posed: A batch of K postures, at least two.
         knots: (K,) their times, increasing, in any unit.
-        at: (T,) the times asked for.
+        times: (T,) the times to evaluate at.
 
     Returns:
         A batch of T postures.
@@ -32,22 +30,22 @@ def smooth_course(posed: Posture, knots: Array, at: Array) -> Posture:
     step = posed[1:].minus(posed[:-1])  # (K-1, D), in the earlier posture's tangent space
     gap = np.diff(knots)[:, None]
     tangent = _tangents(step / gap, gap)  # (K, D) per unit of time
-    stretch, elapsed = stretches(knots, at)
-    return posed[stretch].plus(_hermite(posed, step, gap, tangent, stretch, elapsed))
+    interval, elapsed = find_intervals(knots, times)
+    return posed[interval].plus(_hermite(posed, step, gap, tangent, interval, elapsed))
 
 
-def straight_course(posed: Posture, knots: Array, at: Array) -> Posture:
-    """Like `smooth_course`, with constant velocity between postures (slerp): the plainest comparison."""
-    stretch, elapsed = stretches(knots, at)
-    share = elapsed / np.diff(knots)[stretch]
-    return posed[stretch].plus(share[:, None] * posed[1:].minus(posed[:-1])[stretch])
+def linear_spline(posed: Posture, knots: Array, times: Array) -> Posture:
+    """Like `cubic_spline`, with constant velocity between postures (slerp): the plainest baseline."""
+    interval, elapsed = find_intervals(knots, times)
+    share = elapsed / np.diff(knots)[interval]
+    return posed[interval].plus(share[:, None] * posed[1:].minus(posed[:-1])[interval])
 
 
-def stretches(knots: Array, at: Array) -> tuple[IndexArray, Array]:
-    """Between which two knots (K,) each time (T,) lies, by the first of them, and how long after that one."""
-    held = np.clip(at, knots[0], knots[-1])
-    stretch = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)
-    return stretch, held - knots[stretch]
+def find_intervals(knots: Array, times: Array) -> tuple[IndexArray, Array]:
+    """Interval between knots (K,) that each time (T,) lies in, by its first knot, and the time since that."""
+    held = np.clip(times, knots[0], knots[-1])
+    interval = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)
+    return interval, held - knots[interval]
 
 
 def _tangents(slope: Array, gap: Array) -> Array:
@@ -63,9 +61,9 @@ def _tangents(slope: Array, gap: Array) -> Array:
 
 
 def _hermite(
-    posed: Posture, step: Array, gap: Array, tangent: Array, stretch: IndexArray, elapsed: Array
+    posed: Posture, step: Array, gap: Array, tangent: Array, interval: IndexArray, elapsed: Array
 ) -> Array:
-    """Tangent steps (F, D) from each time's earlier posture."""
+    """Tangent steps (F, D) from the posture at the beginning of each time's interval."""
     skeleton = posed.skeleton
     # The later tangent is a body velocity at the later posture; J_r⁻¹ turns it into the curve's own rate.
     arrival = tangent[1:].copy()
@@ -73,10 +71,10 @@ def _hermite(
     arrival[:, dofs] = np.einsum(
         "kbij,kbj->kbi", rotations.right_jacobian_inverse(step[:, dofs]), tangent[1:][:, dofs]
     )
-    u = (elapsed / gap[stretch, 0])[:, None]
-    h = gap[stretch]
+    u = (elapsed / gap[interval, 0])[:, None]
+    h = gap[interval]
     return np.asarray(
-        (u**3 - 2 * u**2 + u) * h * tangent[:-1][stretch]
-        + (3 * u**2 - 2 * u**3) * step[stretch]
-        + (u**3 - u**2) * h * arrival[stretch]
+        (u**3 - 2 * u**2 + u) * h * tangent[:-1][interval]
+        + (3 * u**2 - 2 * u**3) * step[interval]
+        + (u**3 - u**2) * h * arrival[interval]
     )

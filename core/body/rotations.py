@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from ..arrays import Array, BoolArray
 
 SMALL_ANGLE = 1e-4
-"""Below this angle [rad] the closed forms lose digits and their series are used."""
+"""Angle [rad] below which series replace the closed forms, which lose digits there."""
 
 
 def exponential(rotation_vector: Array) -> Array:
@@ -58,7 +58,7 @@ def cross_matrix(vector: Array) -> Array:
 
 
 def _tangent(rotation_vector: Array) -> tuple[Array, Array, BoolArray, Array]:
-    """[v]x, the angle, whether it is too small for closed forms, and an angle that may be divided by."""
+    """[v]x, the angle, whether it is too small for the closed forms, and an angle safe to divide by."""
     v = np.asarray(rotation_vector, dtype=np.float64)
     angle = np.linalg.norm(v, axis=-1)[..., None, None]
     small = angle < SMALL_ANGLE
@@ -130,6 +130,6 @@ def continuous_quaternions(quaternions: Array) -> Array:
     if len(q) < 2:
         return q.copy()
     turned = np.sum(q[1:] * q[:-1], axis=-1) < 0.0
-    # Whether each frame is turned against the first is the parity of the turns before it.
+    # Whether a frame's sign is flipped is the parity of the flips up to it.
     parity = np.concatenate([np.zeros((1, *turned.shape[1:]), int), np.cumsum(turned, axis=0)]) % 2
     return np.asarray(q * (1 - 2 * parity)[..., None])

@@ -17,7 +17,7 @@ from ..arrays import Array, BoolArray, IndexArray
 
 Vector = tuple[float, float, float]
 Placement = dict[str, Vector]
-"""A place in the parent's frame: for each of the actor's lengths a factor on x, y and z."""
+"""A position in the parent's frame: for each of the actor's lengths a factor on x, y and z."""
 
 SIDES = ("L", "R")
 
@@ -75,7 +75,7 @@ class PrincipalPoint:
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Joints in an order in which parents come first, with what is fixed to them."""
+    """Joints in topological order, parents first, with the segments and points fixed to them."""
 
     joints: tuple[Joint, ...]
     segments: tuple[Segment, ...]
@@ -136,9 +136,9 @@ class Skeleton:
 
     @cached_property
     def limbs(self) -> tuple[IndexArray, ...]:
-        """Degrees of freedom by part of the body: first the trunk, then each chain of joints that leaves it.
+        """Degrees of freedom by part of the body: first the trunk, then each limb that branches off it.
 
-        The trunk are the joints that others branch from.
+        The trunk consists of the joints with several children.
         """
         children = np.bincount([joint.parent for joint in self.joints[1:]], minlength=len(self.joints))
         part: list[int] = []

@@ -1,4 +1,4 @@
-"""Soles: where the feet touch the floor.
+"""Soles: heel and toe tip of each foot, and their heights over the floor.
 
 The skeleton ends a foot at the tip of its toes; the heel is added behind the ankle, as low as that tip when
 the shin is upright.
@@ -17,7 +17,7 @@ HEEL_BEHIND = 0.32
 
 
 def sole_places(body: Body, pose: Pose) -> Array:
-    """World places (..., 2, 2, 3) of heel and tip of the left and the right foot [m]."""
+    """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m]."""
     feet = []
     for side in SIDES:
         segment = next(segment for segment in body.skeleton.segments if segment.name == f"foot.{side}")
@@ -29,10 +29,10 @@ def sole_places(body: Body, pose: Pose) -> Array:
 
 
 def sole_heights_m(body: Body, pose: Pose) -> Array:
-    """(..., 2) height of the lowest place of the left and the right sole [m]."""
+    """(..., 2) height of the lowest point of the left and the right sole [m]."""
     return np.asarray(sole_places(body, pose)[..., 2].min(axis=-1))
 
 
 def lower_sole_m(body: Body, posture: Posture) -> Array:
-    """(...,) height of the lower one of the soles [m]."""
+    """(...,) height of the lower sole [m]."""
     return np.asarray(sole_heights_m(body, body.pose(posture)).min(axis=-1))

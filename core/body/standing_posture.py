@@ -1,16 +1,15 @@
-"""How a person stands when nothing else is known: upright, arms hanging, facing -Y."""
+"""The default posture: standing upright, arms hanging, facing -Y; and the heights that follow from it."""
 
 import numpy as np
 
 from ..arrays import Array
-from .heading import headed
+from .body_volume import HEAD_OVERSHOOT
 from .kinematics import Body
 from .posture import Posture
-from .shapes import HEAD_OVERSHOOT
 from .skeleton import SIDES
 
 ARMS_LOWERED_RAD = float(np.radians(75.0))
-"""From the T pose; sleeves keep the arms from the trunk."""
+"""From the T pose; less than a right angle, as sleeves keep the arms off the trunk."""
 ELBOWS_BENT_RAD = np.radians(10.0)
 
 
@@ -24,9 +23,9 @@ def standing_posture(
 
     Args:
         body: The actor's body; its skeleton must be the default human one.
-        place: (3,) the ground between the feet [m]; the world's origin by default.
+        place: (3,) point on the ground between the feet [m]; the world's origin by default.
         heading_rad: Turn about the world's Z from facing -Y.
-        arms_lowered_rad: How far the arms hang down from being stretched sideways.
+        arms_lowered_rad: Angle of the arms below the horizontal.
     """
     skeleton = body.skeleton
     column = {name: i for i, name in enumerate(skeleton.dof_names)}
@@ -48,18 +47,6 @@ def hip_height_m(body: Body) -> float:
 
 
 def standing_height_m(body: Body) -> float:
-    """From the soles to the crown of a body that stands upright [m]."""
+    """Height from the soles to the crown of a body that stands upright [m]."""
     lengths = body.actor.segments_m
     return hip_height_m(body) + lengths["trunk"] + HEAD_OVERSHOOT * lengths["neck_head"]
-
-
-def facing_rad(direction: Array) -> float:
-    """The heading of someone who looks along a world direction (3,); straight up or down counts as -Y."""
-    x, y = float(direction[0]), float(direction[1])
-    return float(np.arctan2(x, -y)) if np.hypot(x, y) > 1e-9 else 0.0
-
-
-def turned(posture: Posture, angle_rad: Array) -> Posture:
-    """A posture turned about the vertical through its hips by each of N angles: a batch of N."""
-    batch = Posture.stack([posture] * len(angle_rad))
-    return headed(batch, angle_rad, batch.translation)

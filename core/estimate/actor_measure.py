@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
 from ..body.actor import Actor
+from ..body.heading import facing_rad
 from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..body.standing_posture import ARMS_LOWERED_RAD, facing_rad, standing_height_m, standing_posture
+from ..body.standing_posture import ARMS_LOWERED_RAD, standing_height_m, standing_posture
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel

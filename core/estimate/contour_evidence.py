@@ -105,7 +105,7 @@ def _learn_appearance(
 ) -> Generator[None, None, Appearance]:
     count = min(APPEARANCE_FRAMES, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
-    parts = model.covers(model.body.pose(posture[chosen]), frame[chosen])
+    parts = model.part_outlines(model.body.pose(posture[chosen]), frame[chosen])
     images = [album.picture(int(index)) for index in frame[chosen]]
     size = images[0].shape[1], images[0].shape[0]
     yield

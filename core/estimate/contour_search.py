@@ -14,7 +14,7 @@ from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
 from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
-from ..observation.occlusion import HIDDEN_DEPTH_M, Covers, outline_depth
+from ..observation.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 
 REACH = 6
 """Reach of the search along the normal, in pixels of the pictures."""
@@ -58,7 +58,7 @@ def find_edges(
         factor: Pixels of the camera to one of the pictures.
         appearance: The look of parts and background in them.
     """
-    behind, shown = _occlusion(model, predicted, model.covers(pose, frame), factor)
+    behind, shown = _occlusion(model, predicted, model.part_outlines(pose, frame), factor)
     offset = np.arange(-REACH, REACH + 1.0)
     rows, columns = pictures.shape[1:3]
     middle = predicted.pixel / factor
@@ -113,7 +113,7 @@ def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
 
 
 def _occlusion(
-    model: ContourModel, predicted: ContourPrediction, parts: Covers, factor: int
+    model: ContourModel, predicted: ContourPrediction, parts: PartOutlines, factor: int
 ) -> tuple[IndexArray, BoolArray]:
     """Index of the part behind each contour sample, -1 for none, and whether its edge is visible."""
     normal = factor * predicted.normal

@@ -16,7 +16,7 @@ from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
-from ..prior.performer_offset import unforeseen
+from ..prior.performer_offset import leave_one_out_residuals
 
 FEWEST_POSED = 2
 """Fewer posed keyframes enclose no frame."""
@@ -70,7 +70,7 @@ def _library_error_m(
     body = model.body
     posture = Posture.stack([keyframe.posture for keyframe in posed])
     points = body.points(body.pose(posture))
-    difference, weight = unforeseen(keyframes, fps)
+    difference, weight = leave_one_out_residuals(keyframes, fps)
     foretold = body.points(body.pose(posture.plus(-difference)))
     sight = model.camera.sight(points, np.array([[keyframe.index] for keyframe in posed]))
     squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)

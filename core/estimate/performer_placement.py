@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, BoolArray
+from ..body.heading import facing_rad
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.standing_posture import facing_rad, hip_height_m, standing_posture
+from ..body.standing_posture import hip_height_m, standing_posture
 from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks

@@ -16,7 +16,7 @@ from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
 from ..prior.marker_speed import marker_speed
-from ..prior.performer_offset import with_style
+from ..prior.performer_offset import with_offset
 from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.methods import METHODS
@@ -118,7 +118,7 @@ def _reconstruct(
     notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
     take = replace(take, keyframes=worth)
     notes += match_notes(take)
-    keyframes, match_scale = with_style(take.keyframes, take.fps)
+    keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None

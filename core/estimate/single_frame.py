@@ -15,7 +15,7 @@ from ..body.posture import Posture
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
-from ..prior.frame_prior import Belief
+from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
@@ -54,7 +54,7 @@ class FrameFit:
 def fit_frame(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
-    belief: Belief,
+    belief: FramePrior,
     frame: int,
     noise: RegionNoise | None = None,
 ) -> FrameFit:
@@ -89,7 +89,7 @@ def calibrated(
     return run(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
 
 
-def expected_in_frame(model: RegionModel, belief: Belief, frame: int) -> ExpectedRegions:
+def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:
     """Each marker's place in the picture by a belief, (1, M), with a generous radius."""
     predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
     depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
@@ -104,7 +104,7 @@ class _Descent:
         self,
         evidence: KeyframeEvidence,
         observed: ObservedRegions,
-        belief: Belief,
+        belief: FramePrior,
         frame: int,
         noise: RegionNoise,
     ) -> None:
@@ -166,7 +166,7 @@ class _Descent:
         return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
 
 
-def _factor(model: RegionModel, belief: Belief, frame: int) -> Array:
+def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:
     """A square root L (D, D) of the belief's covariance, with the points' depths as observations.
 
     The image tells little of depth, so the believed depths of the points count as observed (paper, eq. 9).

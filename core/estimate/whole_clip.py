@@ -18,7 +18,7 @@ from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
-from ..prior.variability import REFERENCE_STEP_S, acceleration_factor
+from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
@@ -112,7 +112,7 @@ def estimate_whole_clip(
         model, options.regions, observed[index], width_px[index], prior[index], index, match_scale
     )
     evidence = yield from scaled(reading, 0.0, 0.0)
-    factor = acceleration_factor(prior[index], tracks.time_s[index])
+    factor = process_noise_factor(prior[index], tracks.time_s[index])
     step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     problem = ClipProblem(
         body,

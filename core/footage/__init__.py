@@ -1,1 +1,1 @@
-"""What was seen: the camera, the clip, and the colored markers found in it."""
+"""The footage: camera, clip, and the colored markers detected and tracked in it."""

@@ -1,9 +1,9 @@
-"""How the parts of a performer and the place behind him look: color densities, learned from a clip itself.
+"""Appearance models of body parts and background: color likelihoods learned from the clip itself.
 
-A static camera sees the same background whenever the performer is not before it: a color for each pixel,
-which a shadow darkens (Stauffer & Grimson 1999, *Adaptive background mixture models*, with one component
-and shadows as Horprasert, Harwood & Davis 1999 describe them). Each part of the body, and the background
-where it was never free, has the histogram of its colors instead.
+The background of a static camera has one Gaussian a pixel, which shadows may darken (Stauffer & Grimson 1999,
+*Adaptive background mixture models*, with one component and shadows as Horprasert, Harwood & Davis 1999
+describe them). Each part of the body has a color histogram, and so has the background where the performer
+always occludes it.
 """
 
 from collections.abc import Iterator
@@ -16,8 +16,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
-NOTHING = -1
-"""Label of pixels where no part of the body is."""
+NO_PART = -1
+"""Label of pixels without a part of the body."""
 BITS = 5
 LEVELS = 1 << BITS
 CELLS = LEVELS**3
@@ -25,51 +25,53 @@ CELL_VOLUME = (256 / LEVELS) ** 3
 UNSEEN = 0.02
 """Share of any surface's colors that a few frames do not show."""
 BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
-"""Takes a histogram's levels along an axis to smoothed ones."""
-STRANGE = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
+"""Smoothing matrix of a histogram along one axis."""
+UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
 MARGIN_PX = 5
-"""A predicted body may lie this far off: what is nearer to it is not taken for background."""
+"""Error of a predicted body: pixels nearer to it do not count as background."""
 FEWEST_FREE = 3
+"""Frames that must show a pixel's background for its Gaussian to be known."""
 HIGHEST = 255
-"""In place of a level that was not free: put last."""
+"""Replaces occluded levels, so that they are sorted last."""
 SPARSE = 2
-"""Every so many-th row and column tell enough of the colors of all the background."""
-SMALLEST_DEVIATION, _LARGEST_DEVIATION = 3.0, 12.0
+"""Sampling step, in rows and columns, of the background's histogram."""
+SMALLEST_DEVIATION, LARGEST_DEVIATION = 3.0, 12.0
 """Bounds of a background pixel's standard deviation in levels."""
 STEADY = 6.0
-"""Most pixels of a background that stands still vary less than this, in levels."""
+"""Standard deviation below which a background pixel is static, in levels."""
 STEADY_SHARE = 0.9
-DARKEST, _BRIGHTEST, _LIGHT_DEVIATION = 0.55, 1.1, 0.15
-"""Range and standard deviation of the light that falls on a background pixel, relative to its usual light."""
+"""Share of static pixels in a static background."""
+DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
+"""Range and standard deviation of the light on a background pixel, relative to its usual light."""
 CHANGED = 0.1
-"""Share of pixels that show something else than the background's usual color."""
+"""Prior share of pixels that differ from the background's usual color."""
 
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
-    """Log densities of colors, per level³."""
+    """Log likelihoods of colors, as densities per level³."""
 
     parts: Array
-    """(O + 1, cells) of each part of the body and, last, of all the background."""
+    """(O + 1, cells) histogram of each part of the body and, last, of the whole background."""
     color: Array
-    """(rows, columns, 3) of the background."""
+    """(rows, columns, 3) median color of the background."""
     deviation: Array
     """(rows, columns) standard deviation of the background's color, in levels."""
     known: BoolArray
-    """(rows, columns) whether the background was seen there often enough."""
+    """(rows, columns) whether the background was visible in enough frames."""
     steady: bool
-    """Whether the background stands still, so that what differs from it is something else."""
+    """Whether the background is static, so that pixels that differ from it are foreground."""
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
-        """Return the log density of pixels (..., 3) as parts of index (...), broadcast against them."""
+        """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
         return np.asarray(self.parts[index, _cells(pixels)])
 
     def background(self, row: IndexArray, column: IndexArray, pixels: Image) -> Array:
-        """Return the log density of pixels (..., 3) as the background at rows and columns (...).
+        """Log likelihood of pixels (..., 3) under the background at rows and columns (...).
 
-        In float64: exponentials of float32 differ between versions of numpy in their last digit, and edges
-        that such differences move by a millionth of a pixel are, now and then, read from the next pixel.
+        In float64: exponentials of float32 differ between versions of numpy in their last digit, which moves
+        edges by a millionth of a pixel and, now and then, onto the next pixel.
         """
         anywhere = self.parts[-1, _cells(pixels)].astype(np.float64)
         deviation = self.deviation[row, column].astype(np.float64)
@@ -78,69 +80,69 @@ class Appearance:
         seen = [pixels[..., channel].astype(np.float64) for channel in range(3)]
         power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
         light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
-        light = np.clip(light / np.maximum(power, 1.0), DARKEST, _BRIGHTEST)
+        light = np.clip(light / np.maximum(power, 1.0), DARKEST, BRIGHTEST)
         squared = sum((s - light * u) ** 2 for s, u in zip(seen, usual, strict=True)) / deviation**2
-        squared += ((light - 1.0) / _LIGHT_DEVIATION) ** 2
+        squared += ((light - 1.0) / LIGHT_DEVIATION) ** 2
         here = np.exp(-0.5 * squared) / (deviation**3 * (2.0 * np.pi) ** 1.5)
         mixed = (1.0 - CHANGED) * here + CHANGED * np.exp(anywhere)
-        # Blends at an edge are as strange to either side, and must speak for none.
-        mixed = np.log((1.0 - UNSEEN) * mixed + np.exp(STRANGE))
+        # Blends at an edge are equally unlikely on either side, and must favor neither.
+        mixed = np.log((1.0 - UNSEEN) * mixed + np.exp(UNSEEN_LOG_DENSITY))
         return np.where(self.known[row, column], mixed, anywhere)
 
 
 def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> Appearance:
-    """Learn how parts and background look from frames in which the body's place is roughly known.
+    """Learn appearance models of parts and background from frames with a rough part segmentation.
 
     Args:
-        images: frames (rows, columns, 3) of a camera that stands still.
-        labels: for each, (rows, columns), which part is seen, `NOTHING` where none is.
-        parts: number of parts, O.
+        images: Frames (rows, columns, 3) of a static camera.
+        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
+        parts: Number of parts, O.
     """
     wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
-    body = np.stack([cv2.dilate((label != NOTHING).astype(np.uint8), wide) for label in labels]) > 0
+    body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
     counts = np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
     color, spread = _middle_and_spread(np.stack(images), ~body)
     known = np.count_nonzero(~body, axis=0) >= FEWEST_FREE
     steady = bool(known.any() and np.mean(spread[known] < STEADY) >= STEADY_SHARE)
-    deviation = np.clip(spread, SMALLEST_DEVIATION, _LARGEST_DEVIATION)
+    deviation = np.clip(spread, SMALLEST_DEVIATION, LARGEST_DEVIATION)
     return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 
 def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IndexArray:
-    """Return the color cells seen inside parts and well outside them, each part's after the last's."""
-    rows, columns = np.nonzero(_interior(label) & (label != NOTHING))
+    """Histogram cells of pixels inside parts and well outside them, offset by each part's index."""
+    rows, columns = np.nonzero(_interior(label) & (label != NO_PART))
     inside = label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns])
     sparse = slice(None, None, SPARSE), slice(None, None, SPARSE)
     return np.concatenate([inside, parts * CELLS + _cells(image[sparse][~near[sparse]])])
 
 
 def _cells(pixels: Image) -> IndexArray:
-    """Return the color cell of pixels (..., 3), coarser than those that tell markers apart."""
+    """Histogram cell of pixels (..., 3), coarser than the cells of the markers' color model."""
     reduced = (pixels >> (8 - BITS)).astype(np.intp)
     return np.asarray((reduced[..., 0] << 2 * BITS) | (reduced[..., 1] << BITS) | reduced[..., 2])
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:
-    """Return which pixels have only neighbors of their own label."""
+    """Whether all neighbors of a pixel have its label."""
     kernel = np.ones((3, 3), dtype=np.uint8)
     shifted = (label + 1).astype(np.uint8)
     return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
 
 
 def _log_densities(counts: IndexArray) -> Array:
-    """Return the logarithm of smoothed histograms (rows, cells) as densities per level³."""
+    """Log densities per level³ of smoothed histograms (rows, cells)."""
     smoothed = counts.astype(np.float64).reshape(-1, LEVELS, LEVELS, LEVELS)
-    for _ in range(3):  # each time along what is the last axis, and turns them
+    for _ in range(3):  # each time along the last axis, which then becomes the second
         smoothed = np.moveaxis(smoothed @ BLUR, -1, 1)
     smoothed = smoothed.reshape(counts.shape)
     share = smoothed / np.maximum(smoothed.sum(axis=1, keepdims=True), 1.0)
-    density = np.log((1.0 - UNSEEN) * share / CELL_VOLUME + np.exp(STRANGE))
+    density = np.log((1.0 - UNSEEN) * share / CELL_VOLUME + np.exp(UNSEEN_LOG_DENSITY))
     return np.asarray(density.astype(np.float32))
 
 
 def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[Array, Array]:
-    """Return the median color (rows, columns, 3) and the largest channel's deviation of free pixels."""
+    """Median color (rows, columns, 3) of the free pixels, and the deviation of the most variable channel."""
     color = _median(stack, free)
     distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), free)
     largest = np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2])
@@ -148,20 +150,20 @@ def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[Array, Array]:
 
 
 def _median(stack: Image, free: BoolArray) -> Image:
-    """Return the lower median over the free ones of the leading axis; the highest where nothing is free."""
+    """Lower median over the free entries of the leading axis; `HIGHEST` where none is free."""
     last = stack.copy()
     last[~free] = HIGHEST
     ordered = list(last)
-    # Whole pictures at a time, that is many times as fast as sorting every pixel.
-    for i, j in _exchanges(len(ordered)):
+    # Comparing whole pictures at a time is many times as fast as sorting every pixel.
+    for i, j in _sorting_network(len(ordered)):
         ordered[i], ordered[j] = np.minimum(ordered[i], ordered[j]), np.maximum(ordered[i], ordered[j])
     middle = np.maximum(np.count_nonzero(free, axis=0) - 1, 0) // 2
     rows, columns = np.indices(middle.shape, sparse=True)
     return np.asarray(np.stack(ordered)[middle, rows, columns])
 
 
-def _exchanges(count: int) -> Iterator[tuple[int, int]]:
-    """Yield the pairs that, each put in order, sort (Batcher 1968, *Sorting networks*: odd-even merging)."""
+def _sorting_network(count: int) -> Iterator[tuple[int, int]]:
+    """Yield the comparators of odd-even merge sort (Batcher 1968, *Sorting networks*)."""
     merged = 1
     while merged < count:
         apart = merged

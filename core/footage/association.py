@@ -1,8 +1,7 @@
-"""Which regions are the marker: one path through a whole clip's regions, and the pieces that belong to it.
+"""Data association: the Viterbi path of a marker through the detected regions of a clip, and its costs.
 
-All regions of a marker's color are recorded in one pass over the clip as a few numbers each. The path is
-then the cheapest one through them: it pays for jumps, for regions unlike the marker, and for frames in which
-it is hidden. Costs are negative logarithms of likelihood ratios.
+The path is the cheapest one through all regions of the marker's color: it pays for jumps, for regions unlike
+the marker, and for frames in which it is hidden. Costs are negative logarithms of likelihood ratios.
 """
 
 import math
@@ -17,20 +16,20 @@ from .segmentation.moments import MOMENT_POWERS
 from .segmentation.regions import Regions
 
 HIDING_COST = 4.0
-"""Cost of hiding at all: a marker seen a moment ago is seen again in 98 of 100 frames."""
+"""Cost of becoming hidden: a visible marker is visible in the next frame in 98 of 100 cases."""
 HIDDEN_COST = 2.5
 """Cost of each hidden frame: once hidden, a marker stays so for a while."""
 CERTAINTY_WEIGHT = 3.0
-"""A region's pixels err together, but less than fully: its color counts as a few independent witnesses."""
+"""Effective number of independent pixels of a region: their errors are correlated."""
 RESTART_COST = 10.0
 LONGEST_GAP = 12
-"""Frames over which the speed still bounds where a marker comes back."""
+"""Hidden frames over which the speed still bounds where a marker reappears."""
 AREA_DEVIATION = 1.2
-"""Of the logarithm: foreshortening and occlusion change a region's area by a factor of three and more."""
+"""Standard deviation of the log area: foreshortening and occlusion change areas by a factor of three."""
 STEP_IN_SIZES = 0.35
 """Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
 STEP_TAIL = 1.0
-"""Steps are spread like Student's t: a swung arm takes some of four deviations in a row."""
+"""Scale of Student's t of the steps: a swung arm takes several steps of four deviations in a row."""
 STILL_SHARE = 0.5
 STILL_STEP_PX = 1.5
 STILL_LOG_AREA = 0.4
@@ -39,18 +38,18 @@ STILL_CELL = 2.0 / 3.0
 STILL_COST = 20.0
 TAKEN_COST = 20.0
 RIVAL_DEVIATION = 0.2
-"""Of a marker from its expected place, in the radii that bound it generously."""
+"""Standard deviation of a marker from its expected position, in units of its generous radius."""
 RIVAL_SHARE = 0.25
 RIVAL_AREA = 0.1
-"""A moving region of a tenth of a still one's area is no speck of noise beside it."""
+"""Least area of a moving region that is no noise, relative to the static one's."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """The regions of one marker's color over a clip, N in all."""
+    """The detected regions of one color over a clip, N in all."""
 
     frame: IntArray
-    """(N,) frame index of each, ascending."""
+    """(N,) frame index of each region, ascending."""
     moments: Array
     """(N, 6) raw moments."""
     box: Array
@@ -58,9 +57,9 @@ class Candidates:
     certainty: Array
     """(N,) color certainty in 0..1."""
     clipped: BoolArray
-    """(N,) whether it touches the image's border."""
+    """(N,) whether the region touches the image's border."""
     start: IntArray
-    """(F + 1,) where each frame's regions begin."""
+    """(F + 1,) index of each frame's first region."""
 
     @property
     def centroid(self) -> Array:
@@ -73,13 +72,13 @@ class Candidates:
         return np.asarray(self.moments[:, 0])
 
 
-def candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
-    """Gather the regions of one color and take them to the image's own pixels.
+def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
+    """Gather the regions of one color, in pixels of the image.
 
     Args:
-        regions: of each frame, what was found in it.
-        color: which.
-        scale: pixels of the image that one of the measuring grid spans.
+        regions: The regions detected in each frame.
+        color: Index of the color.
+        scale: Pixels of the image to one of the measuring grid.
     """
     frame = np.repeat(np.arange(len(regions)), [len(found.color) for found in regions])
     own = np.concatenate([found.color for found in regions]) == color
@@ -95,16 +94,16 @@ def candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidat
 
 
 def typical_area(found: Candidates, clutter: BoolArray) -> float:
-    """Return the usual area in px of a frame's largest region that is not clutter; 0 without any."""
+    """Median area in px of each frame's largest region that is not clutter; 0 without any."""
     largest = np.zeros(len(found.start) - 1)
     np.maximum.at(largest, found.frame, np.where(clutter, 0.0, found.area))
     return float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0
 
 
-def still_clutter(found: Candidates) -> BoolArray:
-    """Mark regions (N,) that stay in place for most of the clip while others of their color move.
+def static_clutter(found: Candidates) -> BoolArray:
+    """Mark static clutter (N,): regions that rest for most of the clip while others of their color move.
 
-    A marker that itself rests is not marked: nothing else of its color is seen at the same time.
+    A resting marker is not marked: no other region of its color is visible at the same time.
     """
     frames = len(found.start) - 1
     still = _still(found, frames)
@@ -119,18 +118,18 @@ def still_clutter(found: Candidates) -> BoolArray:
 
 
 def _still(found: Candidates, frames: int) -> BoolArray:
-    """Mark regions with like ones at their place in most frames.
+    """Mark regions with similar ones at the same position in most frames.
 
-    Places and sizes are counted in cells; a region's own and the neighboring cells are what is like it.
+    Positions and sizes are counted in cells; regions in the same or a neighboring cell are similar.
     """
     if not len(found.frame):
         return np.zeros(0, dtype=np.bool_)
     steps = np.array([STILL_STEP_PX, STILL_STEP_PX, STILL_LOG_AREA]) * STILL_CELL
-    place = np.column_stack([found.centroid, np.log(found.area)]) / steps
-    place = np.floor(place - place.min(axis=0)).astype(np.int64) + 1
-    sides = place.max(axis=0) + 2
+    cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
+    cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
+    sides = cells.max(axis=0) + 2
     cell, index, count = np.unique(
-        np.ravel_multi_index(tuple(place.T), tuple(sides)), return_inverse=True, return_counts=True
+        np.ravel_multi_index(tuple(cells.T), tuple(sides)), return_inverse=True, return_counts=True
     )
     around = np.zeros(len(cell), dtype=np.int64)
     for offset in np.ndindex(3, 3, 3):
@@ -142,17 +141,17 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     return np.asarray(around[index] >= STILL_SHARE * frames)
 
 
-def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
-    """Return the index of the marker's main region in each frame, (F,); -1 where it is hidden.
+def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
+    """The Viterbi path: index of the marker's main region in each frame (F,), -1 where it is hidden.
 
     Args:
-        found: the regions.
-        unary: (N,) cost of taking each region for the marker.
-        size_px: length of the marker, the measure of its steps.
+        found: The regions.
+        unary: (N,) cost of each region as the marker.
+        size_px: Length of the marker, the measure of its steps.
     """
     # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
     frame, start = found.frame.tolist(), found.start.tolist()
-    place = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
+    position = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
     own = unary.tolist()
     total: list[float] = []
     previous: list[int] = []
@@ -162,12 +161,12 @@ def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
         restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
         for here in range(start[now], start[now + 1]):
             least, source = restart, best_index
-            x, y = place[here]
+            x, y = position[here]
             for before in range(start[now] - 1, first - 1, -1):
                 gap = now - frame[before]
                 through = total[before] + (HIDING_COST + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
                 if through < least:
-                    across, down = place[before]
+                    across, down = position[before]
                     squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
                     through += STEP_TAIL * math.log1p(0.5 * squared / STEP_TAIL)
                     if through < least:
@@ -188,14 +187,14 @@ def main_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
 def region_costs(
     found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
 ) -> Array:
-    """Return the cost of taking each region for the marker, (N,), by area, color, rest and expected place.
+    """Unary cost (N,) of each region as the marker, by area, color, clutter and expected position.
 
     Args:
-        found: the regions.
-        clutter: (N,) regions known to be none of the marker.
-        usual_area: area of the marker in px.
-        expected: where the markers are expected.
-        marker: which of them.
+        found: The regions.
+        clutter: (N,) whether a region is static clutter.
+        usual_area: Area of the marker in px.
+        expected: Expected regions of the markers.
+        marker: Index of the marker.
     """
     if not len(found.frame):
         return np.zeros(0)
@@ -206,21 +205,21 @@ def region_costs(
     return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
 
 
-def rivals_costs(
+def rival_costs(
     found: Candidates,
     taken: BoolArray,
     expected: ExpectedRegions | None,
     marker: int,
     rivals: Sequence[int],
 ) -> Array:
-    """Return what each region costs more, (N,), because markers of the same color may be what it is.
+    """Additional cost (N,) of each region because it may be another marker of the same color.
 
     Args:
-        found: the regions.
-        taken: (N,) regions that are a rival's already.
-        expected: where the markers are expected.
-        marker: whose cost it is.
-        rivals: the markers of its color.
+        found: The regions.
+        taken: (N,) whether a region is assigned to a rival already.
+        expected: Expected regions of the markers.
+        marker: Index of the marker.
+        rivals: Indices of the other markers of its color.
     """
     cost = np.where(taken, TAKEN_COST, 0.0)
     own = _relative_offset(found, expected, marker)
@@ -231,7 +230,7 @@ def rivals_costs(
 
 
 def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> Array:
-    """Return how far each region lies from the marker's expected place, (N,) in radii; NaN where unknown."""
+    """Distance (N,) of each region from the marker's expected position, in radii; NaN where unknown."""
     relative = np.full(len(found.frame), np.nan)
     if expected is not None:
         # A container's claimed frame count may fall short: frames beyond it have no expectation.

@@ -1,7 +1,7 @@
-"""The pinhole camera that saw the performance, in Blender's conventions, with its lens distortion.
+"""The pinhole camera of the footage, in Blender's conventions, with lens distortion.
 
-Camera coordinates look along local -Z with +Y up; *depth* is the distance along the viewing axis, positive in
-front. Pixels are x right, y down, with the origin at the outer corner of the top left pixel. Sensor fit is
+It looks along its local -Z with +Y up; *depth* is the distance along the viewing axis, positive in front.
+Pixels are x right, y down, with the origin at the outer corner of the top left pixel. Sensor fit is
 horizontal.
 """
 
@@ -19,7 +19,7 @@ from .camera_fields import read_distortion, read_poses, read_resolution
 LENGTHS_MM = (0.1, 100_000.0)
 """A focal length or a sensor's width lies between these [mm]."""
 MOST_SHIFT = 100.0
-"""No view is shifted further [image widths]."""
+"""Largest shift [image widths]."""
 
 NEWTON_STEPS = 20
 NEWTON_TOLERANCE = 1e-12
@@ -46,7 +46,7 @@ class Camera:
     distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y²."""
 
     def __post_init__(self) -> None:
-        """Keep an own, read-only copy of the pose."""
+        """Keep a read-only copy of the pose."""
         matrix = np.array(self.matrix_world, dtype=np.float64)
         if matrix.ndim not in (2, 3) or matrix.shape[-2:] != (4, 4):
             raise ValueError(f"matrix_world must have shape (4, 4) or (F, 4, 4), not {matrix.shape}")
@@ -60,10 +60,10 @@ class Camera:
         Args:
             fields: `lens_mm`, `sensor_width_mm`, `resolution`, `matrix_world` or `matrix_world_frames`, and
                 optionally `shift_x`, `shift_y`, `distortion`.
-            where: how messages name the place, for instance "take.json: camera".
+            where: Location in the file as messages name it, for instance "take.json: camera".
 
         Raises:
-            InputError: a field is missing or unusable; the sentence names it.
+            InputError: A field is missing or invalid; the sentence names it.
         """
         entry = Fields(fields, where)
 
@@ -81,7 +81,7 @@ class Camera:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the fields as `take.json` holds them; `from_dict` reads them back unchanged."""
+        """The fields as in `take.json`; `from_dict` reads them back unchanged."""
         fields: dict[str, Any] = {
             "lens_mm": self.lens_mm,
             "sensor_width_mm": self.sensor_width_mm,
@@ -106,7 +106,7 @@ class Camera:
 
     @property
     def principal_point(self) -> Array:
-        """Pixel the optical axis meets, (2,): the image's center moved against the shifts."""
+        """The principal point (2,) [px]: the image's center moved against the shifts."""
         width, height = self.resolution
         return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
 
@@ -114,12 +114,12 @@ class Camera:
         """Take world points (..., 3) in meters to camera coordinates (..., 3) in meters.
 
         Args:
-            points: world points, (..., 3).
-            frame: index of the pose of each point, integers broadcastable to the leading axes; a fixed camera
+            points: World points, (..., 3).
+            frame: Index of the pose of each point, integers broadcastable to the leading axes; a fixed camera
                 ignores it.
 
         Raises:
-            ValueError: the camera moves and no frame is given.
+            ValueError: The camera moves and no frame is given.
         """
         rotation, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
@@ -128,13 +128,13 @@ class Camera:
         return np.asarray(np.einsum("...ji,...j->...i", rotation, offset))
 
     def sight(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Return the unit directions (..., 3), in world axes, in which world points (..., 3) are seen."""
+        """Unit viewing directions (..., 3) of world points (..., 3), in world axes."""
         _, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
         return np.asarray(offset / np.linalg.norm(offset, axis=-1, keepdims=True))
 
     def depth(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Return the distance along the viewing axis (...) in meters of world points (..., 3)."""
+        """The distance along the viewing axis (...) in meters of world points (..., 3)."""
         return -self.world_to_camera(points, frame)[..., 2]
 
     def depth_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
@@ -148,8 +148,8 @@ class Camera:
         """Project world points to the image.
 
         Args:
-            points: world points, (..., 3), in meters.
-            frame: index of each point's pose; see `world_to_camera`.
+            points: World points, (..., 3), in meters.
+            frame: Index of each point's pose; see `world_to_camera`.
 
         Returns:
             Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in meters.
@@ -167,14 +167,14 @@ class Camera:
         return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
 
     def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Return how pixels move with the bodies that hold their points, in the camera's own axes.
+        """Jacobian of pixels by the rigid motion of the points' bodies, in the camera's own axes.
 
         This is the interaction matrix of visual servoing (Chaumette & Hutchinson 2006, *Visual servo control,
         part I*, eq. 11) for a camera that looks along -Z.
 
         Args:
-            points: world points, (..., 3), in meters.
-            frame: index of each point's pose; see `world_to_camera`.
+            points: World points, (..., 3), in meters.
+            frame: Index of each point's pose; see `world_to_camera`.
 
         Returns:
             (..., 2, 6) d pixel / d (velocity of the body's point that passes through the camera, its angular
@@ -182,7 +182,7 @@ class Camera:
         """
         x, y, depth = self._normalized(self.world_to_camera(points, frame))
         near = 1.0 / np.where(depth > 0.0, depth, np.nan)
-        # Depth is -Z, so moving along +Z brings the point nearer.
+        # Depth is -Z: moving along +Z brings the point nearer.
         rates = np.zeros((2, 6, *x.shape))
         across, up = rates
         across[0], across[2], across[3], across[4], across[5] = near, x * near, x * y, -1.0 - x * x, -y
@@ -196,11 +196,11 @@ class Camera:
         return np.moveaxis(rates, (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """Return the line of sight of each pixel.
+        """The line of sight of each pixel.
 
         Args:
-            pixels: image points, (..., 2).
-            frame: index of each pixel's pose; see `world_to_camera`.
+            pixels: Image points, (..., 2).
+            frame: Index of each pixel's pose; see `world_to_camera`.
 
         Returns:
             Origin (3,) or (..., 3) in meters and unit direction (..., 3), both in the world. Directions are
@@ -214,13 +214,13 @@ class Camera:
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
     def pose(self, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """Return the camera's orientation (..., 3, 3), its axes as columns, and its place (..., 3) in meters.
+        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) in meters.
 
         Args:
-            frame: index of each pose wanted; a fixed camera ignores it.
+            frame: Index of each pose wanted; a fixed camera ignores it.
 
         Raises:
-            ValueError: the camera moves and no frame is given.
+            ValueError: The camera moves and no frame is given.
         """
         matrix = self.matrix_world
         if self.is_moving:
@@ -237,7 +237,7 @@ class Camera:
         return camera[..., 0] / before, camera[..., 1] / before, depth
 
     def _radial_factor(self, radius_squared: Array) -> tuple[Array, Array]:
-        """Return the distortion factor and its derivative by the squared radius."""
+        """The distortion factor and its derivative by the squared radius."""
         k1, k2, k3 = self.distortion
         factor = 1.0 + radius_squared * (k1 + radius_squared * (k2 + radius_squared * k3))
         return factor, k1 + radius_squared * (2.0 * k2 + 3.0 * k3 * radius_squared)

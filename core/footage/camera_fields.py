@@ -1,4 +1,4 @@
-"""Reading the camera's fields from a take, each with one clear sentence when it is unusable."""
+"""Validation of a camera's fields in a take: each mistake is an `InputError` of one sentence."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,19 +13,19 @@ from ..files.number_lists import number_array
 
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0
-"""Coefficients of lenses are below 1."""
+"""Largest coefficient; those of real lenses are below 1."""
 FARTHEST_M = 1e6
-"""No camera stands further from the origin along an axis, or is scaled more."""
+"""Largest entry of a pose: distance from the origin along an axis, or scale."""
 SMALLEST_SCALE = 1e-4
-
-ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision carry about 1e-6
+ROTATION_TOLERANCE = 1e-3
+"""Files written by hand or in single precision have errors of about 1e-6."""
 
 
 def read_resolution(fields: Fields) -> tuple[int, int]:
-    """Return the image's width and height in pixels.
+    """Read the image's width and height in pixels.
 
     Raises:
-        InputError: the field is absent or not two whole numbers from 1 to 65536.
+        InputError: The field is absent or not two whole numbers from 1 to 65536.
     """
     valid = f"two whole numbers from 1 to {LARGEST_SIDE_PX}, width and height in pixels"
     numbers = number_array(fields.required("resolution", valid))
@@ -37,11 +37,11 @@ def read_resolution(fields: Fields) -> tuple[int, int]:
 
 
 def read_distortion(fields: Fields) -> tuple[float, float, float]:
-    """Return k1, k2, k3 of the polynomial distortion; absent means none, missing coefficients are 0.
+    """Read k1, k2, k3 of the polynomial distortion; without the field there is none, missing ones are 0.
 
     Raises:
-        InputError: the field is neither a list of at most three numbers nor an object with k1, k2, k3, or one
-            is beyond what lenses do.
+        InputError: The field is neither a list of at most three numbers nor an object with k1, k2, k3, or a
+            coefficient is out of range.
     """
     value = fields.values.get("distortion")
     if value is None:
@@ -61,13 +61,12 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
 
 
 def read_poses(fields: Fields) -> Array:
-    """Return the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
+    """Read the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
-    A uniform scale, as Blender's camera objects may carry, is taken out: it does not change what a camera
-    sees.
+    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image.
 
     Raises:
-        InputError: a matrix is absent, of the wrong shape, or not a rotation with a translation.
+        InputError: A matrix is absent, of the wrong shape, or not a rotation with a translation.
     """
     moving = fields.has("matrix_world_frames")
     poses = _read_poses(fields, "matrix_world_frames", "one 4 by 4 matrix a frame", 3) if moving else None
@@ -94,7 +93,7 @@ def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:
 
 
 def _first_fault(matrices: Array) -> tuple[int, str] | None:
-    """Return the index of the first of (F, 4, 4) that is no pose, and what is wrong with it."""
+    """Index of the first of (F, 4, 4) that is no pose, and the reason to follow its name."""
     last = np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1) > ROTATION_TOLERANCE
     far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
     sound = np.where((last | far)[:, None, None], np.eye(4), matrices)
@@ -120,6 +119,6 @@ def _first_fault(matrices: Array) -> tuple[int, str] | None:
 
 
 def _scaled(matrices: Array) -> Array:
-    """Return the upper left of (F, 4, 4), each with a uniform scale taken out, (F, 3, 3)."""
+    """Upper left (F, 3, 3) of (F, 4, 4), each without its uniform scale."""
     linear = matrices[:, :3, :3]
     return np.asarray(linear / np.cbrt(np.linalg.det(linear))[:, None, None])

@@ -1,8 +1,8 @@
-"""What one look at every frame finds, before anything says which region is which marker's.
+"""Detections: all regions of the markers' colors in a clip, before they are assigned to markers.
 
-Where the markers are expected decides which regions are theirs, and has a say in what their colors are
-learned from. Sightings remember what was learned from, so that they serve other expectations too, wherever
-the same would be learned with those: exactly the same regions would be found again.
+The markers' expected regions decide the assignment, and also limit the pixels that the colors are learned
+from. Detections therefore keep the images of the learning: they are reused with other expected regions if the
+same colors would be learned with those, as exactly the same regions would be detected again.
 """
 
 from collections.abc import Mapping
@@ -13,26 +13,26 @@ from .segmentation.regions import Regions
 
 
 @dataclass(frozen=True)
-class Lesson:
-    """Once that the colors were learned."""
+class LearningRound:
+    """One round of color learning."""
 
     frames: tuple[int, ...]
-    """The frames learned from."""
-    taught: str
-    """Digest of what they taught."""
+    """Indices of the frames learned from."""
+    model_digest: str
+    """Digest of the color model that was learned."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sightings:
+class Detections:
     """All regions of the markers' colors in a clip of F frames."""
 
     regions: tuple[Regions, ...]
-    """Of each frame, what was found in it, in pixels of the measuring grid."""
+    """Regions of each frame, in pixels of the measuring grid."""
     time_s: Array
     """(F,) time stamps of the frames in seconds."""
     size: tuple[int, int]
     """Width and height of the clip's images in px."""
-    lessons: tuple[Lesson, ...]
-    """How the colors were learned, in order."""
+    learning_rounds: tuple[LearningRound, ...]
+    """Rounds in which the colors were learned, in order."""
     samples: Mapping[int, Image]
-    """The images that were learned from, (rows, columns, 3), by their frames."""
+    """The images (rows, columns, 3) that were learned from, by frame."""

@@ -1,4 +1,4 @@
-"""How well each marker can be found in a clip, from frames spread over it: numbers and warnings."""
+"""Marker check: how reliably each marker is detected in sampled frames, as numbers and warnings."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from .association import Candidates, candidates
+from .association import Candidates, gather_candidates
 from .clips.clip_samples import ClipSamples
-from .colors.clip_colors import ClipColors
+from .colors.color_confusion import color_confusion
 from .colors.color_model import ColorModel
-from .colors.color_overlap import color_claims
+from .colors.streaming_color_learning import StreamingColorLearner
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
-from .region_assignment import DEAREST_PIECE, own_regions
+from .region_assignment import HIGHEST_FRAGMENT_COST, assign_regions
 from .region_tracks import ExpectedRegions
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
@@ -21,51 +21,51 @@ from .segmentation.working_image import halvings
 
 @dataclass(frozen=True)
 class MarkerReadout:
-    """What a look at N frames says of one marker."""
+    """Result of the check for one marker, from N sampled frames."""
 
     name: str
-    """The marker's."""
+    """The marker's name."""
     found: int
-    """Frames in which it is seen."""
+    """Number of frames in which it is detected."""
     sampled: int
-    """Frames looked at, N."""
+    """Number of sampled frames, N."""
     area_px: float
-    """Median of its area where it is seen, in pixels of the clip; 0 where it never is."""
+    """Median area where it is detected, in pixels of the clip; 0 if it never is."""
     area_share: float
     """The same as a share of the picture."""
     distinctness: float
-    """Probability in 0..1 that a pixel of it is told from all else and that what is told so is the marker;
-    0 where it is never seen."""
+    """Probability in 0..1 that a pixel of the marker is classified as such, times the share of the pixels so
+    classified that are the marker's; 0 if it is never detected."""
     warnings: tuple[str, ...]
-    """Sentences that begin with its name."""
+    """Sentences that name the marker."""
 
 
 @dataclass(frozen=True, eq=False)
 class MarkerCheck:
-    """What a look at a clip's samples says of M markers in C colors."""
+    """Result of the check for M markers in C colors."""
 
     readouts: tuple[MarkerReadout, ...]
     """One a marker."""
     model: ColorModel
-    """The colors as they were learned, for previews."""
+    """The learned color model, for previews."""
     groups: tuple[tuple[int, ...], ...]
-    """Of each color, the markers that bear it."""
+    """The markers of each color."""
     missing: Mapping[int, str]
-    """Of each marker whose color is nowhere, by index, a sentence that begins with its name; the
-    extraction refuses such a clip."""
+    """For each marker whose color is nowhere, by index, a sentence that begins with its name; tracking
+    refuses such a clip."""
 
 
 def check_markers(
     samples: ClipSamples, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> Generator[float, None, MarkerCheck]:
-    """Find the markers in sampled frames, with the extraction's own means but each frame by itself.
+    """Detect the markers in sampled frames as tracking does, but in each frame by itself.
 
-    A color that is nowhere does not keep the others from being looked at.
+    A missing color does not prevent the check of the others.
 
     Args:
-        samples: frames spread over the clip.
-        styles: the markers, M of them, at least one.
-        expected: where each marker is expected in every frame of the clip, (F, M); never required.
+        samples: Frames spread over the clip.
+        styles: The markers, M of them, at least one.
+        expected: Expected region of each marker in every frame of the clip, (F, M); optional.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -73,15 +73,18 @@ def check_markers(
     yield 0.0
     frames = len(samples.images)
     at_samples = None if expected is None else _at(expected, samples.indices)
-    colors = ClipColors(samples.path, samples.size, styles, at_samples)
+    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples)
     colors.learn(samples.images)
     yield 0.5
     regions = []
     for done, image in enumerate(samples.images):
         regions += find_regions([image], 0, colors.model)
         yield 0.5 + 0.5 * done / frames
-    found = [candidates(regions, color, 2.0 ** halvings(samples.size)) for color in range(len(colors.groups))]
-    own = own_regions(found, colors.groups, at_samples, _cheapest)
+    found = [
+        gather_candidates(regions, color, 2.0 ** halvings(samples.size))
+        for color in range(len(colors.groups))
+    ]
+    own = assign_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
     likenesses = _likenesses([style.name for style in styles], colors, found, areas)
     complaints = colors.complaints()
@@ -95,26 +98,26 @@ def check_markers(
 
 
 def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
-    """Return the expectation in some frames; what lies beyond the last known one is taken as there."""
+    """Expected regions in some frames; frames beyond the last known one get those of the last."""
     rows = np.minimum(indices, len(expected.center) - 1)
     return ExpectedRegions(expected.center[rows], expected.radius[rows])
 
 
 def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
-    """Return each frame's cheapest region, (F,), -1 where none is cheap; no path joins samples."""
+    """Index of each frame's cheapest region (F,), -1 where none is cheap; samples have no Viterbi path."""
     path = np.full(len(found.start) - 1, -1, dtype=np.int64)
     for frame, (first, end) in enumerate(zip(found.start[:-1], found.start[1:], strict=True)):
         if first < end:
             best = first + int(np.argmin(cost[first:end]))
-            path[frame] = best if cost[best] <= DEAREST_PIECE else -1
+            path[frame] = best if cost[best] <= HIGHEST_FRAGMENT_COST else -1
     return path
 
 
 def _likenesses(
-    names: Sequence[str], colors: ClipColors, found: Sequence[Candidates], areas: Sequence[Array]
+    names: Sequence[str], colors: StreamingColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
 ) -> dict[int, Likeness]:
-    """Return what else looks like each marker, by its index, from its area in every frame."""
-    claims = color_claims(colors.model)
+    """Likeness of each marker to other things, by its index, from its area in every frame."""
+    claims = color_confusion(colors.model)
     together = [" and ".join(names[marker] for marker in group) for group in colors.groups]
     likenesses = {}
     for color, group in enumerate(colors.groups):
@@ -136,12 +139,12 @@ def _likenesses(
 def _readout(
     name: str, area: Array, size: tuple[int, int], likeness: Likeness, complaint: str | None
 ) -> MarkerReadout:
-    """Return a marker's readout from its area (N,) in px, 0 where it is not seen."""
+    """A marker's readout from its area (N,) in px, 0 where it is not detected."""
     sampled, found = len(area), int(np.count_nonzero(area))
     if complaint is not None or not found:
         sentence = complaint or (
-            f"{name} is in none of the {sampled} frames looked at, or something larger has its color; pick "
-            "it anew, or wear another"
+            f"{name} is in none of the {sampled} sampled frames, or something larger has its color; pick "
+            "the color anew, or wear another"
         )
         return MarkerReadout(
             name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)

@@ -1,4 +1,4 @@
-"""What a marker is said to look like, and which markers look alike."""
+"""Marker styles: a marker's name, segment and color sample, and groups of markers that look alike."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 from .colors.color_learning import sample_distribution
 
 ALIKE_DISTANCE = 2.5
-"""Squared distance of two samples, in what one sample leaves open, below which light may make them equal."""
+"""Squared Mahalanobis distance of two samples below which light may make them equal."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class MarkerStyle:
 
 
 def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
-    """Return the indices of the markers by color; those that no color tells apart are together."""
+    """Group the indices of the markers by color; markers of indistinguishable colors are together."""
     groups: list[list[int]] = []
     for index, style in enumerate(styles):
         for group in groups:
@@ -37,7 +37,7 @@ def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
 
 
 def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> float:
-    """Return how far apart two samples are, squared, in standard deviations of their difference."""
+    """Squared Mahalanobis distance of two samples, by the covariance of their difference."""
     one, other = sample_distribution(first), sample_distribution(second)
     offset = one.mean - other.mean
     squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))

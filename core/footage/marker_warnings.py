@@ -1,44 +1,44 @@
-"""What may go wrong with a marker's color, in sentences for the person who can still change it."""
+"""Warnings of a marker check: likely failures of a marker's color, as sentences."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 FEW = 0.6
-"""Share of the frames looked at below which a marker is seldom found."""
+"""Share of the sampled frames below which a marker is detected too seldom."""
 ENOUGH = 6
-"""Frames that must be looked at to tell a marker that is seldom found from one that was hidden just then."""
+"""Sampled frames needed to tell a marker that is seldom detected from one that was hidden by chance."""
 MUCH = 0.2
-"""Share of its color that others may have before it is worth a word."""
+"""Share of confused pixels from which a warning is due."""
 SMALL_PX = 40.0
 """Pixels of the measuring grid below which a region is hardly more than its border."""
 
 
 class Likeness(NamedTuple):
-    """What else looks like a marker."""
+    """Other things that look like a marker."""
 
     alike: Sequence[str]
-    """Names of markers that no color tells from it."""
+    """Names of the markers of the same color."""
     claimed: Sequence[tuple[str, float]]
-    """Names of the other colors' markers, each with the share of its pixels taken for them."""
+    """Names of the other colors' markers, each with the share of the marker's pixels classified as theirs."""
     background: float
-    """Share of its pixels taken for the background."""
+    """Share of the marker's pixels classified as background."""
     clutter: float
-    """Share of what has its color that is no marker."""
+    """Share of the area of its color that is no marker's."""
     rivals: float
-    """Share of the markers of its color that is not it."""
+    """Share of the area of its color's markers that is another marker's."""
 
 
 def marker_warnings(
     name: str, found: int, sampled: int, grid_area: float, likeness: Likeness
 ) -> tuple[str, ...]:
-    """Return what a person should know of a marker that was found, the gravest first.
+    """Warnings of a marker that was detected, the gravest first.
 
     Args:
-        name: the marker's.
-        found: frames in which it is seen.
-        sampled: frames looked at.
-        grid_area: its usual area in pixels of the measuring grid.
-        likeness: what else looks like it.
+        name: The marker's name.
+        found: Number of frames in which it is detected.
+        sampled: Number of sampled frames.
+        grid_area: Its median area in pixels of the measuring grid.
+        likeness: Other things that look like it.
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
@@ -48,32 +48,32 @@ def marker_warnings(
     ]
     if likeness.background >= MUCH:
         sentences.append(
-            f"the background wears the color of {name}: {_percent(likeness.background)} of the marker would "
-            "pass for it"
+            f"the background has the color of {name}: {_percent(likeness.background)} of the marker would "
+            "pass for background"
         )
     if likeness.clutter >= MUCH:
         sentences.append(
-            f"{_percent(likeness.clutter)} of what has the color of {name} is something else in the picture"
+            f"{_percent(likeness.clutter)} of the pixels with the color of {name} are something else in the "
+            "picture"
         )
     if sampled >= ENOUGH and found < FEW * sampled:
         sentences.append(
-            f"{name} is found in only {found} of {sampled} frames; where it is not hidden, pick its "
-            "color in one that misses it"
+            f"{name} is found in only {found} of {sampled} frames; if it is visible in one of the others, "
+            "pick its color there"
         )
     if grid_area < SMALL_PX:
         sentences.append(
-            f"{name} is small in the picture, so its place and direction are uncertain; film from nearer"
+            f"{name} is small in the picture, so its position and direction are uncertain; film from nearer"
         )
     return tuple(sentences)
 
 
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
-    """Return a sentence on markers that no color tells from one, where there are any."""
+    """A sentence on the markers of the same color as one, if there are any."""
     if not alike:
         return []
     return [
-        f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell which is "
-        "which"
+        f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell them apart"
     ]
 
 

@@ -1,4 +1,4 @@
-"""Finding the colored markers of a clip: from one color sample each to tracks of their image regions."""
+"""Tracking the colored markers of a clip: from one color sample each to tracks of their image regions."""
 
 from collections.abc import Generator, Sequence
 from pathlib import Path
@@ -6,36 +6,36 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, Image
-from .association import candidates, main_path
+from .association import gather_candidates, viterbi_path
 from .clips.clip import Clip
-from .colors.clip_colors import ClipColors
-from .detections import Sightings
+from .colors.streaming_color_learning import StreamingColorLearner
+from .detections import Detections
 from .marker_style import MarkerStyle, color_groups
-from .pieces import region_quality
-from .region_assignment import own_regions
+from .region_assignment import assign_regions
+from .region_fragments import region_quality
 from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import NO_REGIONS, Regions, find_regions
 from .segmentation.working_image import halvings, measuring_image
 
 STRETCH_BYTES = 100_000_000
-"""Memory for the images that wait until the colors are learned: five seconds of video and more."""
-TOGETHER = 4
-"""Images that are looked at together: enough to make little of the cost of every step."""
+"""Memory of the images buffered until the colors are learned: five seconds of video and more."""
+BATCH_SIZE = 4
+"""Images segmented together: enough to amortize the overhead of each step."""
 
 
 def track_markers(
     clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> Generator[float, None, RegionTracks]:
-    """Follow the markers through a clip.
+    """Track the markers through a clip.
 
-    One pass over the clip in constant memory records the regions of each marker's color; the marker is then
-    told from clutter of like hue over the whole clip at once.
+    One pass over the clip in constant memory detects the regions of each marker's color; they are then
+    assigned to the markers, apart from clutter of like hue, over the whole clip at once.
 
     Args:
-        clip: the footage.
-        styles: the markers, M of them, in the order of the result.
-        expected: where each marker is expected, (F, M); never required.
+        clip: The footage.
+        styles: The markers, M of them, in the order of the result.
+        expected: Expected region of each marker, (F, M); optional.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -44,42 +44,44 @@ def track_markers(
         The markers' regions in every frame.
 
     Raises:
-        InputError: a marker's color matches nothing in the clip, or a frame cannot be read.
+        InputError: A marker's color matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
-    seen = yield from sight_markers(clip, styles, expected)
+    seen = yield from detect_markers(clip, styles, expected)
     yield 1.0
-    return tell_markers(seen, styles, expected)
+    return assign_detections(seen, styles, expected)
 
 
-def sight_markers(
+def detect_markers(
     clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
-) -> Generator[float, None, Sightings]:
-    """Find all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
-    colors = ClipColors(clip.path, clip.size, styles, expected)
-    regions, time_s = yield from _all_regions(clip, colors)
+) -> Generator[float, None, Detections]:
+    """Detect all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
+    colors = StreamingColorLearner(clip.path, clip.size, styles, expected)
+    regions, time_s = yield from _detect_regions(clip, colors)
     colors.check_found()
-    return Sightings(tuple(regions), time_s, clip.size, tuple(colors.lessons), colors.samples)
+    return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
 
 
-def still_hold(seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
-    """Tell whether exactly the same would be found in the clip with the markers expected elsewhere."""
-    colors = ClipColors(Path(), seen.size, styles, expected)
+def still_valid(seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
+    """Whether other expected regions would give exactly the same detections."""
+    colors = StreamingColorLearner(Path(), seen.size, styles, expected)
     return colors.learn_again(seen)
 
 
-def tell_markers(
-    seen: Sightings, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+def assign_detections(
+    seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Tell which of the regions that were found are the markers'; see `track_markers`."""
+    """Assign the detected regions to the markers; see `track_markers`."""
     return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
 
 
-def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple[list[Regions], Array]]:
-    """Find the regions of every frame, and the frames' times.
+def _detect_regions(
+    clip: Clip, colors: StreamingColorLearner
+) -> Generator[float, None, tuple[list[Regions], Array]]:
+    """Detect the regions of every frame; return them and the frames' times.
 
-    The images of the clip's first stretch wait, reduced, until the colors are learned from them; later ones
-    are looked at as they come.
+    The clip's first images are buffered, reduced, until the colors are learned from them; later ones are
+    segmented as they come.
     """
     times = halvings(clip.size)
     longest = STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
@@ -95,7 +97,7 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
                 yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
             waiting.append(image)
             colors.watch(index, image)
-            if len(waiting) == TOGETHER:
+            if len(waiting) == BATCH_SIZE:
                 regions += find_regions(waiting, times, colors.model, regions[-1])
                 waiting.clear()
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
@@ -107,15 +109,15 @@ def _all_regions(clip: Clip, colors: ClipColors) -> Generator[float, None, tuple
 
 
 def _regions_of_stretch(
-    waiting: list[Image], colors: ClipColors, regions: list[Regions], frame_count: int
+    waiting: list[Image], colors: StreamingColorLearner, regions: list[Regions], frame_count: int
 ) -> Generator[float, None, None]:
-    """Learn the colors from images on the measuring grid; append their regions and let go of them."""
+    """Learn the colors from buffered images on the measuring grid; append their regions, empty the buffer."""
     colors.learn(waiting)
     stretch = len(waiting)
     while waiting:
         before = regions[-1] if regions else NO_REGIONS
-        regions += find_regions(waiting[:TOGETHER], 0, colors.model, before)
-        del waiting[:TOGETHER]
+        regions += find_regions(waiting[:BATCH_SIZE], 0, colors.model, before)
+        del waiting[:BATCH_SIZE]
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
 
 
@@ -127,9 +129,9 @@ def _tracks(
     time_s: Array,
     size: tuple[int, int],
 ) -> RegionTracks:
-    """Tell which regions are the markers', over the whole clip at once."""
-    found = [candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
-    joined = own_regions(found, groups, expected, main_path)
+    """Assign regions to the markers over the whole clip at once."""
+    found = [gather_candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
+    joined = assign_regions(found, groups, expected, viterbi_path)
     rows = [joined[marker] for marker in range(len(styles))]
     moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
     centroid, second = centroid_and_second_moment(moments)
@@ -148,7 +150,7 @@ def _tracks(
 
 
 def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], placed: bool) -> tuple[str, ...]:
-    """Say which markers look alike."""
+    """Sentences on markers that look alike."""
     how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
     return tuple(
         f"markers {' and '.join(styles[marker].name for marker in group)} have almost the same color; {how}"

@@ -1,4 +1,4 @@
-"""Reading a clip once for everything that follows, and not at all where what is kept of it still holds."""
+"""One pass over a clip for all later steps, or none where a cached reading is still valid."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
@@ -6,10 +6,10 @@ from dataclasses import replace
 from ..errors import InputError
 from .clips.album import Album
 from .clips.clip import Clip
-from .clips.frame_checks import FrameWatch
-from .clips.watched_clip import watched
+from .clips.frame_checks import FrameChecks
+from .clips.watched_clip import watch_clip
 from .marker_style import MarkerStyle
-from .markers import sight_markers, still_hold, tell_markers
+from .markers import assign_detections, detect_markers, still_valid
 from .reading import Reading
 from .reading_key import of_same_footage, reading_key
 from .region_tracks import ExpectedRegions
@@ -22,26 +22,25 @@ def read_clip(
     with_album: bool = True,
     kept: Reading | None = None,
 ) -> Generator[float, None, Reading]:
-    """Follow the markers through a clip and keep a picture of every frame.
+    """Track the markers through a clip, check its frames and keep a small picture of each.
 
     Args:
-        clip: the footage.
-        styles: the markers.
-        expected: where they are expected; never required.
-        with_album: whether pictures are wanted.
-        kept: what was read before, of whatever clip. Where it still holds, the clip is not gone through: as a
-            whole if all it was read from is as it was, and but for which regions are the markers' if only
-            these are expected elsewhere and that changes nothing of the colors learned.
+        clip: The footage.
+        styles: The markers.
+        expected: Expected regions of the markers; optional.
+        with_album: Whether pictures are kept.
+        kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
+            if only the expected regions differ and the colors would be learned alike, its detections are
+            assigned to the markers anew.
 
     Yields:
         The fraction done, from 0 to 1.
 
     Returns:
-        The same, to the last digit, as without what was kept.
+        The reading, to the last digit the same as without a cached one.
 
     Raises:
-        InputError: nothing is to be seen in the clip, a marker's color matches nothing, or a frame cannot be
-            read.
+        InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
     """
     yield 0.0
     key = reading_key(clip.path, clip.fps, styles, expected)
@@ -49,18 +48,20 @@ def read_clip(
         kept = kept if with_album else replace(kept, album=None)
         if kept.key == key:
             return kept
-        seen = kept.sightings
-        if seen is not None and of_same_footage(kept.key, key) and still_hold(seen, styles, expected):
-            return replace(kept, tracks=tell_markers(seen, styles, expected), key=key)
-    album, watch = Album() if with_album else None, FrameWatch()
+        seen = kept.detections
+        if seen is not None and of_same_footage(kept.key, key) and still_valid(seen, styles, expected):
+            return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
+    album, checks = Album() if with_album else None, FrameChecks()
     try:
-        seen = yield from sight_markers(watched(clip, watch, album), styles, expected)
+        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected)
     except InputError as error:
-        why = watch.nothing_seen()
+        why = checks.nothing_seen()
         if why is not None:
             raise InputError(f"{clip.path}: {why}") from error
         if clip.notes:
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
     yield 1.0
-    return Reading(tell_markers(seen, styles, expected), album, seen, key=key, noticed=watch.noticed())
+    return Reading(
+        assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
+    )

@@ -1,4 +1,4 @@
-"""By what a reading is known again: the clip, the markers looked for, and where they were expected."""
+"""Cache key of a reading: a digest of the clip, the markers and their expected regions."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,9 +10,9 @@ from .marker_style import MarkerStyle
 from .region_tracks import ExpectedRegions
 
 FORMAT = 2
-"""Raised whenever a clip is read in another way, or kept in another form."""
+"""Version of the reading's algorithm and arrays; raised whenever either changes."""
 MOST_SAMPLED = 24
-"""Of a folder of more images, this many, evenly spread, are looked into."""
+"""Images of a longer sequence whose content is hashed, evenly spread."""
 PREFIX = "reading"
 
 
@@ -22,39 +22,39 @@ def reading_key(
     styles: Sequence[MarkerStyle],
     expected: ExpectedRegions | None,
 ) -> str:
-    """Return a key that changes with everything a reading depends on.
+    """Cache key that changes with everything a reading depends on.
 
     Args:
-        path: the clip, as `Clip.open` takes it.
-        fps: frames per second of an image sequence.
-        styles: the markers.
-        expected: where they are looked for first.
+        path: The clip, as `Clip.open` takes it.
+        fps: Frames per second of an image sequence.
+        styles: The markers.
+        expected: Their expected regions.
 
     Raises:
-        InputError: the clip is not there or cannot be read.
+        InputError: The clip is missing or cannot be read.
     """
     try:
         footage = _footage(path, fps)
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
-    places = None if expected is None else (expected.center, expected.radius)
-    return f"{PREFIX}-{digest(FORMAT, footage, wanted)}-{digest(places)}"
+    regions = None if expected is None else (expected.center, expected.radius)
+    return f"{PREFIX}-{digest(FORMAT, footage, wanted)}-{digest(regions)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:
-    """Tell whether two keys differ only in where the markers were expected."""
+    """Whether two keys differ at most in the markers' expected regions."""
     return bool(key) and key.rpartition("-")[0] == other.rpartition("-")[0]
 
 
 def footage_digest(path: Path) -> str:
-    """Return a digest that changes with a clip's file, or any image of a sequence, wherever it lies.
+    """Digest of a clip's file, or of the images of a sequence, independent of their folder.
 
     Args:
-        path: the clip, as `Clip.open` takes it.
+        path: The clip, as `Clip.open` takes it.
 
     Raises:
-        InputError: the clip is not there or cannot be read.
+        InputError: The clip is missing or cannot be read.
     """
     try:
         return digest(*_footage(path, 0.0))

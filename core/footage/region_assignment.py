@@ -1,37 +1,37 @@
-"""Which of the regions of its color are each marker's: what extraction and a look at samples share."""
+"""Assignment of detected regions to markers, for tracking and for the marker check."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IntArray
-from .association import Candidates, region_costs, rivals_costs, still_clutter, typical_area
-from .pieces import OwnRegion, join_pieces
+from .association import Candidates, region_costs, rival_costs, static_clutter, typical_area
+from .region_fragments import MarkerRegion, join_fragments
 from .region_tracks import ExpectedRegions
 from .segmentation.moments import centroid_and_second_moment
 
-DEAREST_PIECE = 10.0
-"""Highest cost of what is taken for a piece of a marker."""
+HIGHEST_FRAGMENT_COST = 10.0
+"""Highest cost of a region that counts as a fragment of a marker."""
 
 
-def own_regions(
+def assign_regions(
     found: Sequence[Candidates],
     groups: Sequence[Sequence[int]],
     expected: ExpectedRegions | None,
     choose: Callable[[Candidates, Array, float], IntArray],
-) -> dict[int, OwnRegion]:
-    """Return what is each marker's in every frame, by the marker's index.
+) -> dict[int, MarkerRegion]:
+    """Assign regions to markers in every frame; return each marker's by its index.
 
     Args:
-        found: of each color, its regions.
-        groups: of each color, the markers that bear it.
-        expected: where the markers are expected.
-        choose: from a color's regions, their costs (N,) and the marker's length in px, the index of its main
-            region in each frame, (F,); -1 where it is hidden.
+        found: The regions of each color.
+        groups: The markers of each color.
+        expected: Expected regions of the markers.
+        choose: Function of a color's regions, their costs (N,) and the marker's length in px that gives the
+            index of its main region in each frame (F,), -1 where it is hidden.
     """
     alone = [len(group) == 1 for group in groups]
     clutter = [
-        still_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        static_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
         for one, single in zip(found, alone, strict=True)
     ]
     usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
@@ -43,15 +43,15 @@ def own_regions(
         taken = np.zeros(len(one.frame), dtype=np.bool_)
         for marker in group:
             cost = region_costs(one, clutter[color], usual[color], expected, marker)
-            cost += rivals_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            cost += rival_costs(one, taken, expected, marker, [other for other in group if other != marker])
             path = choose(one, cost, length)
-            own[marker] = join_pieces(one, path, cost, reach, DEAREST_PIECE)
+            own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
             taken[path[path >= 0]] = True
     return own
 
 
 def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
-    """Return the marker's length in px: the long axis of regions of the usual size."""
+    """The marker's length in px: the long axis of regions of the usual size."""
     full = ~clutter & (found.area >= 0.7 * usual_area)
     if not full.any():
         return 1.0

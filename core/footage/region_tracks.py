@@ -1,4 +1,4 @@
-"""What the extraction hands on: every marker's region in every frame, and where regions are expected."""
+"""Tracks of the markers' image regions, and the regions expected beforehand."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -21,22 +21,21 @@ class RegionTracks:
     area: Array
     """(F, M) px."""
     quality: Array
-    """(F, M) in 0..1; how far the region can be trusted to be the whole marker and nothing else, 0 where
-    the marker is hidden."""
+    """(F, M) in 0..1; confidence that the region is the whole marker and nothing else, 0 where hidden."""
     clipped: BoolArray
-    """(F, M), whether the region touches the image's border."""
+    """(F, M) whether the region touches the image's border."""
     time_s: Array
     """(F,) time stamps of the frames in seconds, from the first frame."""
     size: tuple[int, int]
     """Width and height of the image in px."""
     notes: tuple[str, ...] = ()
-    """Sentences on what may be wrong with the tracks."""
+    """Sentences on possible faults of the tracks."""
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.
 
         Raises:
-            ValueError: shapes disagree.
+            ValueError: Shapes disagree.
         """
         frames, markers = len(self.time_s), len(self.names)
         tails: dict[str, tuple[int, ...]] = {
@@ -58,7 +57,7 @@ class RegionTracks:
             object.__setattr__(self, field.name, array)
 
     def frame(self, index: int) -> "RegionTracks":
-        """Return the tracks of one frame alone, its time included."""
+        """The tracks of one frame, its time included."""
         rows = {
             field.name: getattr(self, field.name)[index : index + 1]
             for field in fields(self)
@@ -68,7 +67,7 @@ class RegionTracks:
 
     @property
     def visible(self) -> BoolArray:
-        """Whether each marker was found in each frame, (F, M)."""
+        """(F, M) whether each marker was detected in each frame."""
         return np.asarray(np.isfinite(self.centroid[..., 0]))
 
     @property
@@ -84,18 +83,18 @@ class RegionTracks:
 
 @dataclass(frozen=True, eq=False)
 class ExpectedRegions:
-    """Where each marker is expected, to tell it from clutter of like hue."""
+    """Expected region of each marker in each frame, to tell it from clutter of like hue."""
 
     center: Array
-    """(F, M, 2) px; NaN where nothing is known."""
+    """(F, M, 2) px; NaN where unknown."""
     radius: Array
-    """(F, M) px, a generous bound of how far the region's centroid may lie from there."""
+    """(F, M) px, a generous bound of the centroid's distance from the center."""
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies.
 
         Raises:
-            ValueError: shapes disagree.
+            ValueError: Shapes disagree.
         """
         center = np.array(self.center, dtype=np.float64)
         radius = np.array(self.radius, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The markers' regions in a single frame, where the clip as a whole has not been gone through."""
+"""The markers' regions in a single frame, without a pass over the clip."""
 
 from collections.abc import Sequence
 
@@ -7,10 +7,10 @@ import numpy as np
 from ..errors import InputError
 from .clips.clip import Clip
 from .clips.frame_reader import FrameReader
-from .colors.clip_colors import ClipColors
-from .detections import Sightings
+from .colors.streaming_color_learning import StreamingColorLearner
+from .detections import Detections
 from .marker_style import MarkerStyle
-from .markers import tell_markers
+from .markers import assign_detections
 from .region_tracks import ExpectedRegions, RegionTracks
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
@@ -21,26 +21,26 @@ SAMPLED_FRAMES = 12
 def regions_of_frame(
     clip: Clip, time_s: float, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Find the markers in one frame, by colors learned from frames spread over the clip.
+    """Detect the markers in one frame, by colors learned from frames spread over the clip.
 
     Args:
-        clip: the footage.
-        time_s: time of the frame in seconds from the first.
-        styles: the markers, M of them, in the order of the result.
-        expected: where each is expected in this frame, (1, M); it tells a marker from clutter of its color.
+        clip: The footage.
+        time_s: Time of the frame in seconds from the first.
+        styles: The markers, M of them, in the order of the result.
+        expected: Expected regions in this frame, (1, M), which tell markers from clutter of their colors.
 
     Returns:
         Tracks of one frame.
 
     Raises:
-        InputError: a marker's color matches nothing in the clip, or there is no such frame.
+        InputError: A marker's color matches nothing in the clip, or there is no such frame.
     """
     image = FrameReader(clip).image_at(time_s)
     if image is None:
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
-    colors = ClipColors(clip.path, clip.size, styles)
+    colors = StreamingColorLearner(clip.path, clip.size, styles)
     colors.learn([measuring_image(sample, times) for _, sample in clip.sample(SAMPLED_FRAMES)])
     colors.check_found()
     regions = find_regions([image], times, colors.model)
-    return tell_markers(Sightings(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)
+    return assign_detections(Detections(tuple(regions), np.zeros(1), clip.size, (), {}), styles, expected)

@@ -1,1 +1,1 @@
-"""Keyframe libraries: named postures with their order and timing, kept as files and shared."""
+"""Keyframe libraries: named postures with their order and timing, as files to share."""

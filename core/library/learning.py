@@ -1,44 +1,44 @@
-"""A library from a finished motion: its postures at spread-out, distinct frames, as libraries keep them."""
+"""Learning a library from a finished motion: its postures at distinct frames, spread over shape and time."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import about_up
+from ..body.heading import headings_rad, turned_and_shifted, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
 from .cycles import average_cycle, find_period_s
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .posture_shape import ankle_heights, headings_rad, moved, shapes
+from .posture_shape import ankle_heights, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
 FEWEST, MOST = 10, 40
-"""Postures of a library, where nobody says how many."""
+"""Default bounds of the number of postures."""
 DISTINCT_M = 0.06
-"""Further postures are taken until every frame is this near to one of them in shape."""
+"""Postures are added until every frame is this near to one of them in shape."""
 TIME_SHARE = 0.5
-"""How much even coverage in time counts beside distance in shape."""
+"""Weight of even coverage in time relative to distance in shape."""
 STILL_M = 0.01
-"""A motion that never leaves its first shape this far has one posture only."""
+"""Largest change in shape of a motion that counts as standing still."""
 SLOW_M_S = 0.15
-"""The lower foot rests on the floor while its ankle rises and sinks slower than this."""
+"""Vertical speed of the lower ankle below which its foot rests on the floor."""
 LIFTED_M = 0.08
-"""A foot this far above the other is lifted."""
+"""Height of a foot above the other from which it counts as lifted."""
 DECIMALS_S = 3
 
 
 @dataclass(frozen=True)
-class About:
-    """What a library says of itself."""
+class LibraryMetadata:
+    """Title, author, license and other metadata of a library."""
 
     title: str
     author: str
     license: str = "LicenseRef-Proprietary"
-    """SPDX expression; by default nobody is given leave for anything."""
+    """SPDX expression; by default all rights are reserved."""
     identifier: str = ""
-    """By default made of the title."""
+    """By default derived from the title."""
     version: int = 1
     description: str = ""
     sources: tuple[str, ...] = ()
@@ -46,29 +46,29 @@ class About:
 
 
 def learn_library(
-    body: Body, posture: Posture, time_s: Array, about: About, count: int | None = None
+    body: Body, posture: Posture, time_s: Array, about: LibraryMetadata, count: int | None = None
 ) -> Library:
     """Turn a finished motion into a library of one motion.
 
-    A motion that repeats itself becomes one cycle, the average of those seen; any other stays whole.
+    A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
 
     Args:
-        body: The performer, whose proportions the library keeps.
+        body: The performer; the library keeps the proportions.
         posture: A batch of F postures.
         time_s: (F,) rising times [s].
         about: Title, author and license.
-        count: How many postures; by default 10 to 40, as many as differ.
+        count: Number of postures; by default as many as are distinct, from 10 to 40.
 
     Raises:
-        InputError: The motion is shorter than the postures asked for, or stands still.
+        InputError: The motion has fewer frames than the postures asked for, or stands still.
     """
     frames = len(time_s)
     fewest = 2 if count is None else count
     if count is not None and not 2 <= count <= 1000:
         raise InputError(f"the count of postures is {count}; 2 to 1000 are valid")
     if frames < fewest:
-        raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest}")
-    shape = shapes(body, posture)
+        raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest} frames")
+    shape = shape_vectors(body, posture)
     if np.linalg.norm(shape - shape[0], axis=1).max() < STILL_M:
         raise InputError("the motion stands still; a library needs postures that differ")
     posture = on_floor(body, posture, time_s)
@@ -81,9 +81,11 @@ def learn_library(
         cycle = average_cycle(body, posture, time_s, period_s)
         posture, time_s, duration_s, travel = cycle.posture, cycle.time_s, cycle.duration_s, cycle.travel
     turn = -_straight_ahead(posture)
-    shift = moved(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
-    posture = moved(posture, turn, shift)
-    chosen = spread_frames(shapes(body, posture), time_s, duration_s, count, cyclic=period_s is not None)
+    shift = turned_and_shifted(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
+    posture = turned_and_shifted(posture, turn, shift)
+    chosen = spread_frames(
+        shape_vectors(body, posture), time_s, duration_s, count, cyclic=period_s is not None
+    )
     names = _names(about.title, len(chosen))
     tags = _tags(body, posture[chosen])
     motion = LibraryMotion(
@@ -115,23 +117,23 @@ def learn_library(
 
 
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
-    """The motion, F frames at times (F,) [s], with the floor, where its lower foot usually rests, at 0."""
+    """Shift a motion of F frames at times (F,) [s] so that its floor, where the lower foot rests, is at 0."""
     lower = ankle_heights(body, posture).min(axis=-1)
     slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
-    return moved(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
+    return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
 
 
 def spread_frames(
     shape: Array, time_s: Array, duration_s: float, count: int | None, *, cyclic: bool
 ) -> IndexArray:
-    """Frames spread out in shape and in time: each next one is the furthest from all chosen.
+    """Frames spread over shape and time by farthest point sampling.
 
     Args:
         shape: (F, N) the body's shape in each frame [m].
-        time_s: (F,) from 0, rising [s].
-        duration_s: Of the motion [s].
-        count: How many; by default as many as differ, of 10 to 40.
+        time_s: (F,) times from 0, rising [s].
+        duration_s: Duration of the motion [s].
+        count: Number of frames; by default as many as are distinct, from 10 to 40.
         cyclic: Whether the first frame follows the last; else both are chosen.
 
     Returns:
@@ -165,14 +167,14 @@ def spread_frames(
 
 
 def _typical_change(shape: Array, time_s: Array, duration_s: float) -> float:
-    """How far the shape usually changes in a tenth of the motion [m]."""
+    """Mean change of the shape in a tenth of the motion [m]."""
     step = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
     step = min(step, len(shape) - 1)
     return float(np.linalg.norm(shape[step:] - shape[:-step], axis=1).mean())
 
 
 def _straight_ahead(posture: Posture) -> float:
-    """The heading that is straight ahead: the mean of all, or the first where they face all round [rad]."""
+    """The heading that counts as straight ahead [rad]: the mean, or the first where headings go all round."""
     heading = headings_rad(posture)
     x, y = np.sin(heading).mean(), np.cos(heading).mean()
     return float(np.arctan2(x, y)) if np.hypot(x, y) > 0.5 else float(heading[0])
@@ -181,10 +183,10 @@ def _straight_ahead(posture: Posture) -> float:
 def _turned_travel(
     travel: tuple[float, float, float], turn: float, shift: Array
 ) -> tuple[float, float, float]:
-    """A cycle's travel, given for the world, as it is for postures that were turned and shifted."""
+    """A cycle's travel in the world, converted for postures that were turned and shifted."""
     x, y, heading = travel
-    step = about_up(turn) @ np.array([x, y, 0.0])
-    onward = step + shift - about_up(heading) @ shift
+    step = yaw_rotation(turn) @ np.array([x, y, 0.0])
+    onward = step + shift - yaw_rotation(heading) @ shift
     return float(onward[0]), float(onward[1]), heading
 
 
@@ -195,7 +197,7 @@ def _names(title: str, count: int) -> list[str]:
 
 
 def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
-    """For each posture which foot is lifted, if one is."""
+    """Tags of each posture: the lifted foot, if any."""
     left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
     words = np.select(
         [left - right > LIFTED_M, right - left > LIFTED_M], ["left foot up", "right foot up"], ""

@@ -1,4 +1,4 @@
-"""A keyframe library: named postures, and the motions that lead through them."""
+"""A keyframe library: named postures, and motions as timed sequences of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ Travel = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class LibraryPosture:
-    """A posture with a name."""
+    """A named posture."""
 
     name: str
     """Unique within its library."""
     posture: Posture
-    """A single posture of the library's actor. The floor is z = 0, and facing -Y is straight ahead; places on
-    the floor count within a motion only."""
+    """A single posture of the library's actor. The floor is z = 0, and facing -Y is straight ahead;
+    positions on the floor count within a motion only."""
     tags: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class MotionStep:
-    """A posture's place in a motion."""
+    """A step of a motion: a posture and its time."""
 
     posture: str
     """The posture's name."""
@@ -35,16 +35,16 @@ class MotionStep:
 
 @dataclass(frozen=True)
 class LibraryMotion:
-    """A usual way through postures of a library, at a typical speed."""
+    """A typical sequence of a library's postures, at a typical speed."""
 
     name: str
     steps: tuple[MotionStep, ...]
-    """In order of time; the first is at 0. A posture may come again."""
+    """In order of time; the first is at 0. A posture may occur several times."""
     duration_s: float
-    """Time of the whole motion; where it is cyclic, until the first posture comes again [s]."""
+    """Duration of the whole motion, of a cyclic one its period [s]."""
     cyclic: bool = False
     travel: Travel = (0.0, 0.0, 0.0)
-    """What a cycle adds to the place: along x and y [m], and to the heading, about Z [rad]."""
+    """Displacement of a cycle along x and y [m], and its turn about Z [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,25 +52,25 @@ class Library:
     """Postures of one kind of motion."""
 
     identifier: str
-    """What it is known by wherever it is copied: lower-case letters, digits, dots, hyphens, underscores."""
+    """The same in every copy: lower-case letters, digits, dots, hyphens, underscores."""
     title: str
     version: int
-    """Grows with every change that is published."""
+    """Raised with every published change."""
     author: str
     license: str
-    """SPDX expression, as in `CC0-1.0`."""
+    """SPDX expression such as `CC0-1.0`."""
     actor: Actor
-    """The proportions that the postures were posed on."""
+    """The proportions of the postures' performer."""
     postures: tuple[LibraryPosture, ...]
     motions: tuple[LibraryMotion, ...] = ()
     description: str = ""
     sources: tuple[str, ...] = ()
-    """Literature and whatever else the postures are drawn from."""
+    """Literature and other sources of the postures."""
     tags: tuple[str, ...] = ()
 
     @property
     def size(self) -> str:
-        """How many postures and motions, in words."""
+        """Numbers of postures and motions, in words."""
         return f"{pluralize(len(self.postures), 'posture')}, {pluralize(len(self.motions), 'motion')}"
 
     @cached_property

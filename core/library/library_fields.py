@@ -1,4 +1,4 @@
-"""The fields of a library file, checked one by one: each mistake becomes one sentence."""
+"""Validation of a library file's fields: each mistake is an `InputError` of one sentence."""
 
 import re
 from collections.abc import Sequence
@@ -13,12 +13,12 @@ from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .texts import LONGEST_NAME, checked_identifier, name_key, text_fault
 
 MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000
-"""Steps of all motions together."""
+"""Most steps in all motions together."""
 MOST_TAGS, MOST_SOURCES = 30, 100
 LONGEST_TAG, LONGEST_LICENSE, LONGEST_LINE, LONGEST_TEXT = 40, 100, 200, 2000
 FARTHEST_M = 100.0
 SHORTEST_S, LONGEST_S = 0.001, 600.0
-"""Of a motion: a shorter one would come again without end between two frames."""
+"""Bounds of a motion's duration: a shorter cycle would repeat without end between two frames."""
 HIGHEST_VERSION = 10**6
 SPDX = re.compile(r"[A-Za-z0-9.+:() -]+", re.ASCII)
 HEADER = (
@@ -28,10 +28,10 @@ HEADER = (
 
 
 def read_library_fields(fields: Fields, skeleton: Skeleton) -> Library:
-    """A library from the fields of its file.
+    """Read a library from the fields of its file.
 
     Raises:
-        InputError: A field is missing, unknown, or not what it must be.
+        InputError: A field is missing, unknown or invalid.
     """
     fields.refuse_others(HEADER)
     identifier = fields.required("identifier", "the library's identifier")
@@ -65,10 +65,10 @@ def _lines(fields: Fields, name: str, most: int, longest: int) -> tuple[str, ...
     if name not in fields.values:
         return ()
     lines = []
-    for place, text in enumerate(_list(fields, name, "texts", 0, most)):
+    for index, text in enumerate(_list(fields, name, "texts", 0, most)):
         fault = text_fault(text, longest)
         if fault:
-            raise InputError(f"{fields.where}: {name}[{place}] is {shown(text)}; it {fault}")
+            raise InputError(f"{fields.where}: {name}[{index}] is {shown(text)}; it {fault}")
         lines.append(str(text))
     return tuple(lines)
 
@@ -85,7 +85,7 @@ def _list(fields: Fields, name: str, of_what: str, least: int, most: int) -> lis
 
 def _rows(fields: Fields, name: str, of_what: str, least: int, most: int) -> list[Fields]:
     items = _list(fields, name, of_what, least, most)
-    return [Fields.of(item, f"{fields.where}: {name}[{place}]") for place, item in enumerate(items)]
+    return [Fields.of(item, f"{fields.where}: {name}[{index}]") for index, item in enumerate(items)]
 
 
 def _license(fields: Fields) -> str:
@@ -186,7 +186,7 @@ def _travel(row: Fields, cyclic: bool) -> Travel:
 
 
 def _refuse_alike(fields: Fields, what: str, names: Sequence[str]) -> None:
-    """Refuse names that people, or file systems, would take for the same."""
+    """Refuse names that people, or file systems, cannot tell apart."""
     seen: dict[str, str] = {}
     for name in names:
         key = name_key(name)

@@ -1,6 +1,6 @@
-"""Library files: one JSON object, readable by people, and never trusted.
+"""Library files: one JSON object, readable by people and validated as untrusted input.
 
-`docs/library_format.md` describes the fields. Whatever is written can be read, and then gives the same bytes.
+`docs/library_format.md` describes the fields. Writing a library that was read gives the same bytes.
 """
 
 import json
@@ -29,7 +29,7 @@ def read_library(path: Path) -> Library:
     """Read a library file.
 
     Raises:
-        InputError: The file is missing or no library, or something in it is not what it must be.
+        InputError: The file is missing, no library, or invalid.
     """
     return library_from_json(read_json(path, LARGEST_BYTES), str(path))
 
@@ -38,7 +38,7 @@ def write_library(path: Path, library: Library) -> None:
     """Write a library file, whole or not at all.
 
     Raises:
-        InputError: The library is none that could be read back.
+        InputError: The library is invalid and could not be read back.
         ConversionError: The file cannot be written.
     """
     value = library_to_json(library)
@@ -47,10 +47,10 @@ def write_library(path: Path, library: Library) -> None:
 
 
 def library_from_json(value: Any, where: str) -> Library:
-    """The library that `library_to_json` wrote, or that a stranger pretends to have written.
+    """Read a library from JSON that is not trusted; the inverse of `library_to_json`.
 
     Raises:
-        InputError: Something is not what it must be; `where` begins the sentence.
+        InputError: The JSON is no valid library; `where` begins the sentence.
     """
     fields = Fields.of(value, where)
     schema = fields.values.get("schema")
@@ -61,7 +61,7 @@ def library_from_json(value: Any, where: str) -> Library:
 
 
 def library_to_json(library: Library) -> dict[str, Any]:
-    """A library as what `json` can write, its fields in the order of the file; what is empty is left out."""
+    """A library as a JSON object, its fields in the order of the file, without empty ones."""
     value: dict[str, Any] = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
@@ -81,7 +81,7 @@ def library_to_json(library: Library) -> dict[str, Any]:
 
 
 def library_digest(library: Library) -> str:
-    """A digest of what a library holds, wherever its file lies and however that is laid out."""
+    """Digest of a library's content, whatever the path and the layout of its file."""
     return digest(json.dumps(library_to_json(library), sort_keys=True))
 
 

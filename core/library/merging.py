@@ -1,6 +1,6 @@
-"""What to do with two libraries of one name, or two that shall become one: nothing is overwritten silently.
+"""Comparing, merging and joining libraries; a conflict is never resolved silently.
 
-Names count as the same where people could not tell them apart.
+Names are equal where people could not tell them apart.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -14,47 +14,47 @@ from ..files.fields import listed
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .library_file import library_to_json
-from .texts import checked_identifier, name_key, told_apart
-from .transfer import applied
+from .texts import checked_identifier, name_key, unique_name
+from .transfer import transferred
 
 
 class Choice(Enum):
-    """What shall become of something that both have, and that differs."""
+    """Resolution of a conflict between two versions."""
 
     KEEP = "keep"
     """Mine stays."""
     REPLACE = "replace"
-    """Theirs takes its place."""
+    """Theirs replaces it."""
 
 
 Entry = TypeVar("Entry", bound=LibraryPosture | LibraryMotion)
 Choices = Choice | Mapping[str, Choice] | None
-"""One for all, by name of the posture or motion, or none: then a conflict is an error."""
+"""One for all, or by name of the posture or motion; without one a conflict is an error."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """How a library that is offered differs from one that is there, both of the same identifier."""
+    """Differences of another version of a library (theirs) from the present one (mine)."""
 
     newer: bool
-    """Whether the version offered is a later one."""
+    """Whether theirs has the higher version."""
     header: bool
     """Whether title, version, author, license, description, sources, tags or proportions differ."""
     added: tuple[str, ...]
-    """Postures and motions that only the library offered has."""
+    """Names of the postures and motions in theirs alone."""
     missing: tuple[str, ...]
-    """Those that only the one that is there has."""
+    """Those in mine alone."""
     changed: tuple[str, ...]
-    """Those that both have, and that differ."""
+    """Those in both that differ."""
 
     @property
     def same(self) -> bool:
-        """Whether there is nothing to do."""
+        """Whether both are equal."""
         return not (self.header or self.added or self.missing or self.changed)
 
 
 def compare(mine: Library, theirs: Library) -> Comparison:
-    """How the library offered differs from the one that is there.
+    """Compare two versions of a library.
 
     Raises:
         InputError: They have different identifiers.
@@ -72,32 +72,32 @@ def compare(mine: Library, theirs: Library) -> Comparison:
     )
 
 
-def chosen(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
-    """One of two libraries of the same identifier, as a whole: mine where they are equal.
+def choose_version(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
+    """Choose one of two versions of a library as a whole; mine where they are equal.
 
     Raises:
-        InputError: They differ and no choice is made, or they have different identifiers.
+        InputError: They differ and `choice` is None, or they have different identifiers.
     """
     if compare(mine, theirs).same or choice is Choice.KEEP:
         return mine
     if choice is Choice.REPLACE:
         return theirs
     raise InputError(
-        f"library {shown(mine.identifier)} is there in version {mine.version} and differs from version "
-        f"{theirs.version}, which is offered; say whether to keep the one or to replace it by the other"
+        f"library {shown(mine.identifier)} is present in version {mine.version} and differs from the offered "
+        f"version {theirs.version}; choose whether to keep the present one or to replace it"
     )
 
 
-def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
-    """Both libraries in one: what only theirs has is added to mine, fitted to my actor's proportions.
+def merge_versions(mine: Library, theirs: Library, choices: Choices = None) -> Library:
+    """Merge two versions of a library: theirs is fitted to my actor's proportions and added to mine.
 
-    The header is that of the later version. The result's version is one later than both, unless it equals one
+    The header is that of the higher version. The result's version is one above both, unless it equals one
     of them.
 
     Args:
-        mine: The library that is there.
-        theirs: One of the same identifier.
-        choices: What to do with postures and motions that both have and that differ.
+        mine: The present library.
+        theirs: Another one of the same identifier.
+        choices: Resolution of postures and motions that are in both and differ.
 
     Raises:
         InputError: A choice is missing, or the libraries have different identifiers.
@@ -108,7 +108,7 @@ def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     if undecided:
         raise InputError(
             f"library {shown(mine.identifier)}: {listed(map(shown, undecided), 5)} differ between version "
-            f"{mine.version} and version {theirs.version}; say for each which to keep"
+            f"{mine.version} and version {theirs.version}; choose for each which to keep"
         )
 
     def pick(name: str) -> bool:
@@ -127,14 +127,14 @@ def merged(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     return replace(whole, version=max(mine.version, theirs.version) + 1)
 
 
-def joined(first: Library, second: Library, identifier: str, title: str) -> Library:
-    """A new library with everything of two others, on the proportions of the first.
+def join_libraries(first: Library, second: Library, identifier: str, title: str) -> Library:
+    """Join two libraries to a new one with the content of both, on the proportions of the first.
 
-    What has the same name in both is told apart by a number, unless it is the same. Author, license, sources
-    and tags of both are named.
+    Different postures or motions of the same name get a number. Authors, licenses, sources and tags of both
+    are listed.
 
     Raises:
-        InputError: The identifier is none.
+        InputError: The identifier is invalid.
     """
     fitted = _fitted(second, first)
     rows, others = _rows(first), _rows(fitted)
@@ -146,12 +146,12 @@ def joined(first: Library, second: Library, identifier: str, title: str) -> Libr
             names[name_key(posture.name)] = rows[key][0]
             continue
         taken = [entry.name for entry in (*postures, *fitted.postures) if entry is not posture]
-        name = told_apart(posture.name, taken)
+        name = unique_name(posture.name, taken)
         names[name_key(posture.name)] = name
         postures.append(replace(posture, name=name))
     for motion in _respelled(fitted.motions, names):
         if not any(replace(old, name="") == replace(motion, name="") for old in first.motions):
-            motions.append(replace(motion, name=told_apart(motion.name, [entry.name for entry in motions])))
+            motions.append(replace(motion, name=unique_name(motion.name, [entry.name for entry in motions])))
     return Library(
         identifier=checked_identifier(identifier, "the identifier of the new library"),
         title=title,
@@ -168,7 +168,7 @@ def joined(first: Library, second: Library, identifier: str, title: str) -> Libr
 
 
 def _both_licenses(first: str, second: str) -> str:
-    """The SPDX expression of something that is under both."""
+    """SPDX expression of a work under both licenses."""
     if first == second:
         return first
     return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
@@ -177,22 +177,22 @@ def _both_licenses(first: str, second: str) -> str:
 def _refuse_others(mine: Library, theirs: Library) -> None:
     if mine.identifier != theirs.identifier:
         raise InputError(
-            f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} are different ones, and stay "
-            "side by side; join them to a new one to have both in one"
+            f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} have different identifiers "
+            "and cannot be merged; join them to a new library instead"
         )
 
 
 def _fitted(library: Library, other: Library) -> Library:
-    """A library on the proportions of another."""
+    """A library transferred to the proportions of another."""
     body = Body(other.actor)
     postures = tuple(
-        replace(entry, posture=applied(entry, library.actor, body)) for entry in library.postures
+        replace(entry, posture=transferred(entry, library.actor, body)) for entry in library.postures
     )
     return replace(library, actor=other.actor, postures=postures)
 
 
 def _rows(library: Library) -> dict[tuple[str, str], tuple[str, Any]]:
-    """Name and contents of every posture and motion, as a file has them, by what makes names the same."""
+    """Name and JSON content of every posture and motion, by kind and `name_key`."""
     value = library_to_json(library)
     rows: dict[tuple[str, str], tuple[str, Any]] = {}
     for kind in ("posture", "motion"):
@@ -214,7 +214,7 @@ def _choice(choices: Choices, name: str) -> Choice | None:
 
 
 def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: Callable[[str], bool]) -> list[Entry]:
-    """Mine in their order, then what only theirs have."""
+    """The union: mine in their order, then those in theirs alone."""
     offered = {name_key(entry.name): entry for entry in theirs}
     kept = [offered.get(name_key(own.name), own) if replaces(own.name) else own for own in mine]
     there = {name_key(own.name) for own in mine}
@@ -222,7 +222,7 @@ def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: Callable[[
 
 
 def _respelled(motions: Sequence[LibraryMotion], names: Mapping[str, str]) -> list[LibraryMotion]:
-    """Motions whose steps name the postures as these are called now."""
+    """Motions with the postures of their steps renamed; `names` by `name_key`."""
     return [
         replace(
             motion,

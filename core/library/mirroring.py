@@ -1,4 +1,4 @@
-"""Libraries with left and right exchanged, or with both."""
+"""Mirrored libraries: left and right exchanged, or both sides in one."""
 
 import re
 from dataclasses import replace
@@ -10,29 +10,29 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
-from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, told_apart
+from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, unique_name
 from .transfer import SAME_M
 
 MIRRORED = "mirrored"
 _SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")
 _OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 ALIKE = 1e-6
-"""Meters, radians, and elements of rotation matrices."""
+"""Tolerance of equal postures: meters, radians, and elements of rotation matrices."""
 
 
 def mirrored_name(name: str) -> str:
-    """A name with the words left and right, or an L and R behind a dot or space, exchanged."""
+    """A name with the words left and right exchanged, or the letters L and R after a dot or space."""
     return _SIDE.sub(lambda found: _as_written(_OPPOSITE[found[0].lower()], found[0]), name)
 
 
 def mirrored_library(library: Library) -> Library:
-    """A library that shows everything on the other side, under an identifier and title of its own.
+    """The mirror image of a library, under an identifier and title of its own.
 
-    Mirrored twice it is the same again.
+    Mirroring twice gives the same library again.
     """
     names: dict[str, str] = {}
     for entry in library.postures:
-        names[entry.name] = told_apart(mirrored_name(entry.name)[:LONGEST_NAME].strip(), names.values())
+        names[entry.name] = unique_name(mirrored_name(entry.name)[:LONGEST_NAME].strip(), names.values())
     return replace(
         library,
         identifier=_marked(library.identifier, f"_{MIRRORED}", LONGEST_IDENTIFIER),
@@ -47,13 +47,13 @@ def mirrored_library(library: Library) -> Library:
 
 
 def with_mirrored(library: Library) -> Library:
-    """A library with the mirrored form of every posture and motion added that it lacks.
+    """A library extended by the mirror image of every posture and motion.
 
-    What looks the same in a mirror, or has its mirrored form among the others, is not added again. A name
-    without left or right gets `(mirrored)` behind it.
+    Symmetric ones, and those whose mirror image is in the library already, are not added. A name without left
+    or right gets the suffix `(mirrored)`.
 
     Raises:
-        InputError: The library's actor has sides of different lengths, whom mirrored postures do not fit.
+        InputError: The actor's left and right differ in length, so mirrored postures do not fit.
     """
     other = mirrored_actor(library.actor).segments_m
     if any(abs(other[name] - length) > SAME_M for name, length in library.actor.segments_m.items()):
@@ -71,14 +71,14 @@ def with_mirrored(library: Library) -> Library:
         if found is not None:
             twin = library.postures[found].name
         else:
-            twin = told_apart(_distinct(entry.name), [*taken, *(new.name for new in added)])
+            twin = unique_name(_distinct(entry.name), [*taken, *(new.name for new in added)])
             added.append(LibraryPosture(twin, opposite, entry.tags))
         names[entry.name] = twin
     motions: list[LibraryMotion] = list(library.motions)
     for motion in library.motions:
         twin_motion = _motion(motion, _distinct(motion.name), names)
-        if not any(_same_course(old, twin_motion) for old in library.motions):
-            title = told_apart(twin_motion.name, [old.name for old in motions])
+        if not any(_same_steps(old, twin_motion) for old in library.motions):
+            title = unique_name(twin_motion.name, [old.name for old in motions])
             motions.append(replace(twin_motion, name=title))
     return replace(library, postures=(*library.postures, *added), motions=tuple(motions))
 
@@ -90,13 +90,13 @@ def _as_written(word: str, example: str) -> str:
 
 
 def _distinct(name: str) -> str:
-    """The name of a mirrored thing beside the thing itself."""
+    """Name of a mirror image, different from the original's."""
     swapped = mirrored_name(name)
     return swapped if swapped != name else _marked(name, f" ({MIRRORED})", LONGEST_NAME)
 
 
 def _marked(text: str, mark: str, longest: int) -> str:
-    """The text with the mark behind it, or without where it has one."""
+    """The text with the suffix added, or removed where it has it."""
     return text.removesuffix(mark) if text.endswith(mark) else text[: longest - len(mark)].strip() + mark
 
 
@@ -109,7 +109,7 @@ def _motion(motion: LibraryMotion, name: str, names: dict[str, str]) -> LibraryM
 
 
 def _find(posture: Posture, among: Posture) -> int | None:
-    """Which of a batch looks the same, if any."""
+    """Index of an equal posture in a batch, if any."""
     far = [
         np.abs(getattr(among, name) - getattr(posture, name)).reshape(len(among.translation), -1).max(axis=1)
         for name in ("translation", "rotations", "angles")
@@ -118,6 +118,6 @@ def _find(posture: Posture, among: Posture) -> int | None:
     return int(alike[0]) if len(alike) else None
 
 
-def _same_course(first: LibraryMotion, second: LibraryMotion) -> bool:
-    """Whether two motions differ in name only."""
+def _same_steps(first: LibraryMotion, second: LibraryMotion) -> bool:
+    """Whether two motions are equal but for their names."""
     return replace(first, name="") == replace(second, name="")

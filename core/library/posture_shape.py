@@ -1,54 +1,33 @@
-"""Postures as they are compared: their shape, whatever place and heading they have, and these."""
+"""Shape of postures, independent of location and heading, for comparing them; and heights of the ankles."""
 
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import about_up, headed
+from ..body.heading import headings_rad, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 
 ANKLE_OVER_SOLE = 0.36
-"""Of the foot's length: as in the skeleton, whose feet's tips are on the floor when it stands."""
+"""Height of an ankle over flat soles, as a share of the foot's length; as in the standing skeleton."""
 
 
-def headings_rad(posture: Posture) -> Array:
-    """Turn (F,) about the vertical from facing -Y; that of the hips' line where the hips face up or down."""
-    hips = posture.rotations[..., 0, :, :]
-    ahead = np.arctan2(-hips[..., 0, 1], hips[..., 1, 1])
-    across = np.arctan2(hips[..., 1, 0], hips[..., 0, 0])
-    level = np.hypot(hips[..., 0, 1], hips[..., 1, 1])
-    return np.where(level > np.sqrt(0.5), ahead, across)
+def shape_vectors(body: Body, posture: Posture) -> Array:
+    """Shape vectors (F, 3 P); their distance is the root mean square distance of the points [m].
 
-
-def moved(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
-    """Postures turned about the world's vertical axis, then shifted.
-
-    Args:
-        posture: A batch of F.
-        angle_rad: (F,) or one angle.
-        shift: (F, 3) or (3,) [m].
-    """
-    place = (about_up(angle_rad) @ posture.translation[..., None])[..., 0] + shift
-    return headed(posture, angle_rad, place)
-
-
-def shapes(body: Body, posture: Posture) -> Array:
-    """The bodies' shapes (F, 3 P), as vectors whose distance is the points' mean square distance's root [m].
-
-    They are the points over the ground below the hips, the performer facing -Y.
+    They are the principal points relative to the ground below the hips, the performer facing -Y.
     """
     points = body.points(body.pose(posture))
     ground = posture.translation * [1.0, 1.0, 0.0]
-    turn = about_up(-headings_rad(posture))
+    turn = yaw_rotation(-headings_rad(posture))
     seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
     return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
 
 
 def ankle_heights(body: Body, posture: Posture) -> Array:
-    """How far (F, 2) the left and the right ankle lie above where those of feet flat on z = 0 lie [m].
+    """Heights (F, 2) of the left and the right ankle over those of feet flat on z = 0 [m].
 
-    That tells where the floor is, as soles do not: the skeleton's feet, rigid with the shins, point into the
+    Ankles tell the floor's height, as soles do not: the skeleton's feet, rigid with the shins, point into the
     floor at the end of a step.
     """
     points = body.points(body.pose(posture))

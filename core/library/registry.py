@@ -1,4 +1,4 @@
-"""Where libraries are found by name: folders of library files, those shipped with Keymark among them."""
+"""Library registry: the libraries in some folders, found by identifier, title or path."""
 
 import os
 from collections.abc import Sequence
@@ -17,45 +17,45 @@ SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
 """The libraries that come with Keymark."""
 ENDING = ".json"
 MOST_FILES = 500
-"""Of one folder; what lies beyond is not looked at."""
+"""Files read of one folder; further ones are ignored."""
 
 
 @dataclass(frozen=True)
-class Shelved:
-    """A file on the shelf."""
+class RegisteredLibrary:
+    """A library file in a registered folder."""
 
     path: Path
     library: Library | None
-    """What is in it; None where it cannot be used."""
+    """The library; None if the file is invalid."""
     problem: str = ""
-    """A sentence that says why it cannot be used."""
+    """The sentence of the error that makes it invalid."""
 
     @property
     def identifier(self) -> str:
-        """The library's identifier, or what of the file's name stands for it."""
+        """The library's identifier; the stem of an invalid file's name."""
         return self.library.identifier if self.library else self.path.stem
 
     @property
     def title(self) -> str:
-        """The library's title; the file's name where there is none."""
+        """The library's title; an invalid file's name."""
         return self.library.title if self.library else self.path.name
 
     @property
     def version(self) -> int:
-        """The library's version, 0 where there is none."""
+        """The library's version; 0 for an invalid file."""
         return self.library.version if self.library else 0
 
 
-def shelved(folders: Sequence[Path]) -> tuple[Shelved, ...]:
-    """Everything in some folders, in order of title; folders that are not there are empty.
+def registered_libraries(folders: Sequence[Path]) -> tuple[RegisteredLibrary, ...]:
+    """All library files in some folders, in order of title; missing folders count as empty.
 
-    Of several libraries with one identifier only that of the earliest folder is on the shelf, and within a
-    folder the one of the highest version; the rest can be reached by their files.
+    Of several libraries with one identifier only the one in the earliest folder is registered, and within a
+    folder the one of the highest version; the others are available by path only.
     """
-    found: dict[str, Shelved] = {}
-    broken: list[Shelved] = []
+    found: dict[str, RegisteredLibrary] = {}
+    broken: list[RegisteredLibrary] = []
     for folder in folders:
-        here: dict[str, Shelved] = {}
+        here: dict[str, RegisteredLibrary] = {}
         for path in _files(folder):
             entry = _read(path)
             if entry.library is None:
@@ -67,40 +67,40 @@ def shelved(folders: Sequence[Path]) -> tuple[Shelved, ...]:
 
 
 def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
-    """A library by its identifier or title, or by its file.
+    """Find a library by its identifier, title or path.
 
-    What ends in `.json`, or holds a `/` (or whatever parts folders on this system), is a file.
+    A name that ends in `.json` or contains a path separator is a path.
 
     Raises:
-        InputError: There is no such library, or it cannot be used.
+        InputError: There is no such library, or it is invalid.
     """
     text = os.fspath(name_or_path)
     parted = any(mark in text for mark in (os.sep, os.altsep, "/") if mark)
     if isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING):
         return read_library(Path(name_or_path))
-    shelf = shelved(folders)
+    registered = registered_libraries(folders)
     wanted = text.casefold()
-    called = [entry for entry in shelf if entry.identifier.casefold() == wanted]
-    titled = [entry for entry in shelf if entry.title.casefold() == wanted]
-    # What can be used counts first: a damaged file may have any name, and a stranger's library any title.
-    for entry in sorted([*called, *titled], key=lambda entry: entry.library is None):
+    by_identifier = [entry for entry in registered if entry.identifier.casefold() == wanted]
+    by_title = [entry for entry in registered if entry.title.casefold() == wanted]
+    # Valid libraries come first: a damaged file may have any name, and a stranger's library any title.
+    for entry in sorted([*by_identifier, *by_title], key=lambda entry: entry.library is None):
         if entry.library is None:
             raise InputError(entry.problem)
         return entry.library
-    names = [entry.identifier for entry in shelf if entry.library]
+    names = [entry.identifier for entry in registered if entry.library]
     close = get_close_matches(text[:100], names, n=1, cutoff=0.6)
     hint = f" (is {shown(close[0])} meant?)" if close else ""
     raise InputError(
         f"there is no keyframe library {shown(text)}{hint}; known are {listed(names) or 'none'}, "
-        "and a file ends in .json"
+        "and the path of a file ends in .json"
     )
 
 
 def library_path(folder: Path, identifier: str) -> Path:
-    """The file of a library in a folder: never outside of it.
+    """Path of a library's file in a folder, never outside of it.
 
     Raises:
-        InputError: The identifier is none.
+        InputError: The identifier is invalid.
     """
     return folder / (checked_identifier(identifier, "the library's identifier") + ENDING)
 
@@ -113,8 +113,8 @@ def _files(folder: Path) -> list[Path]:
     return sorted(files)[:MOST_FILES]
 
 
-def _read(path: Path) -> Shelved:
+def _read(path: Path) -> RegisteredLibrary:
     try:
-        return Shelved(path, read_library(path))
+        return RegisteredLibrary(path, read_library(path))
     except InputError as error:
-        return Shelved(path, None, str(error))
+        return RegisteredLibrary(path, None, str(error))

@@ -1,4 +1,4 @@
-"""Names and texts of a library: what may stand in them, wherever they come from."""
+"""Identifiers, names and texts of a library: which are valid, and which are equal."""
 
 import re
 import unicodedata
@@ -11,9 +11,9 @@ from ..files.json_file import shown
 
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60
-"""Characters; the name of a Blender data-block holds 63 bytes."""
+"""Characters of a name at most; the name of a Blender data-block holds 63 bytes."""
 EVERY_LIBRARY = "auto"
-"""Stands where a library is asked for, and means all of them; no library is called that."""
+"""Stands for all libraries where one is named; hence no valid identifier."""
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
     "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "
@@ -22,11 +22,11 @@ IDENTIFIER_RULE = (
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
 _FILE = re.compile(r".*\.json", re.ASCII)
-"""Where a library is named, this means a file."""
+"""A name like this is a path where a library is named."""
 
 
 def is_identifier(text: object) -> bool:
-    """Whether a text may be a library's identifier, and with `.json` the name of a file on every system."""
+    """Whether a text is a valid identifier; with `.json` it then is a valid file name on every system."""
     return (
         isinstance(text, str)
         and len(text) <= LONGEST_IDENTIFIER
@@ -38,10 +38,10 @@ def is_identifier(text: object) -> bool:
 
 
 def checked_identifier(text: object, what: str) -> str:
-    """A text that may be an identifier.
+    """The text, if it is a valid identifier.
 
     Raises:
-        InputError: It may not; `what` names it.
+        InputError: It is invalid; `what` names it in the sentence.
     """
     if not isinstance(text, str) or not is_identifier(text):
         raise InputError(f"{what} is {shown(text)}; it must have {IDENTIFIER_RULE}")
@@ -49,7 +49,7 @@ def checked_identifier(text: object, what: str) -> str:
 
 
 def identifier_from(title: str, taken: Iterable[str] = ()) -> str:
-    """An identifier that resembles a title and is none of those taken."""
+    """A valid identifier that resembles a title and is not taken."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode().lower()
     words = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[: LONGEST_IDENTIFIER - 4].strip("_") or "library"
     used = set(taken)
@@ -58,7 +58,7 @@ def identifier_from(title: str, taken: Iterable[str] = ()) -> str:
 
 
 def text_fault(text: object, longest: int) -> str:
-    """What is wrong with a line of text, to follow `it`; empty where nothing is."""
+    """Reason why a line of text is invalid, to follow the word "it"; empty for a valid one."""
     if not isinstance(text, str):
         return "must be a text"
     if len(text) > longest:
@@ -68,19 +68,19 @@ def text_fault(text: object, longest: int) -> str:
     if any(is_control_character(letter) for letter in text):
         return "must be one line of text without control characters"
     if not name_key(text):
-        return "must be a text in which something can be seen"
+        return "must be a text with visible characters"
     return ""
 
 
 @lru_cache(maxsize=4096)
 def name_key(name: str) -> str:
-    """What two names have in common that people cannot tell apart: by case, form, or hidden characters."""
+    """Key that is equal for names people cannot tell apart: by case, Unicode form or hidden characters."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
     return " ".join("".join(letter for letter in folded if not is_control_character(letter, "")).split())
 
 
-def told_apart(name: str, taken: Iterable[str]) -> str:
-    """The name, or with a number behind it where one that looks the same is taken."""
+def unique_name(name: str, taken: Iterable[str]) -> str:
+    """The name, with a number appended if one that looks the same is taken."""
     keys = {name_key(other) for other in taken}
     if name_key(name) not in keys:
         return name

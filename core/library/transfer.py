@@ -1,4 +1,4 @@
-"""A library's posture on an actor of other proportions."""
+"""Transfer of postures to an actor of other proportions."""
 
 import numpy as np
 
@@ -10,22 +10,22 @@ from ..body.soles import lower_sole_m
 from .library import LibraryPosture
 
 SAME_M = 1e-6
-"""Lengths that differ by less are the same; files keep fewer digits than memory does."""
+"""Lengths that differ by less are equal; files keep fewer digits than memory does."""
 
 
-def applied(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
-    """A posture with the same angles on another body, as high above the floor and as far along it.
+def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
+    """Transfer a posture to another body: the same joint angles, location and height scaled.
 
-    Heights and ways are scaled with the length of the legs. What counts as height is that of the lowest sole,
-    so that a foot that stood on the floor z = 0 stands on it again.
+    Both scale with the length of the legs. Height is that of the lowest sole, so that a foot on the floor
+    z = 0 stays on it.
 
     Args:
         posture: A posture of a library, or any posture or batch of them.
-        actor: Whom it was posed on: the library's actor.
-        body: Whom it shall fit.
+        actor: The actor it was posed on: the library's.
+        body: The body to transfer it to.
 
     Returns:
-        The very same posture where both have the same proportions.
+        The transferred posture; the very same object where both have the same proportions.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
     if _same(actor, body.actor):

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..body.body_volume import PieceStack
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.shapes import PieceStack
 from ..observation.regions import MarkerPlacement
 
 ACROSS = 1.0 / 3.0

@@ -12,8 +12,9 @@ from ..errors import InputError
 from ..files.digest import digest
 from ..footage.reading import Reading
 from ..library.library import Library
+from ..prior.keyframe_proposals import propose_keyframes
 from ..prior.keyframes import Keyframe, Matched
-from ..prior.marker_speed import marker_speed, propose_keyframes
+from ..prior.marker_speed import marker_speed
 from ..progress import Job, Progress, stretch, within
 from ..take.description import Description
 from ..take.read_footage import read_footage
@@ -171,7 +172,7 @@ def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Readin
     Without keyframes another thing of a marker's color may have been taken for it. A marker that is merely
     lost in the second reading keeps its first: an arm may do something that the library does not.
     """
-    if reading.sightings is None or match.fit > WELL_EXPLAINED:
+    if reading.detections is None or match.fit > WELL_EXPLAINED:
         return None
     matched = with_matches(replace(take, keyframes=()), match)
     again = yield from read_footage(matched, reading)

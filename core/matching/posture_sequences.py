@@ -16,8 +16,8 @@ from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion
-from ..library.motion_playback import course
-from ..library.transfer import applied
+from ..library.motion_playback import sample_motion
+from ..library.transfer import transferred
 
 STEP_M = 0.045
 """Mean distance of the points from one posture to the next: well below what performers differ by."""
@@ -155,7 +155,7 @@ def _sequences(library: Library, body: Body, spacing: float) -> Iterator[Posture
     for loose in library.postures:
         if loose.name in used:
             continue
-        posture = Posture.stack([applied(loose, library.actor, body)])
+        posture = Posture.stack([transferred(loose, library.actor, body)])
         single = PostureSequence(posture, (loose.name,), False, 0.0, False, np.zeros((1, 2)), 0.0, "")
         yield single
         mirror_image = _mirrored(single)
@@ -167,7 +167,7 @@ def _sequence(library: Library, motion: LibraryMotion, body: Body, spacing: floa
     """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
     whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
     fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
-    posture = course(library, motion, body, fine)
+    posture = sample_motion(library, motion, body, fine)
     points = body.points(body.pose(posture)) - posture.translation[:, None]
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
     rate = np.clip(length / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
@@ -179,11 +179,11 @@ def _sequence(library: Library, motion: LibraryMotion, body: Body, spacing: floa
     if motion.cyclic:
         away = np.minimum(away, whole - away)
     names = tuple(motion.steps[int(i)].posture for i in away.argmin(axis=1))
-    sampled = course(library, motion, body, time)
+    sampled = sample_motion(library, motion, body, time)
     ground_path_m = sampled.translation[:, :2]
     if motion.cyclic:
         around = step * np.arange(-count, 2 * count)
-        ground_path_m = course(library, motion, body, around).translation[:, :2]
+        ground_path_m = sample_motion(library, motion, body, around).translation[:, :2]
     turn = motion.travel[2] if motion.cyclic else 0.0
     return PostureSequence(sampled, names, False, step, motion.cyclic, ground_path_m, turn, motion.name)
 

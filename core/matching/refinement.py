@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.heading import about_up
+from ..body.heading import yaw_rotation
 from .frame_likelihood import FrameLikelihood, square_root
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales, student_scales
 from .posed_constraints import INDEPENDENT_POINTS, PosedConstraints
@@ -118,7 +118,7 @@ class Refinement:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
         _, image_axes, _, _, location, backward, *_ = self._observations
         samples = self.table.sample(sequence, values[:, 0])
-        turn = about_up(values[:, 1])
+        turn = yaw_rotation(values[:, 1])
         centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         depth = np.maximum(-np.einsum("tmi,ti->tm", centroid, backward), 0.1)
         second_moment = turn[:, None] @ samples.second_moment @ np.swapaxes(turn, -1, -2)[:, None]
@@ -140,7 +140,7 @@ class Refinement:
         """Residuals in standard deviations: centroids (T, M, 2), extents (T, M, 3), the floor (T, 1)."""
         weight, image_axes, extent, unclipped, location, _, pixel_size, extent_std = self._observations
         samples = self.table.sample(sequence, values[:, 0])
-        turn = about_up(values[:, 1])
+        turn = yaw_rotation(values[:, 1])
         centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
         centroid_residual = np.einsum("tmki,tmi->tmk", image_axes, centroid) * weight[..., None]
         predicted, depth = self._predicted_extents(sequence, values)
@@ -179,7 +179,7 @@ class Refinement:
         rows, own = self.constraint_rows, sequence[self.constraint_rows]
 
         def residuals(at: Array) -> tuple[Array, Array]:
-            points = self.table.points(own, at[:, 0]) @ np.swapaxes(about_up(at[:, 1]), -1, -2)
+            points = self.table.points(own, at[:, 0]) @ np.swapaxes(yaw_rotation(at[:, 1]), -1, -2)
             return self.constraints.residuals(points, at[:, 2:]) if self.constraints else (at, at)
 
         now = residuals(values[rows])
@@ -237,7 +237,7 @@ class Refinement:
         travel = self.table.sample(sequence, values[:, 0]).travel
         further = self.table.sample(sequence, values[:, 0] + PROBE).travel
         velocity = (further - travel) / PROBE
-        turn = about_up(0.5 * (values[1:, 1] + values[:-1, 1]))
+        turn = yaw_rotation(0.5 * (values[1:, 1] + values[:-1, 1]))
         gone = np.where(continues[:, None], np.diff(travel, axis=0), 0.0)
         earlier, later = velocity[:-1] * continues[:, None], velocity[1:] * continues[:, None]
         change = np.diff(values, axis=0)

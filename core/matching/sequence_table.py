@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import about_up, headed
+from ..body.heading import yaw_rotation, yawed_at
 from ..body.posture import Posture
 from .marker_moments import MarkerMoments
 from .posture_sequences import PostureSequences
@@ -58,7 +58,7 @@ class SequenceTable:
             travel[own, :2] = ground_path_m - ground_path_m[0]
             travel[own, 2] = self.moments.hip_height_m[rows[own]] - self.moments.hip_height_m[rows[own.start]]
             if sequence.cyclic:
-                turn = about_up(np.array(sequence.turn_rad))
+                turn = yaw_rotation(np.array(sequence.turn_rad))
                 centroid[own.stop - 1] = centroid[own.stop - 1] @ turn.T
                 second_moment[own.stop - 1] = turn @ second_moment[own.stop - 1] @ turn.T
         return centroid, second_moment, travel
@@ -101,7 +101,7 @@ class SequenceTable:
         points = self.moments.points[rows]
         for index, entry in enumerate(self.sequences.sequences):
             points[starts[index + 1] - 1] = (
-                points[starts[index + 1] - 1] @ about_up(np.array(entry.turn_rad)).T
+                points[starts[index + 1] - 1] @ yaw_rotation(np.array(entry.turn_rad)).T
             )
         first, second, share, cycle = self._bracket(sequence, time_s)
         weight = share[:, None, None]
@@ -114,10 +114,10 @@ class SequenceTable:
         first, second, share, cycle = self._bracket(sequence, time_s)
         ends = np.zeros(len(rows))
         ends[starts[1:] - 1] = [entry.turn_rad for entry in self.sequences.sequences]
-        postures = headed(self.sequences.posture[rows], ends, np.zeros((len(rows), 3)))
+        postures = yawed_at(self.sequences.posture[rows], ends, np.zeros((len(rows), 3)))
         led = postures[first].plus(share[:, None] * postures[second].minus(postures[first]))
         turned = np.array([entry.turn_rad for entry in self.sequences.sequences])[sequence]
-        return headed(led, heading_rad + cycle * turned, hips)
+        return yawed_at(led, heading_rad + cycle * turned, hips)
 
     def nearest(self, sequence: IndexArray, time_s: Array) -> IndexArray:
         """(T,) index of the nearest in time of all the sequences' postures."""
@@ -125,7 +125,9 @@ class SequenceTable:
         return self._rows[0][np.where(share < 0.5, first, second)]
 
     def _turn(self, sequence: IndexArray, cycle: IndexArray) -> Array:
-        return about_up(cycle * np.array([entry.turn_rad for entry in self.sequences.sequences])[sequence])
+        return yaw_rotation(
+            cycle * np.array([entry.turn_rad for entry in self.sequences.sequences])[sequence]
+        )
 
     def _over_cycles(self, travel: Array, sequence: IndexArray, cycle: IndexArray) -> Array:
         """Travel (T, 3) some cycles later."""
@@ -134,7 +136,7 @@ class SequenceTable:
         turns = np.array([entry.turn_rad for entry in self.sequences.sequences])
         carried = np.array(travel)
         for index in np.unique(sequence[cycle != 0]):
-            turn = about_up(turns[index])
+            turn = yaw_rotation(turns[index])
             own = (sequence == index) & (cycle != 0)
             for count in np.unique(cycle[own]):
                 rows = own & (cycle == count)

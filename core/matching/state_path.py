@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import headed
+from ..body.heading import yawed_at
 from ..body.posture import Posture
 from .emissions import FrameEmissions, StateFeatures
 from .frame_likelihood import FrameLikelihood
@@ -32,7 +32,7 @@ class StatePath:
         emission = self.emissions[frame]
         posture, heading = np.divmod(emission.states[rows], len(self.features.heading_rad))
         hips = emission.hips[:, rows].T.astype(float)
-        return headed(self.sequences.posture[posture], self.features.heading_rad[heading], hips)
+        return yawed_at(self.sequences.posture[posture], self.features.heading_rad[heading], hips)
 
     def continuous(self) -> ContinuousPath:
         """The path with times counted on over cycles and headings without jumps of full turns."""

@@ -1,1 +1,1 @@
-"""What a posture predicts of the observations, with Jacobians."""
+"""Measurement models: what a posture predicts of the footage, with Jacobians."""

@@ -1,8 +1,8 @@
-"""Where the sides of limbs and trunk appear in the image, marked or bare, with Jacobians.
+"""Predicted contour lines of limbs and trunk in the image, marked or bare, with Jacobians.
 
 Samples lie on the two contour lines of each part's tapered cylinder, where its surface turns away from the
-camera. What an edge in the image can say of a sample is its distance along the contour's normal; what moves
-along the contour cannot be seen (Harris & Stennett 1990, *RAPID, a video rate object tracker*).
+camera. An image edge measures a sample's distance along the contour's normal; motion along the contour is
+unobservable (Harris & Stennett 1990, *RAPID, a video rate object tracker*).
 """
 
 from dataclasses import dataclass, replace
@@ -11,18 +11,18 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
-from ..body.shapes import PieceStack, body_pieces
 from ..footage.camera import Camera
-from .occlusion import Covers, covers
-from .outline import View, view_pieces
+from .occlusion import PartOutlines, part_outlines
+from .silhouette import View, view_pieces
 
 SHARES = (0.2, 0.4, 0.6, 0.8)
-"""Where on a part samples lie; its ends are another part's as much."""
+"""Positions of the samples along a part; its ends are left out, as they overlap with other parts."""
 SIDES = (-1.0, 1.0)
 SHAPE = 4
-"""Numbers that correct a part's shape: thickness at both ends, place along lateral and sagittal [m]."""
+"""Corrections of a part's shape: thickness at both ends, displacement along lateral and sagittal [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +34,15 @@ class ContourPrediction:
     pixel: Array
     """(F, N, 2) [px]."""
     depth: Array
-    """(F, N) from the camera [m]."""
+    """(F, N) camera depth [m]."""
     normal: Array
-    """(F, N, 2) unit vector out of the part, in the image."""
+    """(F, N, 2) unit outward normal in the image."""
     slope: Array
     """(F, N, 2, 3) d pixel / d world [px per m]."""
     half_width: Array
-    """(F, N) of the part there [px]."""
+    """(F, N) half-width of the part at the sample [px]."""
     shape_rate: Array
-    """(F, N, SHAPE) how far [px] along the normal a meter of each correction moves a sample."""
+    """(F, N, SHAPE) motion of a sample along the normal by each correction [px per m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class ContourModel:
         return cls(body, camera, np.zeros((len(body_pieces(body)), SHAPE)))
 
     def with_shape(self, shape: Array) -> "ContourModel":
-        """The same with other corrections."""
+        """This model with other corrections."""
         return replace(self, shape=shape)
 
     @cached_property
@@ -74,7 +74,7 @@ class ContourModel:
 
     @cached_property
     def adjoining(self) -> BoolArray:
-        """(N, O) the part itself and those it is joined to."""
+        """(N, O) whether a part is the sample's own or joined to it."""
         joined = np.eye(len(self.parts.segments), dtype=bool)
         segments = {segment.name: segment for segment in self.body.skeleton.segments}
         names = self.parts.segments
@@ -86,12 +86,12 @@ class ContourModel:
                 joined[child, names.index(above)] = joined[names.index(above), child] = True
         return joined[self.part_of]
 
-    def covers(self, pose: Pose, frame: IndexArray) -> Covers:
-        """The outlines of all parts."""
-        return covers(self.parts, pose, self.camera, frame)
+    def part_outlines(self, pose: Pose, frame: IndexArray) -> PartOutlines:
+        """The image outlines of all parts."""
+        return part_outlines(self.parts, pose, self.camera, frame)
 
     def evaluate(self, pose: Pose, frame: IndexArray) -> ContourPrediction:
-        """Predict all samples in F frames; `frame` (F,) are their places in the clip."""
+        """Predict all samples in F frames; `frame` (F,) are their indices in the clip."""
         view = view_pieces(self.parts, pose, self.camera, frame)
         part = self.part_of
         repeats = len(part) // (len(SHARES) * len(SIDES))
@@ -105,7 +105,7 @@ class ContourModel:
         half = np.maximum(np.sqrt(np.sum(stretched**2, axis=-1)), 1e-6)
         rate = np.concatenate([np.broadcast_to(_taper(share), (*half.shape, 2)), cosines], axis=-1)
         center = _between(view, part, share)
-        # Correcting the shape moves a sample along `out` or along the part's own two directions.
+        # A shape correction moves a sample along `out` or along the part's own two directions.
         touch = (widths[:, 0] + share[:, None] * (widths[:, 1] - widths[:, 0])) * stretched / half[..., None]
         shape = self.shape[part]
         touch = touch + shape[:, 2:]
@@ -119,7 +119,7 @@ class ContourModel:
         return ContourPrediction(world, pixel, depth, normal, slope, half * scale, rate * scale[..., None])
 
     def normal_jacobian(self, predicted: ContourPrediction, normal: Array, pose: Pose) -> Array:
-        """(F, N, D) how far samples move along given normals (F, N, 2) by the posture's tangent [px]."""
+        """(F, N, D) d (normal · pixel) / d tangent for given normals (F, N, 2) [px per m or rad]."""
         force = (normal[..., None, :] @ predicted.slope)[..., 0, :]
         wrench = np.concatenate([force, cross(predicted.world, force)], axis=-1)
         moved = pose.posture.skeleton.moved_by[self.parts.joint[self.part_of]]
@@ -132,5 +132,5 @@ def _taper(share: Array) -> Array:
 
 
 def _between(view: View, part: IndexArray, share: Array) -> Array:
-    """(F, N, 3) places on the parts' axes."""
+    """(F, N, 3) points on the parts' axes."""
     return np.asarray(view.start[:, part] + share[:, None] * (view.end - view.start)[:, part])

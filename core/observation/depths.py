@@ -1,7 +1,7 @@
-"""d(θ): how deep the principal points lie before the camera (paper, section 4, eq. 9).
+"""d(θ): camera depths of the principal points (paper, section 4, eq. 9).
 
-The image says nothing of depth, so the depths of the a priori posture are taken as observations of their
-own, with a noise wide enough to yield to everything else.
+The image does not measure depth, so the depths of the a priori posture serve as pseudo-measurements, with a
+noise wide enough to yield to everything else.
 """
 
 import numpy as np
@@ -21,10 +21,10 @@ def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
     """Depths of the principal points along the viewing axis (paper, eq. 9).
 
     Args:
-        body: the actor's body.
-        camera: the camera.
-        pose: the body's pose, of any batch shape.
-        frame: index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
+        body: The actor's body.
+        camera: The camera.
+        pose: The body's pose, of any batch shape.
+        frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
 
     Returns:
         (..., P) [m], positive in front of the camera.

@@ -1,4 +1,4 @@
-"""g(θ) as the paper has it: the characteristics of a marker from both projected ends of its segment.
+"""g(θ), the paper's measurement model: a marker's characteristics from both projected ends of its segment.
 
 The paper (section 3.2) says only that the characteristics of a marker area are expressed with the image
 coordinates of both ends of the body part. Here the centroid is their midpoint, the direction that of the
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
+from ..body.body_volume import TRUNK, marker_parts, marker_segments, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross_matrix
-from ..body.shapes import TRUNK, marker_parts, marker_segments, segment_piece
 from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
@@ -24,13 +24,13 @@ from ..footage.segmentation.moments import axis_angle_difference, characteristic
 X, Y, ANGLE, LOG_RATIO = range(4)
 """Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
 
-Place = tuple[int, Array]
-"""A joint and a place in its frame, (3,) [m]."""
+JointPoint = tuple[int, Array]
+"""A joint and a point in its frame, (3,) [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class LineEnds:
-    """The paper's observation of M marked segments.
+    """The paper's measurement model of M marked segments.
 
     Raises:
         InputError: A segment is unknown.
@@ -42,7 +42,7 @@ class LineEnds:
     """Segment of each marker: one of the skeleton's, or `trunk` (hips' midpoint to shoulders' midpoint)."""
 
     def __post_init__(self) -> None:
-        """Refuse an unknown segment at once."""
+        """Refuse unknown segments."""
         known = marker_segments(self.body)
         for name in self.segments:
             if name not in known:
@@ -57,32 +57,32 @@ class LineEnds:
         return np.array([2.0 * np.mean([piece.half_widths[:, 0] for piece in parts]) for parts in pieces])
 
     @cached_property
-    def _places(self) -> tuple[IndexArray, Array, Array]:
-        """Joints (A,) and local places (A, 3) of all that makes an end, and its share in each, (M, 2, A)."""
+    def _end_points(self) -> tuple[IndexArray, Array, Array]:
+        """Joints (A,) and local points (A, 3) that the ends are means of, and their weights (M, 2, A)."""
         joints: list[int] = []
         local: list[Array] = []
         shares: list[tuple[int, int, float]] = []
         for marker, name in enumerate(self.segments):
-            for end, places in enumerate(_segment_ends(self.body, name)):
-                for joint, place in places:
+            for end, points in enumerate(_segment_ends(self.body, name)):
+                for joint, point in points:
                     joints.append(joint)
-                    local.append(place)
-                    shares.append((marker, end, 1.0 / len(places)))
+                    local.append(point)
+                    shares.append((marker, end, 1.0 / len(points)))
         share = np.zeros((len(self.segments), 2, len(joints)))
-        for place_index, (marker, end, value) in enumerate(shares):
-            share[marker, end, place_index] = value
+        for point_index, (marker, end, value) in enumerate(shares):
+            share[marker, end, point_index] = value
         return np.array(joints, dtype=np.intp), np.stack(local), share
 
     def evaluate(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
-        """The characteristics that the pose lets expect (paper, eq. 7 without noise).
+        """Predicted characteristics (paper, eq. 7 without noise).
 
-        A line of length l and width w [px] is taken for a region with S_λ = 1 + (l / w)²: the square of a
+        A line of length l and width w [px] counts as a region with S_λ = 1 + (l / w)²: the squared ratio of a
         rectangle's sides (eq. 6 is the square of Figure 4's a/b) when seen from the side, and 1, a round
         region, when seen end on.
 
         Args:
-            pose: the body's pose, of any batch shape.
-            frame: index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
+            pose: The body's pose, of any batch shape.
+            frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
 
         Returns:
             (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
@@ -123,27 +123,27 @@ class LineEnds:
 
     def _world_ends(self, pose: Pose) -> Array:
         """Both ends of each segment in the world, (..., M, 2, 3) [m]."""
-        return np.asarray(np.einsum("mea,...ai->...mei", self._places[2], self._world_places(pose)))
+        return np.asarray(np.einsum("mea,...ai->...mei", self._end_points[2], self._world_points(pose)))
 
-    def _world_places(self, pose: Pose) -> Array:
-        joint, local, _ = self._places
+    def _world_points(self, pose: Pose) -> Array:
+        joint, local, _ = self._end_points
         turned = (pose.rotation[..., joint, :, :] @ local[..., None])[..., 0]
         return np.asarray(pose.origin[..., joint, :] + turned)
 
     def _world_ends_jacobian(self, pose: Pose) -> Array:
         """Derivative of the ends, (..., M, 2, 3, D)."""
-        joint, _, share = self._places
+        joint, _, share = self._end_points
         screws = pose.screws[..., None, :, :]
-        # ω × p is -[p]× ω; all places at once, since a filter asks for one posture at a time.
-        linear = screws[..., 0:3, :] - cross_matrix(self._world_places(pose)) @ screws[..., 3:6, :]
+        # ω × p is -[p]× ω; all points at once, since a filter asks for one posture at a time.
+        linear = screws[..., 0:3, :] - cross_matrix(self._world_points(pose)) @ screws[..., 3:6, :]
         moving = linear * self.body.skeleton.moved_by[joint][:, None, :]
         return np.asarray(np.einsum("mea,...aid->...meid", share, moving))
 
 
 def observed_characteristics(tracks: RegionTracks) -> Array:
-    """The characteristics of tracked regions (paper, eqs. 3 to 6), (F, M, 4) in the order of `evaluate`.
+    """Measured characteristics of tracked regions (paper, eqs. 3 to 6), (F, M, 4) in the order of `evaluate`.
 
-    NaN where a marker is hidden, or where its region is too thin to have a ratio.
+    NaN where a marker is hidden, or where its region is too thin for a ratio.
     """
     seen = characteristics(tracks.centroid, tracks.second_moment)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -159,7 +159,7 @@ def residual(observed: Array, predicted: Array) -> Array:
 
 
 def angle_weight(log_ratio: ArrayLike) -> Array:
-    """How far a region of aspect S_λ has a direction: (S_λ - 1)/(S_λ + 1), from 0 (round) to 1 (a line).
+    """Weight of the direction of a region of aspect S_λ: (S_λ - 1)/(S_λ + 1), from 0 (round) to 1 (a line).
 
     The direction is half the angle of (A_xx - A_yy, 2 A_xy), whose length is λ1 - λ2; an error of A in
     proportion to its size λ1 + λ2 therefore turns it by the inverse of this weight.
@@ -175,8 +175,8 @@ def _per_end(frame: ArrayLike | None) -> IndexArray | None:
     return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None, None]
 
 
-def _segment_ends(body: Body, name: str) -> tuple[list[Place], list[Place]]:
-    """Places whose mean is the segment's start, and those whose mean is its end."""
+def _segment_ends(body: Body, name: str) -> tuple[list[JointPoint], list[JointPoint]]:
+    """Points whose mean is the segment's start, and points whose mean is its end."""
     skeleton = body.skeleton
     if name == TRUNK:
         return _points_named(body, ("hip.L", "hip.R")), _points_named(body, ("shoulder.L", "shoulder.R"))
@@ -184,6 +184,6 @@ def _segment_ends(body: Body, name: str) -> tuple[list[Place], list[Place]]:
     return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
 
 
-def _points_named(body: Body, names: Sequence[str]) -> list[Place]:
+def _points_named(body: Body, names: Sequence[str]) -> list[JointPoint]:
     indices = [body.skeleton.point_names.index(name) for name in names]
     return [(body.skeleton.points[i].joint, body.point_places[i]) for i in indices]

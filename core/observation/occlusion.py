@@ -1,6 +1,6 @@
-"""Which samples of a marker nearer body parts hide.
+"""Self-occlusion: the share of each sample that stays visible behind nearer body parts.
 
-A part hides a sample where its own outline in the image covers the sample and its axis lies nearer to
+A part occludes a sample where its outline in the image covers the sample and its axis lies nearer to
 the camera there. Both edges are soft, so that the prediction changes smoothly with the posture.
 """
 
@@ -9,38 +9,38 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
-from ..body.shapes import PieceStack
 from ..footage.camera import Camera
-from .outline import view_pieces
+from .silhouette import view_pieces
 
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
 HIDDEN_DEPTH_M = 0.01
-"""A part must lie this much nearer to hide another: neighbors share their joint's depth."""
+"""Least depth difference of an occluding part: neighbors share their joint's depth."""
 NEGLIGIBLE = 8.0
-"""Softness widths after which a part's effect is nothing."""
+"""Softness widths beyond which a part's effect vanishes."""
 BLOCK = 256
-"""So many pieces at a time meet a part that may hide them, that a processor's cache holds their samples."""
+"""Pairs of a piece and a part that are evaluated at a time, so that their samples fit in the cache."""
 
 
 @dataclass(frozen=True, eq=False)
-class Covers:
-    """Image outlines of the O parts that may hide others, per frame; the last axis runs over both ends."""
+class PartOutlines:
+    """Image outlines of the O parts that may occlude others, per frame; the last axis runs over both ends."""
 
     start: Array
-    """(F, O, 2) image of the axis' first end [px]."""
+    """(F, O, 2) projection of the axis' first end [px]."""
     end: Array
     depth: Array
     """(F, O, 2) camera depth of both ends [m]."""
     half_width: Array
     """(F, O, 2) half-width of the outline at both ends [px]."""
     overshoot: Array
-    """(F, O, 2) how far the outline reaches past both ends along the axis [px]."""
+    """(F, O, 2) extent of the outline past both ends, along the axis [px]."""
 
-    def pick(self, frame: IndexArray, part: IndexArray) -> "Covers":
-        """R parts, each in a frame of its own, with arrays (R, 2)."""
-        return Covers(
+    def pick(self, frame: IndexArray, part: IndexArray) -> "PartOutlines":
+        """Select R pairs of a frame and a part; the arrays become (R, 2)."""
+        return PartOutlines(
             self.start[frame, part],
             self.end[frame, part],
             self.depth[frame, part],
@@ -49,7 +49,7 @@ class Covers:
         )
 
 
-def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> Covers:
+def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> PartOutlines:
     """The image outlines of all parts of the body."""
     view = view_pieces(parts, pose, camera, frame)
     start, start_depth = camera.project(view.start, frame[:, None])
@@ -60,17 +60,17 @@ def covers(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> 
         np.linalg.norm(view.reach(direction)[:, :, None] * parts.half_widths, axis=-1) * scale
         for direction in (view.across, view.along)
     )
-    return Covers(start, end, depth, half, past)
+    return PartOutlines(start, end, depth, half, past)
 
 
-def visible_share(pixels: Array, depth: Array, parts: Covers, own: BoolArray) -> Array:
-    """How much of each sample no part hides, 0 to 1.
+def visible_share(pixels: Array, depth: Array, parts: PartOutlines, own: BoolArray) -> Array:
+    """Visible share of each sample, 0 to 1.
 
     Args:
-        pixels: (F, Q, S, 2) image places of the samples of Q pieces [px].
+        pixels: (F, Q, S, 2) image points of the samples of Q pieces [px].
         depth: (F, Q, S) camera depths [m].
         parts: The O parts of the body.
-        own: (Q, O) whether a part belongs to the piece's own marker and cannot hide it.
+        own: (Q, O) whether a part belongs to the piece's own marker and cannot occlude it.
 
     Returns:
         (F, Q, S).
@@ -91,7 +91,7 @@ def visible_share(pixels: Array, depth: Array, parts: Covers, own: BoolArray) ->
     return seen
 
 
-def outline_depth(pixels: Array, parts: Covers) -> Array:
+def outline_depth(pixels: Array, parts: PartOutlines) -> Array:
     """Camera depth (F, N, O) [m] of each part's axis where it covers pixels (F, N, 2), else infinite."""
     start, axis = parts.start[:, None], (parts.end - parts.start)[:, None]  # (F, 1, O, 2)
     length = np.maximum(np.linalg.norm(axis, axis=-1), 1e-6)
@@ -110,12 +110,12 @@ def outline_depth(pixels: Array, parts: Covers) -> Array:
     return np.where(away * away + past * past < half * half, at(parts.depth), np.inf)
 
 
-def _may_hide(pixels: Array, depth: Array, parts: Covers) -> BoolArray:
-    """(F, Q, O) whether a part's outline comes near a piece's bounding circle and reaches nearer."""
+def _may_hide(pixels: Array, depth: Array, parts: PartOutlines) -> BoolArray:
+    """(F, Q, O) whether a part's outline comes near a piece's bounding circle, and lies nearer in depth."""
     columns, rows = pixels[..., 0], pixels[..., 1]
     left, right, top, bottom = columns.min(-1), columns.max(-1), rows.min(-1), rows.max(-1)
     radius = 0.5 * np.hypot(right - left, bottom - top)
-    # The nearest place of the part's axis to the circle's center.
+    # The nearest point of the part's axis to the circle's center.
     across, down = np.moveaxis((parts.end - parts.start)[:, None], -1, 0)  # (F, 1, O)
     first_x, first_y = np.moveaxis(parts.start[:, None], -1, 0)
     dx = 0.5 * (left + right)[..., None] - first_x  # (F, Q, O)
@@ -129,13 +129,13 @@ def _may_hide(pixels: Array, depth: Array, parts: Covers) -> BoolArray:
     return np.asarray(close & (parts.depth.min(-1)[:, None] + margin < depth.max(2)[:, :, None]))
 
 
-def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Array:
-    """How far one part hides samples (R, S) in R chosen frames."""
+def _hidden_share(columns: Array, rows: Array, depth: Array, part: PartOutlines) -> Array:
+    """Occluded share of samples (R, S) behind one part each, in R selected frames."""
     axis = part.end - part.start
     squared = np.maximum((axis * axis).sum(-1, keepdims=True), 1e-12)
     along = axis / squared
     away_from = axis * (0.5 / EDGE_SOFTNESS_PX / np.sqrt(squared))
-    # All places are counted in half softness widths from here on, as the logistic takes them.
+    # All lengths are in half softness widths from here on, the unit of the logistic.
     half = np.maximum(part.half_width, 0.5) * (0.5 / EDGE_SOFTNESS_PX)
     stretch = half / np.maximum(part.overshoot, 0.5) * np.sqrt(squared)
     axis_depth = (part.depth + HIDDEN_DEPTH_M) * (0.5 / DEPTH_SOFTNESS_M)
@@ -158,7 +158,7 @@ def _hidden_share(columns: Array, rows: Array, depth: Array, part: Covers) -> Ar
 
 
 def _affine(columns: Array, rows: Array, right: Array, down: Array, origin: Array) -> Array:
-    """The function of image places (R, S) with slopes (R, 1) that vanishes at `origin` (R, 2)."""
+    """Affine function of image points (R, S) with slopes (R, 1) that vanishes at `origin` (R, 2)."""
     value = columns * right
     value += rows * down
     value -= origin[:, :1] * right + origin[:, 1:] * down
@@ -166,7 +166,7 @@ def _affine(columns: Array, rows: Array, right: Array, down: Array, origin: Arra
 
 
 def _between(ends: Array, share: Array) -> Array:
-    """The value at a share (R, S) of the way from one end's to the other's (R, 2)."""
+    """Linear interpolation between both ends' values (R, 2), at shares (R, S)."""
     value = share * (ends[:, 1:] - ends[:, :1])
     value += ends[:, :1]
     return value

@@ -1,8 +1,8 @@
-"""What a posture predicts of the markers' image regions, with Jacobians: the model g of method `map`.
+"""Measurement model of the markers' image regions, with Jacobians: the g(θ) of method `map`.
 
-Each marker covers a calibrated part of its segment's volume. Its visible silhouette is sampled; nearer
-body parts hide samples; centroid and second moments are those of what stays visible (paper, eqs 1 to 4,
-predicted instead of measured). Derivatives hold the samples' weights fixed.
+Each marker covers a calibrated part of its segment's volume. Its silhouette is sampled; nearer body parts
+occlude samples; centroid and second moments are those of the visible rest (paper, eqs 1 to 4, predicted
+instead of measured). Derivatives hold the samples' weights fixed.
 """
 
 from collections.abc import Mapping
@@ -13,12 +13,12 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
-from ..body.shapes import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..footage.camera import Camera
-from .occlusion import covers, visible_share
-from .outline import TINY, Outline, outline, view_pieces
+from .occlusion import part_outlines, visible_share
+from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
 """Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
@@ -29,19 +29,19 @@ USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "shin": {"first": 0.11, "last": 0.88, "girth": 1.17},
     }
 )
-"""A shirt covers the shoulders, which rise above their joints, and is cut off at the hip bones; trousers and
-stockings are thicker than the leg in them. Medians of what keyframes told of a dozen performers."""
+"""A shirt covers the shoulders, which rise above their joints, and ends at the hip bones; trousers and
+stockings are thicker than the leg inside. Medians of calibrations at a dozen performers' keyframes."""
 PIECES_AT_ONCE = 600
-"""So many pieces, counted over frames, are worked on together that a cache holds their samples."""
+"""Pieces, counted over frames, that are evaluated together, so that their samples fit in the cache."""
 
 
 @dataclass(frozen=True, eq=False)
 class MarkerPlacement:
-    """Where a marker sits on its segment and how thick it is there: what calibration finds."""
+    """Position of a marker on its segment and its thickness: the calibrated parameters."""
 
     segment: str
     first: float = 0.05
-    """Share of the segment at which the color begins."""
+    """Share of the segment's length at which the color begins."""
     last: float = 0.95
     """Share at which it ends."""
     lateral_m: float = 0.0
@@ -53,11 +53,11 @@ class MarkerPlacement:
 
     @classmethod
     def usual(cls, segment: str) -> "MarkerPlacement":
-        """Where garments of one color usually sit on a segment."""
+        """The usual placement of single-colored garments on a segment."""
         return cls(segment, **USUAL.get(segment.split(".")[0], {}))
 
     def pieces(self, body: Body) -> tuple[Piece, ...]:
-        """The volume that wears the color."""
+        """The volume covered by the marker."""
         parts = [segment_piece(body, name) for name in marker_parts(self.segment)]
         lengths = np.array([np.linalg.norm(part.end - part.start) for part in parts])
         edges = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
@@ -82,7 +82,7 @@ class RegionPrediction:
     area: Array
     """(F, M) visible area [px²]."""
     visible: Array
-    """(F, M) share of the silhouette that nothing hides."""
+    """(F, M) visible share of the silhouette."""
     centroid_jacobian: Array | None = None
     """(F, M, 2, D) [px per m or rad]."""
     moment_jacobian: Array | None = None
@@ -98,7 +98,7 @@ class RegionPrediction:
 
 @dataclass(frozen=True, eq=False)
 class RegionModel:
-    """Predicts the regions of given markers on an actor seen by a camera."""
+    """Predicts the image regions of given markers on an actor."""
 
     body: Body
     camera: Camera
@@ -106,7 +106,7 @@ class RegionModel:
 
     @cached_property
     def _pieces(self) -> PieceStack:
-        """The volumes that wear a color, Q of them, marker after marker."""
+        """The volumes covered by markers, Q of them, marker after marker."""
         return PieceStack.of(piece for placement in self.placements for piece in placement.pieces(self.body))
 
     @cached_property
@@ -148,10 +148,10 @@ class RegionModel:
         Args:
             pose: Forward kinematics of F postures.
             frame: (F,) index of each posture's frame in the clip, for a moving camera.
-            jacobian: Whether to derive centroid and moments by the posture's tangent as well.
+            jacobian: Whether to compute Jacobians of centroid and moments by the posture's tangent as well.
 
         Returns:
-            The prediction; markers that are wholly hidden keep the moments of their whole silhouette.
+            The prediction; wholly hidden markers keep the moments of their whole silhouette.
         """
         count = max(1, round(len(frame) * len(self._marker_of) / PIECES_AT_ONCE))
         edges = [len(frame) * i // count for i in range(count + 1)]
@@ -161,30 +161,30 @@ class RegionModel:
     def _stretch(self, pose: Pose, frame: IndexArray, jacobian: bool) -> RegionPrediction:
         """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
-        samples = outline(self._pieces, view)
+        samples = sample_silhouette(self._pieces, view)
         pixels, depth = self.camera.project(samples.world, frame[:, None, None])
         scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
-        parts = covers(self._parts, pose, self.camera, frame)
+        parts = part_outlines(self._parts, pose, self.camera, frame)
         seen = scale * visible_share(pixels, depth, parts, self._own)
         visible_area = self._per_marker((samples.area * seen).sum(2))
         whole_area = self._per_marker((samples.area * scale).sum(2))
         visible = visible_area / np.maximum(whole_area, TINY)
-        # A wholly hidden marker is not compared with anything, but its moments stay finite.
+        # A wholly hidden marker is compared with no measurement, but its moments stay finite.
         hidden = visible < 1e-3
         factor = np.where(hidden[:, self._marker_of, None], scale, seen)
         total = np.maximum(np.where(hidden, whole_area, visible_area), TINY)
         factor = factor / total[:, self._marker_of, None]
-        # The samples' weights, one in sum over a marker, alone and times their places about the centroid.
+        # The samples' weights, which sum to one over a marker: alone, and times offsets from the centroid.
         weighted = np.empty((*factor.shape[:2], 3, factor.shape[2]))
         np.multiply(factor, samples.area, out=weighted[:, :, 0])
         centroid = self._per_marker((weighted[:, :, :1] @ pixels)[:, :, 0])
-        centerd = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
-        np.multiply(weighted[:, :, :1], centerd, out=weighted[:, :, 1:])
-        moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centerd, -1, -2))
+        centered = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
+        np.multiply(weighted[:, :, :1], centered, out=weighted[:, :, 1:])
+        moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centered, -1, -2))
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
-        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centerd, moment))
+        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment))
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
@@ -196,18 +196,18 @@ class RegionModel:
 
     def _derive(
         self,
-        samples: Outline,
+        samples: Silhouette,
         pose: Pose,
         frame: IndexArray,
         factor: Array,
         weighted: Array,
-        centerd: Array,
+        centered: Array,
         moment: Array,
     ) -> dict[str, Array]:
         """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
         `factor` (F, Q, S) turns a sample's area into its weight; `weighted` (F, Q, 3, S) holds the weights,
-        alone and times `centerd`.
+        alone and times `centered`.
         """
         count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
@@ -216,12 +216,12 @@ class RegionModel:
         mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
         rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
-        # Turning also changes how much of the silhouette each sample stands for.
+        # Rotation also changes the share of the silhouette that each sample stands for.
         middle = moment[:, self._marker_of]
         effect = np.empty((*rows.shape[:3], count))
-        effect[:, :, :2] = centerd
+        effect[:, :, :2] = centered
         for row, (a, b) in enumerate(MOMENTS, start=2):
-            np.multiply(centerd[:, :, a], centerd[:, :, b], out=effect[:, :, row])
+            np.multiply(centered[:, :, a], centered[:, :, b], out=effect[:, :, row])
             effect[:, :, row] -= middle[..., a, b, None]
         effect *= factor[:, :, None]
         rows[..., 3:] += effect @ samples.area_rate
@@ -230,9 +230,9 @@ class RegionModel:
         return {"centroid_jacobian": derived[:, :, :2], "moment_jacobian": derived[:, :, 2:]}
 
     def _to_world(self, rows: Array, frame: IndexArray) -> Array:
-        """Derivatives (F, Q, K, 6) by a motion in the camera's axes as ones by the motion in the world's."""
+        """Convert derivatives (F, Q, K, 6) by a motion in camera axes to those by a motion in world axes."""
         rotation, location = self.camera.pose(frame[:, None])
         turned = np.swapaxes(rotation, -1, -2)
         linear, angular = rows[..., :3] @ turned, rows[..., 3:] @ turned
-        # Where a body's origin lies far from the camera, its turning is also a motion.
+        # Rotation about an origin far from the camera is also a translation.
         return np.concatenate([linear, angular + cross(location[..., None, :], linear)], axis=-1)

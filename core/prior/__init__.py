@@ -1,1 +1,1 @@
-"""What is believed beforehand: keyframes, and the prior between them."""
+"""The prior: keyframes, the posture between them and its process noise, and priors of single frames."""

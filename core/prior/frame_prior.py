@@ -1,4 +1,4 @@
-"""What is believed of one frame's posture before its picture is looked at, for assisted posing."""
+"""Gaussian prior of one frame's posture, for assisted posing: from keyframes, a rough pose, or standing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..body.heading import yawed_in_place
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..body.standing_posture import turned
 from ..observation.depths import DEPTH_STD_M
 from .interpolation import interpolate
 from .keyframes import Keyframe
 
-# How far postures of the same person lie apart at two moments that have nothing to do with each other
-# [m, rad]: round numbers for lively motion. Head and what no marker shows stay nearer to what was posed.
-FARTHEST = {
+# Standard deviation between postures of the same person at two unrelated moments [m, rad]: round numbers for
+# lively motion. Head and joints that no marker shows stay nearer to what was posed.
+UNRELATED_STD = {
     "pelvis.location": 0.40,
     "pelvis": 0.35,
     "waist": 0.30,
@@ -28,14 +28,14 @@ FARTHEST = {
     "knee": 0.60,
     "shin": 0.05,
 }
-FORGETTING_S = 0.3
-"""Time after which two thirds of that difference are there."""
+CORRELATION_TIME_S = 0.3
+"""Time after which postures differ by two thirds of that."""
 SPEED_M_PER_S = 0.7
-"""A performer who walks goes on and on: the place differs by as much as this times the time, too."""
-GOING_ON = 0.5
-"""Of the way between the last two keyframes, so much goes on at the same pace."""
-TOUCHED_UP = 0.5
-"""A pose that the animator has set lies within this share of the farthest differences."""
+"""A walking performer's hips also move away steadily, by this speed."""
+VELOCITY_SHARE = 0.5
+"""Share of the velocity between the last two keyframes with which the hips are extrapolated."""
+ROUGH_POSE_SHARE = 0.5
+"""Standard deviation of a pose roughly set by the animator, as a share of `UNRELATED_STD`."""
 UNKNOWN_HEADING_RAD = 1.2
 UNKNOWN_PLACE_M = 0.3
 UNKNOWN_DEPTHS_M = 0.6
@@ -43,36 +43,35 @@ HEADINGS_RAD = np.radians([0.0, 60.0, -60.0, 180.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Belief:
-    """A normal belief in a posture, and where else to look."""
+class FramePrior:
+    """A Gaussian prior of a posture, with starting points for the search."""
 
     posture: Posture
-    """A single posture: the most probable one."""
+    """A single posture: the mean."""
     std: Array
-    """(D,) how far each degree of freedom of its tangent may lie off [m, rad]."""
+    """(D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]."""
     starts: Posture
-    """A batch of postures to start looking from, the first of them `posture`."""
+    """A batch of postures to start the search from, the first of them `posture`."""
     depth_std_m: float = DEPTH_STD_M
-    """How far each point's depth may lie off [m]."""
+    """Standard deviation of each point's depth [m]."""
     grounded: Posture | None = None
-    """Postures of which at least one stands on the ground; None where nothing says where that is."""
+    """Postures of which at least one stands on the ground; None where the ground is unknown."""
 
 
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
-    """How much postures differ, (D,) [m, rad], that lie a time apart."""
-    share = 1.0 - np.exp(-abs(time_s) / FORGETTING_S)
-    std = share * _farthest(skeleton)
+    """(D,) standard deviation [m, rad] of the difference between postures a time apart."""
+    share = 1.0 - np.exp(-abs(time_s) / CORRELATION_TIME_S)
+    std = share * _unrelated_std(skeleton)
     std[:3] = np.maximum(std[:3], SPEED_M_PER_S * abs(time_s))
     return np.maximum(std, 1e-3)
 
 
-def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> Belief:
-    """What the nearest keyframes before and after say of a frame.
+def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> FramePrior:
+    """Prior of a frame from the nearest keyframes before and after it.
 
     Args:
-        keyframes: At least one, in order of frame; one at the very frame is left out of account unless it is
-            the only one.
-        index: The frame's place in the clip.
+        keyframes: At least one, in order of frame; one at the frame itself counts only if there is no other.
+        index: Index of the frame in the clip.
         fps: Frames per second.
     """
     others = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
@@ -84,49 +83,49 @@ def belief_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float)
     postures = [keyframe.posture for keyframe in near]
     everyone = Posture.stack([keyframe.posture for keyframe in others])
     if len(near) == 1:
-        postures = [_moved_on(others, index)]
-        return Belief(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
+        postures = [_extrapolated(others, index)]
+        return FramePrior(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
     between = interpolate(tuple(others), index + 1)[index]
-    # Each neighbor says something of its own, the nearer one more.
+    # Both neighbors count as independent, the nearer one more.
     std = (1.0 / variances[0] + 1.0 / variances[1]) ** -0.5
-    return Belief(between, std, Posture.stack([between, *postures]), grounded=everyone)
+    return FramePrior(between, std, Posture.stack([between, *postures]), grounded=everyone)
 
 
-def _moved_on(keyframes: Sequence[Keyframe], index: int) -> Posture:
-    """The keyframe nearest to a frame before or after all of them, going on the way the last two went."""
+def _extrapolated(keyframes: Sequence[Keyframe], index: int) -> Posture:
+    """Extrapolate the outermost keyframe to a frame beyond it, by the hips' velocity between the last two."""
     early = index < keyframes[0].index
     last, other = (keyframes[0], keyframes[1:2]) if early else (keyframes[-1], keyframes[-2:-1])
     if not other:
         return last.posture
     step = np.zeros(last.posture.skeleton.dof_count)
     time = (index - last.index) / (last.index - other[0].index)
-    step[:2] = GOING_ON * time * (last.posture.translation - other[0].posture.translation)[:2]
+    step[:2] = VELOCITY_SHARE * time * (last.posture.translation - other[0].posture.translation)[:2]
     return last.posture.plus(step)
 
 
-def belief_from_pose(posture: Posture) -> Belief:
-    """What a pose says that the animator has set roughly for the frame."""
-    return Belief(posture, TOUCHED_UP * _farthest(posture.skeleton), Posture.stack([posture]))
+def prior_from_pose(posture: Posture) -> FramePrior:
+    """Prior from a pose that the animator has set roughly for the frame."""
+    return FramePrior(posture, ROUGH_POSE_SHARE * _unrelated_std(posture.skeleton), Posture.stack([posture]))
 
 
-def belief_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> Belief:
-    """What a body says that merely stands about where the performer is: anything is possible.
+def prior_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> FramePrior:
+    """Prior from nothing but the performer's rough place: any posture and heading is possible.
 
     Args:
-        posture: How it stands.
-        depth_std_m: How far the points may lie off in depth [m]; less where the place was measured.
+        posture: A body that stands there.
+        depth_std_m: Standard deviation of the points' depths [m]; less where the place was measured.
     """
-    std = _farthest(posture.skeleton)
+    std = _unrelated_std(posture.skeleton)
     std[:3] = UNKNOWN_PLACE_M
     std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
-    around = turned(posture, HEADINGS_RAD)
-    return Belief(posture, std, around, depth_std_m, grounded=around[:1])
+    around = yawed_in_place(posture, HEADINGS_RAD)
+    return FramePrior(posture, std, around, depth_std_m, grounded=around[:1])
 
 
-def _farthest(skeleton: Skeleton) -> Array:
+def _unrelated_std(skeleton: Skeleton) -> Array:
     return np.array(
         [
-            FARTHEST["pelvis.location" if ".location" in name else name.split(".")[0]]
+            UNRELATED_STD["pelvis.location" if ".location" in name else name.split(".")[0]]
             for name in skeleton.dof_names
         ]
     )

@@ -1,4 +1,4 @@
-"""The prior between keyframes: a course through them, smooth or straight, for every frame of the clip.
+"""The prior mean between keyframes: a spline through them, cubic or linear, for every frame of the clip.
 
 Before the first and after the last keyframe the posture is held.
 """
@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.posture import Posture
-from ..body.posture_spline import smooth_course, straight_course
+from ..body.posture_spline import cubic_spline, linear_spline
 from .keyframes import Keyframe
 
 
@@ -21,12 +21,12 @@ def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
     Returns:
         A batch of F postures that passes through every keyframe.
     """
-    return smooth_course(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
+    return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
 
 def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest comparison."""
-    return straight_course(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
+    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest baseline."""
+    return linear_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
 
 def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:

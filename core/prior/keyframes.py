@@ -1,4 +1,4 @@
-"""Keyframes: frames whose posture a person, or a matched library, has given."""
+"""Keyframes: frames with a given posture, posed by a person or matched with a library."""
 
 from dataclasses import dataclass
 
@@ -7,27 +7,27 @@ from ..body.posture import Posture
 
 @dataclass(frozen=True)
 class Matched:
-    """Where a keyframe comes from that nobody posed."""
+    """Origin of a matched keyframe: the library's posture."""
 
     library: str
     """The library's identifier."""
     posture: str
-    """Name of the library's posture that it is nearest to."""
+    """Name of the nearest posture of the library."""
     mirrored: bool
-    """Whether with left and right exchanged."""
+    """Whether left and right are exchanged."""
     confidence: float
-    """How probably it is about right, 0 to 1."""
+    """Probability that it is about right, 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Keyframe:
-    """A posed frame."""
+    """A frame with a given posture."""
 
     index: int
-    """Position in the clip, 0 for the first decoded frame."""
+    """Frame index in the clip, 0 for the first decoded frame."""
     posture: Posture
     """A single posture."""
     residual_m: float = 0.0
     """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
     matched: Matched | None = None
-    """What it was matched with; None for a keyframe that a person has posed, or has corrected."""
+    """The posture it was matched with; None for a keyframe that a person has posed or corrected."""

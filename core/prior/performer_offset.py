@@ -1,10 +1,10 @@
-"""What posed keyframes say of matched ones: the performer differs from the library's, and goes on differing.
+"""Performer offset: the performer's difference from a library, a Gaussian process learned at posed keyframes.
 
-A library's postures are another performer's. Where a person has posed a keyframe too, the difference between
-both is known, and most of it is style, which holds all along the clip; the rest holds for a while. Both
-together are a Gaussian process over time, the same for every degree of freedom, and the matched keyframes
-take the mean that the posed ones leave of it (Rasmussen & Williams 2006, *Gaussian Processes for Machine
-Learning*, eq. 2.23).
+A library's postures are another performer's. At a posed keyframe the difference to the library is known; most
+of it is the performer's style, which is constant over the clip, and the rest decays with time. The sum is a
+Gaussian process over time, the same for every degree of freedom, and the matched keyframes are moved by its
+posterior mean given the posed ones (Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*,
+eq. 2.23).
 """
 
 from dataclasses import replace
@@ -16,28 +16,28 @@ from ..body.posture import Posture
 from .interpolation import interpolate
 from .keyframes import Keyframe
 
-LASTING_SHARE = 0.5
-"""Of the difference's variance, what holds all along the clip."""
-FORGETTING_S = 0.5
-"""Time in which the rest of it is forgotten."""
+CONSTANT_SHARE = 0.5
+"""Share of the offset's variance that is constant over the clip."""
+CORRELATION_TIME_S = 0.5
+"""Correlation time of the rest."""
 POSED_VARIANCE = 0.1
-"""Of a person's own error, beside the difference's."""
+"""Variance of a person's own error, relative to the offset's."""
 LEAST_VARIANCE = 0.05
-"""Of the difference's variance, what no posed keyframe takes away."""
+"""Share of the offset's variance that remains beside any posed keyframe."""
 BEYOND_S = 0.1
-"""So far outside the matched keyframes, the nearest of them is not what the library would have there."""
+"""Time outside the matched keyframes over which the nearest of them ceases to stand for the library."""
 
 
-def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
-    """The keyframes, the matched ones changed the way the posed ones differ from the library.
+def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
+    """Move the matched keyframes by the performer's offset, learned at the posed ones.
 
     Args:
         keyframes: Posed and matched ones, in order of frame.
         fps: Frames per second.
 
     Returns:
-        The keyframes, and (K,) what is left of the usual difference between a performer and a library: 1
-        where nothing was posed, less near posed ones, and 0 at these.
+        The keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1 where
+        nothing was posed, less near posed keyframes, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
@@ -55,15 +55,17 @@ def with_style(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyfr
     return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
 
 
-def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
-    """How posed keyframes differ from what the library and the other posed ones say of them.
+def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
+    """Leave-one-out residuals of posed keyframes, predicted from the library and the other posed ones.
+
+    Rasmussen & Williams (2006), eq. 5.12.
 
     Args:
-        keyframes: Posed and matched ones, some of either.
+        keyframes: Posed and matched ones, at least one of either.
         fps: Frames per second.
 
     Returns:
-        (P, D) the differences, and (P,) what each counts: less, the farther it lies from matched keyframes.
+        (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
@@ -74,22 +76,22 @@ def unforeseen(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Arra
 
 
 def _known(at: Array, beyond_s: Array) -> Array:
-    """(P, P) covariance of the differences at posed keyframes at times [s], a person's errors included."""
+    """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
     return np.asarray(_covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2))
 
 
 def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:
-    """From the library to each posed keyframe, (P, D), and how far that lies outside the matched ones [s]."""
+    """Offset from the library to each posed keyframe (P, D), and its time outside the matched ones [s]."""
     first, last = matched[0].index, matched[-1].index
     if len(matched) > 1:
-        course = interpolate(tuple(matched), max(last, posed[-1].index) + 1)
+        predicted = interpolate(tuple(matched), max(last, posed[-1].index) + 1)
     else:
-        course = Posture.stack([matched[0].posture] * (max(last, posed[-1].index) + 1))
+        predicted = Posture.stack([matched[0].posture] * (max(last, posed[-1].index) + 1))
     index = np.array([keyframe.index for keyframe in posed])
     beyond = np.maximum(np.maximum(first - index, index - last), 0)
-    return Posture.stack([keyframe.posture for keyframe in posed]).minus(course[index]), beyond / fps
+    return Posture.stack([keyframe.posture for keyframe in posed]).minus(predicted[index]), beyond / fps
 
 
 def _covariance(one: Array, other: Array) -> Array:
     apart = np.abs(one[:, None] - other)
-    return np.asarray(LASTING_SHARE + (1.0 - LASTING_SHARE) * np.exp(-apart / FORGETTING_S))
+    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * np.exp(-apart / CORRELATION_TIME_S))

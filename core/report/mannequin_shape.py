@@ -1,7 +1,7 @@
 """The surface of a mannequin on the body's segments, as points with normals: for pictures, not for measuring.
 
-Limbs are the volumes of `body/shapes`, a little swollen where muscles are; head, hands and feet are shaped so
-that one sees where a person looks and stands. The feet's undersides are the soles of `body/soles`.
+Limbs are the volumes of `body/body_volume`, a little swollen where muscles are; head, hands and feet are
+shaped so that one sees where a person looks and stands. The feet's undersides are the soles of `body/soles`.
 """
 
 from collections.abc import Iterator
@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
+from ..body.body_volume import Piece, body_pieces
 from ..body.kinematics import Body
-from ..body.shapes import Piece, body_pieces
 from ..body.soles import HEEL_BEHIND
 from .canvas import LEFT, RIGHT, Color
 from .mannequin_feet import foot_frame

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..footage.region_tracks import RegionTracks
-from ..footage.segmentation.ellipse import ellipse_outline
+from ..footage.segmentation.region_outlines import ellipse_outline
 from ..take.motion import Motion
 from ..take.take import Take
 from .canvas import INK, WHITE, Canvas, Color

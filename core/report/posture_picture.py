@@ -3,10 +3,10 @@
 import numpy as np
 
 from ..arrays import Array, Image
+from ..body.body_volume import HEAD_OVERSHOOT
+from ..body.heading import facing_rad
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.shapes import HEAD_OVERSHOOT
-from ..body.standing_posture import facing_rad
 from .mannequin import View, draw_mannequin, view_axes
 
 SIZE = 256

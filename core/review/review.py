@@ -11,7 +11,7 @@ from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.regions import RegionNoise, limb_widths
-from ..footage.segmentation.ellipse import CORNERS, ellipse_outline
+from ..footage.segmentation.region_outlines import CORNERS, ellipse_outline
 from ..observation.regions import RegionModel
 from ..progress import Job, Part, within
 from ..take.take import Take

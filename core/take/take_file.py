@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..body.actor import Actor
+from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
 from ..body.kinematics import Body
-from ..body.shapes import TRUNK
 from ..errors import InputError
 from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed

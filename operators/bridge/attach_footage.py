@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.footage.camera import Camera
-from ...core.footage.first_camera import first_stand, guess_lens
+from ...core.footage.default_camera import default_camera_pose, guess_lens
 from .footage import clip_rate, set_scene_range
 from .footage_camera import (
     clip_lens,
@@ -67,7 +67,7 @@ def attach_footage(
     if lens is not None:
         set_lens(camera_object.data, lens)
         if is_new:
-            stand = first_stand(lens.lens_mm, lens.sensor_width_mm, size)
+            stand = default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)
             set_still_pose(camera_object, replace(lens, matrix_world=stand))
     if follows:
         follow_solution(scene, camera_object, clip)

@@ -7,8 +7,8 @@ import numpy as np
 from mathutils import Matrix
 
 from ...core.arrays import Array, IndexArray
+from ...core.body.body_volume import Piece, body_pieces, marker_parts
 from ...core.body.kinematics import Body
-from ...core.body.shapes import Piece, body_pieces, marker_parts
 from ...core.footage.marker_style import MarkerStyle
 from .actor_lengths import skeleton_bones
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from ...core.arrays import Array, IndexArray
 from ...core.files.json_file import write_atomically
 from ...core.footage.markers import track_markers
-from ...core.prior.marker_speed import marker_speed, propose_keyframes
+from ...core.prior.keyframe_proposals import propose_keyframes
+from ...core.prior.marker_speed import marker_speed
 from ...core.progress import Job, run, within
 from ...core.report.canvas import write_png
 from ...core.report.speed_plot import speed_plot

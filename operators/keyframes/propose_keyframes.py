@@ -42,7 +42,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         """Return the job; a clip that was read for these markers before is not read again."""
         from ...core.footage.read_clip import read_clip
         from ...core.footage.reading_key import of_same_footage, reading_key
-        from ...core.prior.marker_speed import marker_speed, propose_keyframes
+        from ...core.prior.keyframe_proposals import propose_keyframes
+        from ...core.prior.marker_speed import marker_speed
 
         take = active_take(scene)
         identifier, count = take.identifier, take.keyframe_count or None

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from ...core.errors import InputError
 from ...core.library.library import Library
-from ...core.library.merging import Choice, compare, merged
-from ...core.library.texts import identifier_from, told_apart
+from ...core.library.merging import Choice, compare, merge_versions
+from ...core.library.texts import identifier_from, unique_name
 from .conflict_dialog import Conflict
 
 
@@ -51,11 +51,11 @@ def resolve_conflicts(
         elif choice == "REPLACE":
             result.append(library)
         elif choice == "MERGE":
-            result.append(merged(taken[library.identifier].there, library, Choice.KEEP))
+            result.append(merge_versions(taken[library.identifier].there, library, Choice.KEEP))
         elif choice == "BOTH":
             while existing(free := identifier_from(library.identifier, used)) is not None:
                 used.append(free)
             used.append(free)
-            title = told_apart(library.title, [taken[library.identifier].there.title])
+            title = unique_name(library.title, [taken[library.identifier].there.title])
             result.append(replace(library, identifier=free, title=title))
     return result

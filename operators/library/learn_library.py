@@ -71,7 +71,7 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Learn the library, add it to the scene as pose assets, and publish it where that is wanted."""
-        from ...core.library.learning import About
+        from ...core.library.learning import LibraryMetadata
         from ..bridge.library.library_from_action import library_from_action
         from .editing.library_to_scene import add_library
         from .registry_files import registered_identifiers, replace_in_registry
@@ -80,7 +80,7 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         title = self.title.strip() or take.name
         taken = registered_identifiers()
         taken |= {library.identifier for library in context.scene.keymark.libraries}
-        about = About(
+        about = LibraryMetadata(
             title=title,
             author=self.author.strip() or "Unknown",
             license=self.license.strip(),

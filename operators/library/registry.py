@@ -72,7 +72,7 @@ def refresh(choose: str = "") -> None:
     Args:
         choose: Identifier of the library to choose in the list; by default the same as before.
     """
-    from ...core.library.registry import shelved
+    from ...core.library.registry import registered_libraries
     from .registry_files import folders
 
     manager = bpy.context.window_manager
@@ -80,7 +80,7 @@ def refresh(choose: str = "") -> None:
     before = chosen_entry(bpy.context)
     wanted = choose or (before.name if before is not None else "")
     listed.libraries.clear()
-    for found in shelved(folders()):
+    for found in registered_libraries(folders()):
         item = listed.libraries.add()
         item.name, item.title, item.problem = found.identifier, found.title, found.problem
         item.version, item.is_own, item.path = found.version, found.path.parent == own, str(found.path)

@@ -6,7 +6,7 @@ from pathlib import Path
 from ...core.errors import InputError
 from ...core.library.library import Library
 from ...core.library.library_file import write_library
-from ...core.library.registry import SHIPPED, find_library, library_path, shelved
+from ...core.library.registry import SHIPPED, find_library, library_path, registered_libraries
 from ...core.library.texts import EVERY_LIBRARY
 from . import registry
 
@@ -27,18 +27,18 @@ def registered_library(identifier: str) -> Library:
 
 def find_registered(identifier: str) -> Library | None:
     """The registered library of exactly this identifier; None where there is no usable one."""
-    found = (entry.library for entry in shelved(folders()) if entry.identifier == identifier)
+    found = (entry.library for entry in registered_libraries(folders()) if entry.identifier == identifier)
     return next((library for library in found if library is not None), None)
 
 
 def registered_identifiers() -> set[str]:
     """Identifiers of all registered libraries, those of unusable files included."""
-    return {entry.identifier for entry in shelved(folders())}
+    return {entry.identifier for entry in registered_libraries(folders())}
 
 
 def shipped_libraries() -> list[Library]:
     """All libraries that come with Keymark."""
-    return [entry.library for entry in shelved([SHIPPED]) if entry.library is not None]
+    return [entry.library for entry in registered_libraries([SHIPPED]) if entry.library is not None]
 
 
 def libraries_to_match(name: str) -> Sequence[Library]:
@@ -49,7 +49,7 @@ def libraries_to_match(name: str) -> Sequence[Library]:
     """
     if name != EVERY_LIBRARY:
         return [find_library(name, folders())]
-    usable = [entry.library for entry in shelved(folders()) if entry.library is not None]
+    usable = [entry.library for entry in registered_libraries(folders()) if entry.library is not None]
     if not usable:
         raise InputError("there is no library to match with; import one, or install Keymark as a whole")
     return usable
@@ -86,7 +86,7 @@ def _own_file(folder: Path, identifier: str) -> Path:
     Raises:
         InputError: The file of that name holds something else.
     """
-    path, there = library_path(folder, identifier), shelved([folder])
+    path, there = library_path(folder, identifier), registered_libraries([folder])
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)
     damaged = next((each for each in there if each.path == found and each.library is None), None)

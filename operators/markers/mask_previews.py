@@ -110,7 +110,7 @@ def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
 
 def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
     from ...core.footage.clips.frame_reader import FrameReader
-    from ...core.footage.segmentation.mask_outlines import mask_outlines
+    from ...core.footage.segmentation.region_outlines import mask_outlines
     from ...core.footage.segmentation.regions import color_masks
 
     if preview.reader is None:

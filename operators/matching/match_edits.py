@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.heading import facing_rad
 from ...core.body.human import HUMAN
 from ...core.body.posture import Posture
-from ...core.body.standing_posture import facing_rad
 from ..bridge.actions import assign_action
 from ..bridge.matched_keyframes import write_matched
 from ..shell.keyed_frames import invalidate_keyed_frames

@@ -9,10 +9,10 @@ import keymark
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import body_pieces
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import body_pieces
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.observation.regions import MarkerPlacement

@@ -7,8 +7,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from keymark.core.body.body_volume import marker_segments
 from keymark.core.body.human import HUMAN
-from keymark.core.body.shapes import marker_segments
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

@@ -8,7 +8,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryMotion
-from keymark.core.library.motion_playback import course
+from keymark.core.library.motion_playback import sample_motion
 
 from .solving import BALL, HEEL
 
@@ -19,7 +19,7 @@ TRUNK_RADIUS_M = (0.15, 0.105)
 def over_time(library: Library, motion: LibraryMotion, rate_hz: float = 60.0) -> tuple[Posture, Array]:
     """Postures along a motion, once through, and their times (T,) [s]."""
     times = np.arange(0.0, motion.duration_s + 1e-9, 1.0 / rate_hz)
-    return course(library, motion, Body(library.actor), times), times
+    return sample_motion(library, motion, Body(library.actor), times), times
 
 
 def ranges_left(library: Library) -> list[str]:

@@ -12,8 +12,8 @@ import numpy as np
 from ...arrays import Array
 from ...body.kinematics import Body
 from ...observation import depths
-from ...prior.frame_prior import Belief
-from ...prior.variability import REFERENCE_STEP_S
+from ...prior.frame_prior import FramePrior
+from ...prior.process_noise import REFERENCE_STEP_S
 from ..ankle_height import ANKLE_HEIGHT_STD_M
 from ..clip_problem import ClipProblem
 from ..clip_state import ClipState
@@ -78,7 +78,7 @@ def with_contours(terms: Sequence[Term], contours: ContourTerm) -> list[Term]:
 def frame_terms(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
-    belief: Belief,
+    belief: FramePrior,
     noise: RegionNoise,
     width_px: Array,
 ) -> list[CostTerm]:

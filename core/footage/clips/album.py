@@ -1,7 +1,7 @@
-"""A small picture of every frame, kept while the clip is read, so that nothing has to be decoded twice.
+"""Album: a small compressed picture of every frame, kept while the clip is read, to decode it only once.
 
-What the estimate wants to see again, it wants only once it knows roughly where the performer is, and then on
-a coarse grid. Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
+The estimate needs the pictures only after it knows roughly where the performer is, and then on a coarse grid.
+Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from ...arrays import BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
 
 QUALITY = 90
-"""Of the compression; its error stays below that of the video."""
+"""JPEG quality; its error stays below that of the video's compression."""
 
 
 @dataclass(eq=False)
@@ -35,12 +35,12 @@ class Album:
         self._pictures[index] = packed
 
     def every(self, step: int) -> "Album":
-        """Return the album of a clip that holds only every so many-th frame, counted anew."""
+        """The album of a clip that consists of every `step`-th frame, with indices of its own."""
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
         return Album(self.factor, kept)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the pictures one after the other as they are packed, with their frames and ends."""
+        """The concatenated compressed pictures, with their frames and end offsets."""
         frames = sorted(self._pictures)
         packed = [self._pictures[frame].ravel() for frame in frames]
         return {
@@ -52,7 +52,7 @@ class Album:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
-        """Return the album that `to_arrays` gave."""
+        """The album that `to_arrays` gave."""
         pictures = np.split(arrays["picture"], arrays["end"])
         kept = dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
         return cls(int(arrays["factor"]), kept)
@@ -62,12 +62,12 @@ class Album:
         return index in self._pictures
 
     def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
-        """Return the small pictures of F frames, (F, rows, columns, 3), and (F,) which of them there are.
+        """The small pictures of F frames (F, rows, columns, 3), and (F,) which of them exist.
 
-        Those that are missing are black.
+        Missing ones are black.
 
         Raises:
-            KeyError: there is not one picture in the album.
+            KeyError: The album is empty.
         """
         known = np.array([int(index) in self for index in indices], dtype=np.bool_)
         if not self._pictures:
@@ -79,9 +79,9 @@ class Album:
         return np.stack(seen), known
 
     def picture(self, index: int) -> Image:
-        """Return a frame's small picture (rows, columns, 3), lightly smoothed like all that color decides.
+        """A frame's small picture (rows, columns, 3), smoothed like all images that colors are read from.
 
         Raises:
-            KeyError: the frame was never read, or nothing is to be seen in it.
+            KeyError: The frame was never read, or is blank.
         """
         return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))

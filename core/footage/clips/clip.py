@@ -1,4 +1,4 @@
-"""A clip on disk, video or numbered images: its size and rate, and its frames in order, one at a time."""
+"""A clip on disk, a video or an image sequence: its size and frame rate, and an iterator of its frames."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
 DEFAULT_SEQUENCE_FPS = 24.0
-"""Frame rate of an image sequence whose rate nobody names, as a new Blender scene has."""
+"""Default frame rate of an image sequence, that of a new Blender scene."""
 
 
 class FrameSource(Protocol):
-    """Where a clip's frames come from."""
+    """Decoder of a clip's frames."""
 
     size: tuple[int, int]
     fps: float
@@ -29,7 +29,7 @@ class FrameSource(Protocol):
         ...
 
     def time_stamps(self) -> Iterator[float]:
-        """Yield the time of every frame without converting its picture."""
+        """Yield the time in seconds of every frame without converting its picture."""
         ...
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
@@ -37,7 +37,7 @@ class FrameSource(Protocol):
         ...
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield time in seconds and image of the frames from about one on."""
+        """Yield time in seconds and image of the frames from about `first` on."""
         ...
 
 
@@ -46,11 +46,11 @@ class Clip:
     """A readable clip; opening it has decoded its first frame."""
 
     path: Path
-    """The file, the folder or the pattern it was opened from."""
+    """The file, folder or pattern it was opened from."""
     source: FrameSource
     """Decoder of the frames."""
     notes: tuple[str, ...] = ()
-    """Sentences on what a person should know of the file itself."""
+    """Sentences on faults of the file itself."""
 
     @classmethod
     def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
@@ -59,11 +59,11 @@ class Clip:
         Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10).
 
         Args:
-            path: what to open.
-            fps: frames per second of an image sequence; a video knows its own.
+            path: The video, folder, numbered image or pattern.
+            fps: Frames per second of an image sequence; a video has its own.
 
         Raises:
-            InputError: nothing is there, or nothing that can be decoded.
+            InputError: The path does not exist, or cannot be decoded.
         """
         path = Path(path)
         images = find_images(path)
@@ -87,12 +87,12 @@ class Clip:
 
     @property
     def knows_its_rate(self) -> bool:
-        """Whether the rate is the footage's own: images have none."""
+        """Whether the frame rate is the footage's own: images have none."""
         return not isinstance(self.source, ImageSequence)
 
     @property
     def frame_count(self) -> int:
-        """Number of frames the file claims to hold; a pass over them gives the true count."""
+        """Number of frames according to the file's header; a pass over them gives the true count."""
         return self.source.frame_count
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
@@ -102,12 +102,12 @@ class Clip:
         and is the file's own stamp, so it is right for variable frame rates too.
 
         Raises:
-            InputError: an image of a sequence cannot be read or has another size than the first.
+            InputError: An image of a sequence cannot be read or has another size than the first.
         """
         return self.source.frames()
 
     def time_stamps(self) -> Array:
-        """Return the time of every frame in seconds, (F,), by a pass that converts no picture."""
+        """The time of every frame in seconds, (F,), by a pass that converts no picture."""
         return np.fromiter(self.source.time_stamps(), dtype=np.float64)
 
     @property
@@ -119,10 +119,10 @@ class Clip:
         """Yield about `count` frames spread evenly over the clip, each with its index.
 
         Raises:
-            ValueError: count is below 1.
+            ValueError: `count` is below 1.
         """
         if count < 1:
             raise ValueError(f"count must be at least 1, not {count}")
-        # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
+        # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
         middles = (np.arange(count) + 0.5) * self.frame_count / count
         return self.source.at(sorted({int(index) for index in middles}))

@@ -1,4 +1,4 @@
-"""Frames spread over a clip, kept as small pictures, so that colors can be tried on them at once."""
+"""Clip samples: frames spread over a clip, kept as small pictures, for repeated checks of the colors."""
 
 from collections.abc import Generator
 from dataclasses import dataclass
@@ -10,35 +10,35 @@ from ..segmentation.working_image import halvings, measuring_image
 from .clip import Clip
 
 SAMPLED_FRAMES = 24
-"""Twice as many as colors are learned from, so that most are judged by colors learned elsewhere."""
+"""Twice as many as colors are learned from, so that most frames are checked with colors learned elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
 class ClipSamples:
-    """N frames of a clip."""
+    """N sampled frames of a clip."""
 
     path: Path
     """The clip, for messages."""
     size: tuple[int, int]
     """Width and height of its frames in px."""
     indices: tuple[int, ...]
-    """(N,) which frames they are."""
+    """(N,) their frame indices."""
     images: tuple[Image, ...]
     """Their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid."""
 
 
 def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Take frames from all over a clip.
+    """Sample frames evenly over a clip.
 
     Args:
-        clip: the footage.
-        count: how many, where it has as many.
+        clip: The footage.
+        count: Number of samples; fewer for a shorter clip.
 
     Yields:
         The fraction done, from 0 to 1.
 
     Raises:
-        InputError: not one of them can be read.
+        InputError: None of them can be read.
     """
     times = halvings(clip.size)
     indices: list[int] = []
@@ -49,5 +49,5 @@ def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, Non
         images.append(measuring_image(image, times))
         yield min(len(indices) / min(count, clip.frame_count), 1.0)
     if not images:
-        raise InputError(f"{clip.path}: none of the frames looked at can be read; the file is damaged")
+        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
     return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))

@@ -1,4 +1,4 @@
-"""When the frames of a clip were taken: even and uneven time stamps."""
+"""Timing of a clip: constant or variable frame rate, by its time stamps."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +9,7 @@ STAMP_RESOLUTION_S = 1.1e-3
 
 
 def is_variable_frame_rate(time_s: ArrayLike) -> bool:
-    """Tell whether frames are unevenly spaced in time.
+    """Whether frames are unevenly spaced in time.
 
     Args:
         time_s: (F,) time stamps in seconds.

@@ -1,8 +1,8 @@
-"""What a video file begins with: only what is footage itself is given to a decoder.
+"""Magic numbers of video containers: no other file is given to a decoder.
 
 Decoders look at content, not at names. A text called `clip.mp4` may be a playlist (HLS, a list of files to be
-joined, a session description), which leads them on to other files or to the network. Such are all text; none
-begins as the containers and streams here do.
+joined, a session description), which makes them open other files or the network. All of these are text; none
+begins like the containers and streams here.
 """
 
 from pathlib import Path
@@ -11,14 +11,14 @@ from ... import MOST_PIXELS
 from ...errors import InputError
 from ...files.regular_file import regular_file_size
 
-LOOKED_AT = 4096
+HEAD_BYTES = 4096
 VALID = "a video that OpenCV can read"
 
 BOXES = (
     *(b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot"),
     *(b"styp", b"uuid", b"moof", b"udta", b"prfl", b"PICT", b"junk"),
 )
-"""MP4 and QuickTime: the name of the first box follows its size."""
+"""MP4 and QuickTime: types of the first box, which follow its size."""
 BEGINNINGS = (
     b"\x1a\x45\xdf\xa3",  # Matroska, WebM
     b"\x30\x26\xb2\x75\x8e\x66\xcf\x11",  # ASF, WMV
@@ -40,23 +40,23 @@ BEGINNINGS = (
 )
 _RIFF = (b"AVI ", b"AVIX")
 TRANSPORT = ((188, 0), (192, 4), (204, 0))
-"""Packet lengths of MPEG transport streams, and where in each its synchronising byte stands."""
+"""Packet lengths of MPEG transport streams, and the offset of the sync byte in a packet."""
 
 
 def check_container(path: Path) -> None:
-    """Refuse what no decoder shall see.
+    """Refuse files that are no video container.
 
     Args:
-        path: A file that is said to be a video.
+        path: A supposed video file.
 
     Raises:
-        InputError: It is missing, no ordinary file, empty, or does not begin as a video does.
+        InputError: It is missing, no regular file, empty, or does not begin like a video.
     """
     if regular_file_size(path, VALID) == 0:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
         with path.open("rb") as file:
-            beginning = file.read(LOOKED_AT)
+            beginning = file.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {VALID}") from error
     if not _begins_as_video(beginning):
@@ -74,7 +74,7 @@ def check_pixels(path: Path, width: float, height: float) -> None:
     """
     if width * height > MOST_PIXELS:
         raise InputError(
-            f"{path}: its pictures are {width:.0f} x {height:.0f} pixels; at most {MOST_PIXELS} pixels, as "
+            f"{path}: its pictures have {width:.0f} x {height:.0f} pixels; at most {MOST_PIXELS} pixels, as "
             "in 16384 x 8192, are read"
         )
 
@@ -89,7 +89,7 @@ def _begins_as_video(data: bytes) -> bool:
 
 
 def _is_transport(marks: bytes) -> bool:
-    """Whether the bytes at the places of synchronising bytes are such."""
+    """Whether the bytes at the offsets of sync bytes are sync bytes."""
     return bool(marks) and marks[:5] == b"G" * min(len(marks), 5) and len(marks) > 1
 
 
@@ -98,6 +98,6 @@ def _is_text(data: bytes) -> bool:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         text = data[: error.start].decode("utf-8-sig")
-        if error.start < len(data) - 4:  # not merely cut within a letter
+        if error.start < len(data) - 4:  # not merely cut within a character
             return False
     return all(letter.isprintable() or letter.isspace() for letter in text)

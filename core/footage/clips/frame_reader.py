@@ -1,4 +1,4 @@
-"""One frame of a clip after another as a person looks at them: a step forward decodes one frame."""
+"""Frame reader for playback: a step forward decodes one frame, a jump seeks."""
 
 from collections.abc import Iterator
 
@@ -10,16 +10,15 @@ Stamped = tuple[float, Image]
 EARLY = 0.1
 """Share of a frame's interval by which its time stamp may be rounded up."""
 LONGEST_STEP = 12.0
-"""Intervals that are rather decoded on the way than searched for."""
+"""Intervals up to which frames are decoded on the way instead of seeking."""
 BEFORE = 2
-"""Frames before the one that is sought, with which a search begins."""
+"""Frames before the wanted one at which a seek begins."""
 
 
 class FrameReader:
-    """A clip's decoder that stays where it is between two looks.
+    """A clip's decoder that keeps its position between calls.
 
-    Frames are sought by their time and not counted, so that those of a variable rate are found without going
-    through the whole clip first.
+    Frames are found by time and not by index, so that a variable frame rate needs no pass over the clip.
     """
 
     def __init__(self, clip: Clip) -> None:
@@ -30,15 +29,15 @@ class FrameReader:
         self._coming: Stamped | None = None
 
     def image_at(self, time_s: float) -> Image | None:
-        """Return the last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
+        """The last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
 
         None before the first frame, and once the last has been shown for an interval.
 
         Args:
-            time_s: seconds from the first frame.
+            time_s: Seconds from the first frame.
 
         Raises:
-            InputError: the clip is gone, or an image of a sequence cannot be read.
+            InputError: The clip is gone, or an image of a sequence cannot be read.
         """
         interval = 1.0 / self._clip.fps
         limit = time_s + EARLY * interval
@@ -57,6 +56,6 @@ class FrameReader:
         return self._shown[1]
 
     def _begin(self, first: int) -> None:
-        """Take up a place before which nothing is wanted."""
+        """Restart the decoder at about frame `first`."""
         self._onward = self._clip.source.onward(first)
         self._shown, self._coming = next(self._onward, None), next(self._onward, None)

@@ -11,10 +11,10 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from ...files.fields import listed
-from .one_image import read_image
+from .image_file import read_image
 
 MOST_IMAGES = 10**6
-"""Of one folder; eleven hours of film."""
+"""Images of one folder at most; eleven hours of film."""
 EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 PATTERN = re.compile(r"(#+|%0?\d*d)")
 LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -23,21 +23,25 @@ LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 class ImageSequence:
     """Images in the order of their numbers.
 
-    A number that is missing, as of an image that was lost, keeps its place: its frame is black.
-
-    Attributes:
-        paths: the file of every frame, in order; None where it is missing.
-        size: width and height of every image in pixels.
-        fps: frames per second.
-        frame_count: number of frames.
-        notes: sentences on what is missing.
+    A missing number, as of a lost image, keeps its frame, which is black.
     """
+
+    paths: tuple[Path | None, ...]
+    """The file of every frame, in order; None where it is missing."""
+    size: tuple[int, int]
+    """Width and height of every image in pixels."""
+    fps: float
+    """Frames per second."""
+    frame_count: int
+    """Number of frames."""
+    notes: tuple[str, ...]
+    """Sentences on missing images."""
 
     def __init__(self, paths: Sequence[Path], fps: float) -> None:
         """Take the files in order and read the first.
 
         Raises:
-            InputError: the first image cannot be read, or the rate is not above 0.
+            InputError: The first image cannot be read, or the rate is not above 0.
         """
         if not (np.isfinite(fps) and fps > 0.0):
             raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
@@ -45,7 +49,7 @@ class ImageSequence:
         self.fps = float(fps)
         self.frame_count = len(self.paths)
         first = read_image(paths[0])
-        self.size: tuple[int, int] = (first.shape[1], first.shape[0])
+        self.size = (first.shape[1], first.shape[0])
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield index, time in seconds and image of every file; see `Clip.frames`."""
@@ -78,7 +82,7 @@ class ImageSequence:
 
 
 def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, ...]]:
-    """Return each image at the place its number says, None where one is missing, and a sentence on that."""
+    """Each image at the index of its number, None for missing ones, and sentences on those."""
     around = {stem_of_number(path) for path in paths}
     if len(paths) < 2 or len(around) > 1 or None in around:
         return tuple(paths), ()
@@ -86,8 +90,8 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
     if len(set(numbers)) < len(paths):
         return tuple(paths), ()
     step = math.gcd(*(number - numbers[0] for number in numbers))
-    places = [(number - numbers[0]) // step for number in numbers]
-    missing = places[-1] + 1 - len(places)
+    indices = [(number - numbers[0]) // step for number in numbers]
+    missing = indices[-1] + 1 - len(indices)
     if missing == 0:
         return tuple(paths), ()
     if missing > len(paths):
@@ -95,23 +99,23 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
             f"the numbers of the images in {paths[0].parent} have more gaps than images; they are taken one "
             f"after the other, from {paths[0].name} to {paths[-1].name}",
         )
-    found = dict(zip(places, paths, strict=True))
-    lost = [str(numbers[0] + step * place) for place in range(places[-1] + 1) if place not in found]
+    found = dict(zip(indices, paths, strict=True))
+    lost = [str(numbers[0] + step * index) for index in range(indices[-1] + 1) if index not in found]
     note = (
-        f"{missing} of {places[-1] + 1} images are missing in {paths[0].parent}, number {listed(lost, 3)}: "
-        "their frames count as seen by nobody; Blender shows the sequence up to the first gap only"
+        f"{missing} of {indices[-1] + 1} images are missing in {paths[0].parent}, number {listed(lost, 3)}: "
+        "no marker is visible in their frames; Blender shows the sequence up to the first gap only"
     )
-    return tuple(found.get(place) for place in range(places[-1] + 1)), (note,)
+    return tuple(found.get(index) for index in range(indices[-1] + 1)), (note,)
 
 
 def find_images(path: Path) -> list[Path] | None:
-    """Return the images that a path names, in natural order, or None where it names something else.
+    """The images that a path names, in natural order, or None where it names something else.
 
     Args:
-        path: a folder, a pattern (`img_####.png`, `img_%04d.png`), or one image of a numbered sequence.
+        path: A folder, a pattern (`img_####.png`, `img_%04d.png`), or one image of a numbered sequence.
 
     Raises:
-        InputError: a folder or pattern without an image, or a folder with several sequences.
+        InputError: A folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
         found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
@@ -132,7 +136,7 @@ def find_images(path: Path) -> list[Path] | None:
 
 
 def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
-    """Return a sentence where a folder holds images that are not of its sequence."""
+    """A sentence on the images of a folder that are not of its sequence, if there are any."""
     if not path.is_dir():
         return ()
     used = {image.name for image in images}
@@ -143,7 +147,7 @@ def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
 
 
 def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
-    """Return the numbered images of a folder without stray ones; all of them where none are numbered."""
+    """The numbered images of a folder without stray ones; all of them where none are numbered."""
     sequences: dict[tuple[str, str], list[Path]] = {}
     for image in images:
         sequences.setdefault(stem_of_number(image) or ("", image.name), []).append(image)
@@ -159,19 +163,19 @@ def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
 
 
 def is_image(path: Path) -> bool:
-    """Tell whether a path is a file that is named like an image."""
-    hidden = path.name.startswith(".")  # beside every file that macOS copies to other discs lies one
+    """Whether a path is a file named like an image."""
+    hidden = path.name.startswith(".")  # macOS puts one beside every file it copies to other disks
     return path.suffix.lower() in EXTENSIONS and not hidden and path.is_file()
 
 
 def stem_of_number(path: Path) -> tuple[str, str] | None:
-    """What a numbered image's name has before and behind its number; None for a name without one."""
+    """Prefix and suffix of a numbered image's name around its number; None for a name without one."""
     number = LAST_NUMBER.search(path.stem)
     return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
 
 
 def _siblings(path: Path) -> list[Path]:
-    """Return the sequence a numbered image belongs to; an image without a number stands alone."""
+    """The sequence a numbered image belongs to; an image without a number stands alone."""
     around = stem_of_number(path)
     return [path] if around is None else _numbered(path.parent, *around)
 
@@ -191,7 +195,7 @@ def _limited(folder: Path, images: Iterator[Path]) -> list[Path]:
 
 
 def _natural_key(path: Path) -> list[tuple[int, int, str]]:
-    """Order names as people count: digits by their value, the rest as text."""
+    """Sort key of natural order: digits by value, the rest as text."""
     parts = re.split(r"(\d+)", path.name.lower())
     return [(1, int(part), part) if part.isdecimal() else (0, 0, part) for part in parts]
 

@@ -1,4 +1,4 @@
-"""Interlaced video: two moments in one picture, one in the even rows and one in the odd ones."""
+"""Interlacing: detection of combed pictures, whose even and odd rows are two fields from two moments."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,21 +6,21 @@ from numpy.typing import NDArray
 from ...arrays import Image
 
 STEP = 8
-"""Levels by which neighboring rows differ where a moving edge is combed."""
+"""Difference of neighboring rows where a moving edge is combed, in levels."""
 TEETH = 5
-"""Steps up and down in turn that neither noise nor a texture makes so often."""
+"""Alternating steps that make a comb; noise and textures seldom have as many."""
 COLUMNS = 320
-"""Fewest that are looked at."""
+"""Fewest sampled columns."""
 
 
-def combing(image: Image) -> tuple[float, float]:
-    """Return how much of a picture looks combed, by rows as fields do it, and by columns for comparison.
+def combed_shares(image: Image) -> tuple[float, float]:
+    """Combed shares of a picture: by rows, as interlacing makes them, and by columns for comparison.
 
     Args:
-        image: (rows, columns, 3) as it was decoded: scaled pictures have lost their teeth.
+        image: (rows, columns, 3) as decoded: scaling removes combs.
 
     Returns:
-        Two shares of the picture's places.
+        Two shares of the sampled pixels.
     """
     green = image[..., 1].astype(np.int16)
     across = max(image.shape[1] // COLUMNS, 1)
@@ -33,8 +33,8 @@ def _teeth(levels: NDArray[np.int16]) -> float:
     if len(step) < TEETH:
         return 0.0
     step[1::2] *= -1
-    places = len(step) - TEETH + 1
+    windows = len(step) - TEETH + 1
     up, down = step > STEP, step < -STEP
-    rising = np.logical_and.reduce([up[tooth : tooth + places] for tooth in range(TEETH)])
-    falling = np.logical_and.reduce([down[tooth : tooth + places] for tooth in range(TEETH)])
+    rising = np.logical_and.reduce([up[tooth : tooth + windows] for tooth in range(TEETH)])
+    falling = np.logical_and.reduce([down[tooth : tooth + windows] for tooth in range(TEETH)])
     return float(np.mean(rising | falling))

@@ -1,4 +1,7 @@
-"""Rows that OpenCV leaves as they were in memory, and what is put there."""
+"""Workarounds for OpenCV: log messages on standard error, and rows that it leaves uninitialized."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import cv2
 import numpy as np
@@ -6,22 +9,32 @@ import numpy as np
 from ...arrays import Image
 
 DEEP_YUV420 = b"Y3\x0b"
-"""How FFmpeg names planar YCbCr with colors at half the resolution in more than eight bits; the depth
-follows."""
+"""FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows."""
 BLOCK = 16
-"""Coded pictures have so many rows or a multiple."""
+"""Coded pictures have a multiple of this many rows."""
 ROWS = 3
 
 
+@contextmanager
+def opencv_silence() -> Iterator[None]:
+    """Suppress OpenCV's log, so that standard error has our one sentence alone."""
+    level = cv2.getLogLevel()
+    cv2.setLogLevel(0)
+    try:
+        yield
+    finally:
+        cv2.setLogLevel(level)
+
+
 def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
-    """Repeat the row above those that were never written.
+    """Repeat the last written row in the uninitialized rows below it.
 
     OpenCV 4.11 does not write the last three rows of pictures of more than eight bits in 4:2:0 whose height
-    is no multiple of 16, as those of phones in 1080 rows: what they hold is different each time.
+    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run.
 
     Args:
-        capture: Where the image is from.
-        image: (rows, columns, 3), turned as the file asks for; it is changed.
+        capture: Source of the image.
+        image: (rows, columns, 3), rotated as the file asks for; changed in place.
     """
     code = int(capture.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little")

@@ -1,7 +1,7 @@
-"""What a video file holds, without decoding it: how many pictures, when, and where decoding can begin.
+"""Packets of a video file, undecoded: number and times of its pictures, and the keyframes for seeking.
 
-The file's packets are read as they are, one a picture. That takes a thousandth of the time of decoding them.
-Only what `VideoFile` could open is looked at.
+The file's packets are read as they are, one a picture, in a thousandth of the time of decoding them. Only
+files that `VideoFile` could open are read.
 """
 
 import os
@@ -14,28 +14,28 @@ import cv2
 import numpy as np
 
 from ...arrays import Array
-from .opencv_silence import opencv_silence
+from .opencv_workarounds import opencv_silence
 
 MOST_PACKETS = 20_000
-"""Of a longer file no more are read: ten minutes of it tell whether the rate varies."""
+"""Packets read of a longer file: ten minutes tell whether the frame rate varies."""
 SEARCH_BEGINS = 16
-"""Frames before a wanted one from which OpenCV seeks backwards for a picture that stands by itself."""
+"""Frames before a wanted one from which OpenCV seeks backwards for a video keyframe."""
 MORE = 2
-"""Packets that must follow a wanted frame, so that the search for it never meets the end."""
+"""Packets that must follow a wanted frame, so that seeking never meets the end."""
 
 
 @dataclass(frozen=True, eq=False)
 class Packets:
-    """The beginning of a video file."""
+    """Presentation times of a video file's first pictures."""
 
     time_s: Array
-    """(N,) when each picture is shown, ascending."""
+    """(N,) time of each picture, ascending."""
     complete: bool
-    """Whether that is all the file holds."""
+    """Whether these are all of the file's pictures."""
 
 
 def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:
-    """Read the times of a file's pictures; None where the file cannot be read in this way."""
+    """Read the times of a file's pictures; None if its packets cannot be read."""
     times: list[float] = []
     with _packets(path) as capture:
         while len(times) < most and capture.grab():
@@ -46,9 +46,9 @@ def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:
 
 
 def quickly_found(path: Path, wanted: Sequence[int]) -> list[int]:
-    """Return frames near the wanted ones, ascending, for each of which few others must be decoded.
+    """Indices near the wanted ones, ascending, that can be decoded with few other frames.
 
-    Those that lie beyond what the file really holds are left out.
+    Frames beyond the file's actual end are left out.
     """
     found = set()
     with _packets(path) as capture:

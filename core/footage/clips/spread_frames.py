@@ -1,4 +1,4 @@
-"""A few frames from all over a clip, for little: the longer and larger it is, the fewer are decoded."""
+"""Sampling spread frames on a budget: the longer and larger a clip, the fewer frames are decoded."""
 
 from collections.abc import Generator, Iterator
 
@@ -13,27 +13,27 @@ from .packets import quickly_found
 from .video_file import VideoFile
 
 MOST_DECODED_PX = 90_000_000
-"""Pixels that may be decoded for a glance: about half a second of a processor, at any size."""
+"""Budget of decoded pixels: about half a second of a processor, at any size."""
 FRAMES_PER_SEARCH = 18
-"""What is decoded for a frame that is quickly found."""
+"""Frames decoded for each seek."""
 MOST_SEARCHES = 12
 IMAGE_COST = 4
-"""Opening an image takes as long as decoding so many frames of a video."""
+"""Cost of opening an image, in decoded video frames."""
 FEWEST = 3
 
 
-def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Take frames from all over a clip as `sample_clip` does, but never decode much of it.
+def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+    """Sample frames evenly over a clip like `sample_clip`, within a budget of decoded pixels.
 
     Args:
-        clip: the footage.
-        count: how many at most.
+        clip: The footage.
+        count: Most samples.
 
     Yields:
         The fraction done, from 0 to 1.
 
     Raises:
-        InputError: not one of them can be read.
+        InputError: None of them can be read.
     """
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
@@ -46,7 +46,7 @@ def glance(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, Cl
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:
         return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
-    # Some files cannot be searched; what is left of them is their beginning.
+    # In files that cannot be seeked, only the beginning is affordable.
     first = range(0, min(clip.frame_count, MOST_DECODED_PX // pixels + 1), FRAMES_PER_SEARCH)
     return (yield from _kept(clip, clip.source.at(first), len(first)))
 
@@ -59,5 +59,5 @@ def _kept(clip: Clip, frames: Iterator[tuple[int, Image]], count: int) -> Genera
         found.append((index, measuring_image(image, times)))
         yield min(len(found) / count, 1.0)
     if not found:
-        raise InputError(f"{clip.path}: none of the frames looked at can be read; the file is damaged")
+        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
     return ClipSamples(clip.path, clip.size, tuple(i for i, _ in found), tuple(image for _, image in found))

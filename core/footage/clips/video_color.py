@@ -1,4 +1,4 @@
-"""Whether a video says that its levels are those of high dynamic range."""
+"""High dynamic range: the transfer characteristics stated in a video's header."""
 
 import re
 from pathlib import Path
@@ -6,16 +6,16 @@ from pathlib import Path
 NAMES = {16: "PQ", 18: "HLG"}
 """Transfer characteristics of ITU-T H.273."""
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
-"""The box of colors in MP4 and QuickTime: primaries, then the transfer, two bytes each."""
+"""The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
 MATROSKA_BEGINS = b"\x1a\x45\xdf\xa3"
 HEAD = 2**16
-"""Bytes in which Matroska describes its tracks."""
+"""Bytes read of a Matroska file, within which it describes its tracks."""
 LARGEST_INDEX = 2**26
 
 
 def dynamic_range(path: Path) -> str | None:
-    """Return the name of the transfer of high dynamic range that a video states, PQ or HLG; else None."""
+    """Name of a video's high dynamic range transfer function, PQ or HLG; None for standard range."""
     try:
         with path.open("rb") as file:
             head = file.read(HEAD)
@@ -29,7 +29,7 @@ def dynamic_range(path: Path) -> str | None:
 
 
 def _movie_box(path: Path) -> bytes:
-    """Return the box in which MP4 and QuickTime describe their tracks; nothing where there is none."""
+    """The `moov` box of MP4 and QuickTime, which describes the tracks; empty if there is none."""
     whole = path.stat().st_size
     with path.open("rb") as file:
         while len(head := file.read(8)) == 8:

@@ -11,20 +11,19 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from .container import check_container, check_pixels
-from .opencv_silence import opencv_silence
-from .opencv_workarounds import fill_last_rows
+from .opencv_workarounds import fill_last_rows, opencv_silence
 from .video_notes import video_notes
 
 FALLBACK_FPS = 24.0
 HIGHEST_PLAUSIBLE_FPS = 2000.0
 FRAMES_PER_SEEK = 125
-"""Seeking decodes from the last key picture on: half of an encoder's usual 250 frames between them."""
+"""Mean cost of seeking, which decodes from the last video keyframe on: half of the usual 250 frames."""
 PATIENCE = 500
-"""Failures in a row after which nothing more is expected of a file: two key pictures' distance."""
+"""Failures in a row that end a file: the distance of two video keyframes."""
 LONGEST_PAUSE_S = 3600.0
-"""A time stamp farther ahead of the last is none."""
+"""Longest step between valid time stamps."""
 SMALLEST_FRAME_BYTES = 8
-"""Of the smallest frames, what a container writes of each: a claim of more is not believed."""
+"""Least bytes of a frame in a container; bounds the frame count that a header may claim."""
 
 CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
 
@@ -33,21 +32,23 @@ os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
 
 
 class VideoFile:
-    """A video file that OpenCV can decode.
+    """A video file that OpenCV can decode."""
 
-    Attributes:
-        path: the file.
-        size: width and height in pixels, after the rotation that the file asks for.
-        fps: nominal frames per second.
-        frame_count: number of frames the file claims, at least 1.
-        notes: sentences on what a person should know of it.
-    """
+    path: Path
+    size: tuple[int, int]
+    """Width and height in pixels, after the rotation that the file asks for."""
+    fps: float
+    """Nominal frames per second."""
+    frame_count: int
+    """Number of frames according to the file, at least 1."""
+    notes: tuple[str, ...]
+    """Sentences on faults of the file."""
 
     def __init__(self, path: Path) -> None:
         """Open the file and decode its first frame.
 
         Raises:
-            InputError: it is empty, not a video, too large, or broken before the first frame.
+            InputError: It is empty, not a video, too large, or broken before the first frame.
         """
         self.path = path
         check_container(path)
@@ -60,20 +61,20 @@ class VideoFile:
                     f"{path}: not one frame of this {_codec(capture)} video can be decoded; it is damaged, "
                     f"cut off or coded in a way that OpenCV cannot read here; {CONVERT}"
                 )
-            self.size: tuple[int, int] = (int(image.shape[1]), int(image.shape[0]))
+            self.size = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
-            self.fps: float = fps if 0.0 < fps < HIGHEST_PLAUSIBLE_FPS else FALLBACK_FPS
+            self.fps = fps if 0.0 < fps < HIGHEST_PLAUSIBLE_FPS else FALLBACK_FPS
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
             self.notes = video_notes(path, capture)
         most = path.stat().st_size // SMALLEST_FRAME_BYTES
-        self.frame_count: int = int(min(claimed, most)) if np.isfinite(claimed) else 0
+        self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
             self.frame_count = sum(1 for _ in self.time_stamps())
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield index, time in seconds and image of every frame; see `Clip.frames`.
 
-        Frames that cannot be decoded, with others after them, come black: those after keep their places.
+        Frames that cannot be decoded, with others after them, are black: later ones keep their indices.
         """
         with self._capture() as capture:
             for index, (stamp, found) in enumerate(self._stamped(capture)):
@@ -87,7 +88,7 @@ class VideoFile:
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices, as far as they exist.
 
-        Short gaps are run through; in long ones the file is searched, and run through where that fails.
+        Short gaps are decoded, long ones seeked; where seeking fails, the file is decoded from its beginning.
         """
         with self._capture() as capture:
             position = 0
@@ -103,7 +104,7 @@ class VideoFile:
                 yield index, self._picture(capture, index)
 
     def sought(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        """Yield frames that the file is searched for one by one, as far as they are found; see `packets`."""
+        """Yield frames by seeking to each, as far as that succeeds; see `packets`."""
         with self._capture() as capture:
             for index in indices:
                 found = index == 0 or capture.set(cv2.CAP_PROP_POS_FRAMES, index)
@@ -111,18 +112,18 @@ class VideoFile:
                     yield index, self._picture(capture, index)
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield time in seconds and image of the frames from about one on.
+        """Yield time in seconds and image of the frames from about `first` on.
 
-        The file is searched where that is quicker; at a variable rate another frame may be found, but the
-        times are its own.
+        Seeks where that is quicker; at a variable frame rate it may begin with another frame, but the times
+        are right.
         """
         with self._capture() as capture:
             index = 0
             if first > FRAMES_PER_SEEK and capture.set(cv2.CAP_PROP_POS_FRAMES, first):
                 index = first
-            for place, (stamp, found) in enumerate(self._stamped(capture, index), index):
-                if place >= first:
-                    yield stamp, self._picture(capture, place) if found else self._nothing()
+            for position, (stamp, found) in enumerate(self._stamped(capture, index), index):
+                if position >= first:
+                    yield stamp, self._picture(capture, position) if found else self._nothing()
 
     def _run_through(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         wanted = set(indices)
@@ -134,10 +135,10 @@ class VideoFile:
                     yield index, self._picture(capture, index) if found else self._nothing()
 
     def _stamped(self, capture: cv2.VideoCapture, index: int = 0) -> Iterator[tuple[float, bool]]:
-        """Yield the time of every frame from the one of an index on, and whether it was decoded.
+        """Yield the time of every frame from `index` on, and whether it was decoded.
 
-        Decoders leave out what they cannot decode, and may give what they could decode late. Once one has
-        failed, the frames' times tell how many are lost.
+        Decoders skip frames that they cannot decode, and may deliver others late. After the first failure the
+        time stamps tell how many frames are lost.
         """
         damaged, previous = False, -np.inf
         for failures in _steps(capture):
@@ -158,14 +159,14 @@ class VideoFile:
             index += 1
 
     def _stamp(self, capture: cv2.VideoCapture, index: int, previous: float) -> float | None:
-        """Return the time of the frame just read; None where that cannot be."""
+        """The time of the frame just read; None if its stamp is invalid."""
         stamp = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0
         if np.isinf(previous):
             return stamp if 0.0 <= stamp < max(LONGEST_PAUSE_S, 2.0 * index / self.fps) else index / self.fps
         return stamp if previous < stamp < previous + LONGEST_PAUSE_S else None
 
     def _picture(self, capture: cv2.VideoCapture, index: int) -> Image:
-        """Return the frame just read; black where its picture turns out not to be there."""
+        """The frame just read; black if it has no picture."""
         decoded, image = capture.retrieve()
         if not decoded or image is None:
             return self._nothing()
@@ -206,7 +207,7 @@ def _open_quietly(path: Path) -> cv2.VideoCapture:
 
 
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
-    """Go from frame to frame; yield how often the decoder has failed on the way to each."""
+    """Step from frame to frame; yield the number of decoder failures before each."""
     failures = 0
     while failures <= PATIENCE:
         if capture.grab():
@@ -217,7 +218,7 @@ def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
 
 
 def _codec(capture: cv2.VideoCapture) -> str:
-    """The name of the coding, as in h264."""
+    """Name of the codec, such as h264."""
     code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
     return name if name.isalnum() and name.isascii() else "unknown"

@@ -1,4 +1,4 @@
-"""What a video file says of itself that a person should know."""
+"""Notes on a video file's header: non-square pixels and high dynamic range."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ NOTICEABLE_SHAPE = 0.01
 
 
 def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
-    """Return sentences on an open video."""
+    """Sentences on faults of an open video."""
     return (*_shape_notes(path, capture), *_range_notes(path))
 
 

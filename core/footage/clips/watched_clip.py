@@ -1,4 +1,4 @@
-"""A clip that is looked at while its frames are read, so that nothing has to be decoded twice."""
+"""A clip whose frames are checked and kept in an album while they are read, to decode it only once."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -6,24 +6,24 @@ from dataclasses import dataclass
 from ...arrays import Image
 from .album import Album
 from .clip import Clip, FrameSource
-from .frame_checks import FrameWatch
+from .frame_checks import FrameChecks
 
 
 @dataclass(eq=False)
 class _WatchedSource:
-    """A source of frames that shows every frame it yields in order to those who watch."""
+    """A source of frames that passes every frame to checks and album before yielding it."""
 
     size: tuple[int, int]
     fps: float
     frame_count: int
     source: FrameSource
-    watch: FrameWatch
+    checks: FrameChecks
     album: Album | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Yield every frame after showing it; blank ones have no place in an album."""
+        """Yield every frame after checking it; blank ones are not kept in the album."""
         for index, time_s, image in self.source.frames():
-            if self.watch.add(index, image) and self.album is not None:
+            if self.checks.add(index, image) and self.album is not None:
                 self.album.add(index, image)
             yield index, time_s, image
 
@@ -36,11 +36,11 @@ class _WatchedSource:
         return self.source.at(indices)
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield the frames from about one on."""
+        """Yield the frames from about `first` on."""
         return self.source.onward(first)
 
 
-def watched(clip: Clip, watch: FrameWatch, album: Album | None) -> Clip:
-    """Return the clip as one that is watched, and fills an album, while its frames are read in order."""
-    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, watch, album)
+def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
+    """The clip with checks, and an album to fill, that run while its frames are read in order."""
+    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
     return Clip(clip.path, source)

@@ -1,1 +1,1 @@
-"""Colors: spaces, distributions and models, learned from a clip."""
+"""Colors: color space, the markers' color model and how it is learned from a clip."""

@@ -1,4 +1,4 @@
-"""Learning the markers' colors over a clip, from one sample each and a few of the clip's own frames."""
+"""Color learning: the markers' color distributions, from one sample each and some frames of the clip."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,14 +8,14 @@ import numpy as np
 from ...arrays import Array, BoolArray, Image, IntArray
 from .color_model import ColorDistribution, ColorModel, color_model
 from .color_space import chromaticity
-from .sampled_colors import LEARNING_NOISE_LEVELS, PlacedMask, SampledColors
+from .indexed_frames import LEARNING_NOISE_LEVELS, CroppedMask, IndexedFrames
 
-# What one sample leaves open: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
+# Uncertainty of one sample: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
 SATURATION_DEVIATION = 0.15
 HUE_DEVIATION = 0.10
 LOG_LUMA_DEVIATION = 0.45
 LEAST_SATURATION = 0.04
-"""A gray has no hue to be off by: below this the deviations shrink no further."""
+"""Saturation below which the deviations shrink no further: a gray has no hue."""
 
 FARTHEST = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
 NEAR = 2.4  # half of it
@@ -31,10 +31,10 @@ STEEPEST_SLOPE = 0.25
 
 @dataclass(frozen=True, eq=False)
 class LearnedColors:
-    """What the sampled frames teach."""
+    """Colors learned from sampled frames."""
 
     model: ColorModel
-    """The color cells' labels, with the background weighed in."""
+    """The color model, with the background as a class of its own."""
     found: IntArray
     """(M,) pixels found of each marker over the sampled frames; 0 where its color matches nothing."""
     background_counts: Array
@@ -46,18 +46,18 @@ def learn_colors(
     samples_srgb: Sequence[tuple[int, int, int]],
     allowed: Sequence[Image | None] | None = None,
 ) -> LearnedColors:
-    """Learn each marker's distribution of color and the background's colors.
+    """Learn each marker's color distribution and the background's histogram.
 
-    Regions near each sample's color are found, the distribution is fitted to what they hold, and all that
-    lies clear of them is counted as background; the next round finds the regions again by weighing the two,
+    Regions near each sample's color are segmented, the distribution is fitted to their pixels, and all other
+    pixels are counted as background; the next round segments the regions again by the posterior of the two,
     and so on.
 
     Args:
-        images: sampled frames, (rows, columns, 3) uint8, on the searching grid.
-        samples_srgb: one (red, green, blue) in 0..255 per marker.
-        allowed: per image, (M, rows, columns) 1 where each marker may be looked for, or None for everywhere.
+        images: Sampled frames, (rows, columns, 3) uint8, on the searching grid.
+        samples_srgb: One (red, green, blue) in 0..255 per marker.
+        allowed: Per image, (M, rows, columns) 1 where each marker may be, or None for everywhere.
     """
-    sampled = SampledColors(images)
+    sampled = IndexedFrames(images)
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     core = labels = sampled.near(initial)
@@ -66,10 +66,10 @@ def learn_colors(
         if turn:
             labels = sampled.weighed(distributions, np.maximum(found, 1), background)
         masks = sampled.regions(labels, core, len(initial))
-        # Clutter of a marker's very color is kept out of the background too, or it would cost us the marker.
+        # Clutter of a marker's very color is kept out of the background too, or the marker would be lost.
         background = sampled.background_counts(masks)
         if allowed is not None:
-            masks = [_allowed(own, places) for own, places in zip(masks, allowed, strict=True)]
+            masks = [_allowed(own, limits) for own, limits in zip(masks, allowed, strict=True)]
         found = np.array([sum(own[marker].area for own in masks) for marker in range(len(initial))])
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colors([own[marker] for own in masks])
@@ -80,7 +80,7 @@ def learn_colors(
 
 
 def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
-    """Return what one sample (red, green, blue) tells of a surface's color before looking at the clip."""
+    """Prior color distribution of a surface, from one sample (red, green, blue) alone."""
     chroma, luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     saturation = float(np.linalg.norm(chroma))
     radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
@@ -97,7 +97,7 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
     Args:
         chroma: (N, 2) chromaticity.
         luma: (N,) offset luma in levels.
-        start: the sample's own distribution; the fit's center stays within its reach.
+        start: The sample's own distribution; the fit's center stays within its reach.
     """
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
@@ -133,7 +133,7 @@ def _within_reach(fitted: ColorDistribution, start: ColorDistribution) -> bool:
 def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolArray:
     """Mark the pixels (N,) to learn from.
 
-    What lies far from the sample is a blend at a border, or skin and wood under warm light; learning from it
+    Colors far from the sample are blends at a border, or skin and wood under warm light; learning from them
     would widen and move the distribution round by round.
     """
     distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
@@ -142,8 +142,8 @@ def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolAr
     return distance <= np.clip(np.quantile(distance, LEARNED_SHARE), NEAR, FARTHEST)
 
 
-def _allowed(masks: Sequence[PlacedMask], places: Image | None) -> list[PlacedMask]:
-    """Return masks, one a marker, without what lies where the marker may not be looked for."""
-    if places is None:
+def _allowed(masks: Sequence[CroppedMask], limits: Image | None) -> list[CroppedMask]:
+    """Masks, one a marker, limited to the pixels where the marker may be."""
+    if limits is None:
         return list(masks)
-    return [mask.within(place) for mask, place in zip(masks, places, strict=True)]
+    return [mask.within(limit) for mask, limit in zip(masks, limits, strict=True)]

@@ -1,4 +1,4 @@
-"""How a marker's color is distributed over a clip, and which color belongs to which marker or to none."""
+"""The color model: Gaussian color distributions of the markers, and a Bayes classifier of color cells."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,9 +22,9 @@ ColorArray = Array | SingleArray
 NOISE_LEVELS = 5.0
 """Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
 OUTLIER_DISTANCE = 16.0
-"""Squared distance past which no color is a marker's, even one the background never shows: 99.9 % of χ²."""
+"""Squared distance past which no color is a marker's, even one that the background lacks: 99.9 % of χ²."""
 GROUP_MARGIN = 2.0
-"""How much farther than a group's middle one of its cells may seem."""
+"""Ratio of squared distances between a group's center and its cells, at most."""
 BACKGROUND = 255
 """Label of pixels that are no marker's."""
 
@@ -51,12 +51,12 @@ class ColorDistribution:
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
     ) -> tuple[Array, Array]:
-        """Return the squared Mahalanobis distance and the log density of colors.
+        """The squared Mahalanobis distance and the log density of colors.
 
         Args:
             chroma: (..., 2) chromaticity.
             luma: (...) offset luma in levels, as `chromaticity` gives it.
-            noise_levels: standard deviation of a pixel's color difference in levels.
+            noise_levels: Standard deviation of a pixel's color difference in levels.
 
         Returns:
             Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
@@ -75,9 +75,9 @@ class ColorDistribution:
         return squared, -0.5 * (squared + normalizer)
 
     def within_reach(self, chroma: ColorArray, luma: ColorArray) -> IndexArray:
-        """Return the indices of all N colors nearer than OUTLIER_DISTANCE, and of some beyond.
+        """Indices of all of N colors nearer than OUTLIER_DISTANCE, and of some beyond.
 
-        No part of a distance is more than the whole of it, and a part is quickly had.
+        A fast bound: no component of a distance exceeds the whole.
         """
         light = np.log(luma) - self.log_luma
         widest = OUTLIER_DISTANCE * (float(self.covariance[0, 0]) + (NOISE_LEVELS / luma) ** 2)
@@ -88,33 +88,32 @@ class ColorDistribution:
 
 @dataclass(frozen=True, eq=False)
 class ColorModel:
-    """Which colors belong to which marker, learned for one clip."""
+    """Classifier of colors as markers or background, learned for one clip."""
 
     distributions: tuple[ColorDistribution, ...]
-    """One a marker."""
+    """One a color."""
     label: Image
-    """(CELL_COUNT,) uint8, index of the likeliest marker of each color cell, BACKGROUND where it is
-    none's."""
+    """(CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND."""
     probability: Image
-    """(CELL_COUNT,) uint8, how surely in 1/255."""
+    """(CELL_COUNT,) uint8, posterior probability in 1/255."""
 
     def classify(self, image: Image) -> tuple[Image, Image]:
-        """Return label and probability in 1/255, (rows, columns), of every pixel of an image."""
+        """Label and probability in 1/255, (rows, columns), of every pixel of an image."""
         cells = cell_index(image)
         return np.take(self.label, cells), np.take(self.probability, cells)
 
     def labels(self, image: Image) -> Image:
-        """Return the label, (rows, columns), of every pixel of an image."""
+        """The label, (rows, columns), of every pixel of an image."""
         return np.take(self.label, cell_index(image))
 
 
 def color_model(
     distributions: Sequence[ColorDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
 ) -> ColorModel:
-    """Weigh every color cell between the markers, the background and the unknown.
+    """Classify every color cell as a marker's, the background's or unknown, by posterior probability.
 
     Args:
-        distributions: the markers' colors.
+        distributions: The markers' colors.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
         background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighboring cells.
     """
@@ -130,9 +129,9 @@ def color_model(
 
 
 def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]:
-    """Return the cells, ascending, that any of the distributions could claim: those not too far from it.
+    """Cells, ascending, near any of the distributions.
 
-    Groups of cells are looked at first: colors change little within one of two by two by two.
+    Tested by groups of two by two by two cells, within which colors change little.
     """
     side = CELLS_PER_CHANNEL // 2
     group = np.arange(side**3, dtype=np.int32)
@@ -153,10 +152,10 @@ def weigh(
     chroma: ColorArray,
     luma: ColorArray,
 ) -> tuple[IndexArray, Array]:
-    """Return the likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
+    """The likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
 
     Args:
-        distributions: the markers' colors.
+        distributions: The markers' colors.
         pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
         background_counts: (N,) background pixels in each cell.
         chroma: (N, 2) chromaticity of the cells' middles.

@@ -1,8 +1,8 @@
-"""Colors without their shading: opponent chromaticity, and the cells that colors are counted in.
+"""Color space: chromaticity, which is free of shading, and the cells of color histograms.
 
 A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the
-light to a good approximation; chroma over luma therefore names the surface and luma alone the light that
-falls on it. A small offset keeps dark pixels, whose ratios are noise, near gray.
+light to a good approximation; chroma over luma therefore describes the surface, and luma the light on it. A
+small offset keeps dark pixels, whose ratios are noise, near gray.
 """
 
 import cv2
@@ -37,7 +37,7 @@ def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
         levels.
     """
     color = np.asarray(bgr, dtype=np.float64)
-    # Written out: for so short a product, libraries of linear algebra wake up threads that then wait.
+    # Written out: for so short a product, linear algebra libraries start threads that only wait.
     luma = color[..., 0] * LUMA_BGR[0] + color[..., 1] * LUMA_BGR[1] + color[..., 2] * LUMA_BGR[2]
     offset_luma = luma + LUMA_OFFSET
     differences = np.stack([(color[..., 0] - luma) * BLUE_SCALE, (color[..., 2] - luma) * RED_SCALE], axis=-1)
@@ -45,7 +45,7 @@ def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
 
 
 def cell_volume(offset_luma: ArrayLike) -> Array:
-    """Return the volume of a cell in (chromaticity, log luma), for densities counted by cells."""
+    """The volume of a cell in (chromaticity, log luma), for densities counted by cells."""
     luma = np.asarray(offset_luma)
     # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
     # scales it.
@@ -53,7 +53,7 @@ def cell_volume(offset_luma: ArrayLike) -> Array:
 
 
 def cell_index(image: Image) -> IndexArray:
-    """Return the cell of every pixel, (rows, columns) in 0..CELL_COUNT-1, of a (rows, columns, 3) image."""
+    """The cell of every pixel, (rows, columns) in 0..CELL_COUNT-1, of a (rows, columns, 3) image."""
     packed = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2BGRA)).view("<u4")[..., 0]
     cut, last = 8 - CELL_BITS, CELLS_PER_CHANNEL - 1
     index = (packed >> cut) & last
@@ -63,7 +63,7 @@ def cell_index(image: Image) -> IndexArray:
 
 
 def cell_colors(cells: Int32Array | None = None) -> Array:
-    """Return the middles of cells, (..., 3) blue, green, red in levels; of all where none are named."""
+    """Centers of cells, (..., 3) blue, green, red in levels; of all cells by default."""
     index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
     last = CELLS_PER_CHANNEL - 1
     levels = np.stack([index & last, index >> CELL_BITS & last, index >> 2 * CELL_BITS], axis=-1)
@@ -71,9 +71,9 @@ def cell_colors(cells: Int32Array | None = None) -> Array:
 
 
 def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
-    """Return chromaticity (N, 2) and offset luma (N,) of the middles of cells.
+    """Chromaticity (N, 2) and offset luma (N,) of the centers of cells.
 
-    Half the usual digits are plenty for a color and take half the time.
+    Single precision is plenty for a color and takes half the time.
     """
     levels = np.arange(CELLS_PER_CHANNEL, dtype=np.float32) * CELL_WIDTH + (CELL_WIDTH - 1) / 2
     last = CELLS_PER_CHANNEL - 1

@@ -1,4 +1,4 @@
-"""The strong colors that clips show, for a person who looks for those of the markers among them."""
+"""The strong colors of clips, with names of their hues, as candidates for the markers' colors."""
 
 from collections.abc import Iterable
 from colorsys import rgb_to_hsv
@@ -11,7 +11,7 @@ from ..segmentation.working_image import learning_image, smooth
 from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
 
 MOST = 12
-"""So many colors are named: five markers, skin, and what else is about."""
+"""Most listed colors: five markers, skin, and things in the room."""
 LEAST_STRENGTH = 0.2
 """Chromaticity below which a color is a dull one: wood and pale skin."""
 DARKEST = 25.0
@@ -20,7 +20,7 @@ APART = 0.10
 """Chromaticity within which colors are those of one surface."""
 STEP = 0.04
 LEAST_SHARE = 2e-4
-"""Share of the picture below which nothing is worth naming."""
+"""Least share of the picture of a listed color."""
 HUES = (
     (15, "red"),
     (42, "orange"),
@@ -32,28 +32,28 @@ HUES = (
     (340, "pink"),
     (360, "red"),
 )
-"""Where each hue ends [degrees]."""
+"""Upper bound of each hue [degrees]."""
 
 
 @dataclass(frozen=True)
 class StrongColor:
-    """A color that stands out."""
+    """A salient color."""
 
     color_srgb: tuple[int, int, int]
     """(red, green, blue) in 0..255, the median of its pixels."""
     share: float
-    """Of the pixels looked at, how many have it."""
+    """Share of the pixels that have it."""
 
     @property
     def hue(self) -> str:
-        """What people call its hue."""
+        """Common name of its hue."""
         red, green, blue = self.color_srgb
         degrees = 360.0 * rgb_to_hsv(red / 255.0, green / 255.0, blue / 255.0)[0]
         return next(name for end, name in HUES if degrees <= end)
 
 
 def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
-    """Return the strongest colors of images on the measuring grid, those first that stand out most."""
+    """The strongest colors of images on the measuring grid, the most salient first."""
     counts = np.zeros(CELL_COUNT)
     for image in images:
         cells = cell_index(smooth(learning_image(image)))
@@ -80,7 +80,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
 
 
 def _densest(chroma: Array, weight: Array) -> Array:
-    """Return the chromaticity (2,) that most pixels have."""
+    """The mode (2,) of the chromaticities."""
     square = np.round(chroma / STEP).astype(np.int64)
     _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
     inside = index == int(np.bincount(index, weight).argmax())
@@ -88,7 +88,7 @@ def _densest(chroma: Array, weight: Array) -> Array:
 
 
 def _median(colors: Array, weight: Array) -> list[int]:
-    """Return the weighted median of each channel, three whole numbers."""
+    """The weighted median of each channel, three whole numbers."""
     middle = []
     for channel in colors.T:
         order = np.argsort(channel)

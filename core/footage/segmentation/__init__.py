@@ -1,1 +1,1 @@
-"""From pixels to regions: where in an image a color is, and the moments of it."""
+"""Segmentation: the regions of the markers' colors in an image, and their moments."""

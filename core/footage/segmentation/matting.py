@@ -1,4 +1,4 @@
-"""How much of each pixel a region covers: its border to a fraction of a pixel.
+"""Alpha matting: the share of each pixel that a region covers, which gives its border subpixel accuracy.
 
 A border pixel mixes the region's color and its surroundings'; encoded colors mix linearly to a good
 approximation. The share follows from the colors just inside and just outside, which makes areas unbiased
@@ -21,23 +21,23 @@ REACH = (5, 5)
 
 
 class Coverage(NamedTuple):
-    """What regions cover."""
+    """Coverage of pixels by regions (alpha)."""
 
     pixel: IndexArray
-    """(N,) flat indices of all pixels that may be covered at all."""
+    """(N,) flat indices of all pixels that may be covered."""
     share: SingleArray
-    """(N,) float32 share of each that is covered, in 0..1."""
+    """(N,) float32 covered share of each, in 0..1."""
 
 
 def coverage(image: Image, mask: Image) -> Coverage:
-    """Return the share of each pixel that the masked regions cover.
+    """The share of each pixel that the masked regions cover.
 
-    The band of two pixels to either side of a region's edge, in which edges are blurred by optics and halved
-    chroma, is weighed anew; beyond it all is as the mask says.
+    Computed in the band of two pixels to either side of a region's edge, in which optics and halved chroma
+    blur edges; elsewhere the mask holds.
 
     Args:
-        image: (rows, columns, 3) uint8 blue, green, red; both numbers even.
-        mask: (rows, columns) uint8, 1 in the regions as classified.
+        image: (rows, columns, 3) uint8 blue, green, red; rows and columns even.
+        mask: (rows, columns) uint8, 1 in the classified regions.
     """
     first = cv2.erode(mask, CROSS)
     second = cv2.erode(first, CROSS)
@@ -59,13 +59,13 @@ def coverage(image: Image, mask: Image) -> Coverage:
     near = (row >> 1) * start.shape[1] + ((pixel - row * mask.shape[1]) >> 1)
     product = color.reshape(-1, 3).take(pixel, axis=0) * gain.reshape(-1, 3).take(near, axis=0)
     along = product[:, 0] + product[:, 1] + product[:, 2] - start.take(near)
-    mixed = (second.take(pixel) == 0) & (along == along)  # where a side has no color, it is not a number
+    mixed = (second.take(pixel) == 0) & (along == along)  # NaN where a side has no color
     share = np.where(mixed, np.minimum(np.maximum(along, 0.0), 1.0), mask.take(pixel))
     return Coverage(pixel, share)
 
 
 def _local_mean(color: SingleArray, weight: Image) -> tuple[SingleArray, BoolArray]:
-    """Return the weighted mean color about every two by two pixels, and where there was any weight."""
+    """Weighted mean color around every two by two pixels, and whether there is any weight."""
     factor = weight.astype(np.float32)
     half = (weight.shape[1] // 2, weight.shape[0] // 2)
     weighted = cv2.resize(cv2.multiply(color, cv2.merge([factor] * 3)), half)

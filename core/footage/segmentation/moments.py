@@ -41,8 +41,8 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
     rectangle.
 
     Args:
-        weights: coverage of each pixel, (rows, columns), booleans or numbers >= 0.
-        origin: image coordinates (x, y) of the window's top left corner, in pixels.
+        weights: Coverage of each pixel, (rows, columns), booleans or numbers >= 0.
+        origin: Image coordinates (x, y) of the window's top left corner, in pixels.
     """
     # OpenCV takes pixels for points and the first pixel's center for the origin.
     points = cv2.moments(np.asarray(weights, dtype=np.float64))
@@ -56,10 +56,10 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
-    """Return centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
+    """Centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
 
     Args:
-        moments: raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
+        moments: Raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
 
     Returns:
         Centroid and A = [[μ20, μ11], [μ11, μ02]] / m00; NaN where m00 is zero.
@@ -106,6 +106,6 @@ def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteri
 
 
 def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> Array:
-    """Return first - second wrapped to [-π/2, π/2): an axis has no head, so angles count modulo π."""
+    """The difference first - second wrapped to [-π/2, π/2): an axis has no head, so angles count modulo π."""
     difference = np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64)
     return np.asarray((difference + np.pi / 2.0) % np.pi - np.pi / 2.0)

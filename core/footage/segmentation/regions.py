@@ -1,4 +1,4 @@
-"""All regions of one image that have a marker's color, measured to a fraction of a pixel."""
+"""Region detection: all regions of the markers' colors in an image, measured with subpixel accuracy."""
 
 import itertools
 from collections.abc import Sequence
@@ -13,23 +13,22 @@ from ..colors.color_model import ColorModel
 from .matting import coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
-from .window_sheet import Sheet, Window, lay_out
+from .window_atlas import Atlas, Window, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 MOST_REGIONS = 8
-"""Regions kept of each color in a frame, the largest; a clip's memory is bounded by it."""
+"""Most regions kept of each color in a frame, the largest ones; bounds the memory of a clip."""
 SURE = 230
-"""A region must hold pixels this sure (in 1/255) to be more than a blend of other colors."""
+"""Probability (in 1/255) that some pixels of a region must reach; blends of other colors do not."""
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-SQUARE = np.ones((3, 3), dtype=np.uint8)
 
 
 class Regions(NamedTuple):
-    """R connected regions of markers' colors in one image, by color and from large to small."""
+    """R connected regions of the markers' colors in one image, by color and from large to small."""
 
     color: IntArray
-    """(R,) which color each has."""
+    """(R,) index of the color of each."""
     moments: Array
     """(R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid."""
     box: IntArray
@@ -40,7 +39,7 @@ class Regions(NamedTuple):
     """(R,) whether it touches the image's border."""
 
     def part(self, first: int, end: int) -> "Regions":
-        """Return the regions from `first` to before `end`."""
+        """The regions from `first` to before `end`."""
         some = slice(first, end)
         return Regions(
             self.color[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
@@ -59,16 +58,16 @@ NO_REGIONS = Regions(
 def find_regions(
     images: Sequence[Image], times: int, model: ColorModel, before: Regions = NO_REGIONS
 ) -> list[Regions]:
-    """Return the regions of the markers' colors in each of some successive images.
+    """Detect the regions of the markers' colors in each of some successive images.
 
-    A coarse look at the whole image tells where to measure; only the windows there, and those in which there
-    were regions just before, are looked at closely. Some images together take less time than one by one.
+    A search on a coarse grid finds the windows to measure; those around the regions of the frame before are
+    added. Only these are segmented finely. Several images together take less time than one by one.
 
     Args:
         images: (rows, columns, 3), all of one size, to be halved `times` to become the measuring grid.
-        times: how often.
-        model: the markers' colors.
-        before: the regions of the frame before.
+        times: Number of halvings.
+        model: The markers' colors.
+        before: The regions of the frame before.
     """
     grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
     factor = searching_factor(grid)
@@ -85,17 +84,17 @@ def find_regions(
                 windows.append(Window(number, times, color, *box))
     if not windows:
         return [NO_REGIONS] * len(images)
-    return _measure(lay_out(images, windows), images[0].shape, times, len(images), model)
+    return _measure(pack_windows(images, windows), images[0].shape, times, len(images), model)
 
 
 def color_masks(image: Image, model: ColorModel) -> SingleArray:
-    """Return the coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
+    """Coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
-    For previews: it is what the extraction measures, clutter of the markers' colors included.
+    For previews: as tracking measures it, clutter of the markers' colors included.
 
     Args:
         image: (rows, columns, 3) of the clip's size.
-        model: the markers' colors, C of them.
+        model: The markers' colors, C of them.
     """
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
@@ -105,9 +104,9 @@ def color_masks(image: Image, model: ColorModel) -> SingleArray:
         if not columns:
             continue
         around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
-        sheet = lay_out([grid], [Window(0, 0, color, *around)])
-        covered = coverage(sheet.picture, np.minimum(_components(sheet, model).number, 1).astype(np.uint8))
-        share = np.zeros(sheet.picture.shape[:2], dtype=np.float32)
+        atlas = pack_windows([grid], [Window(0, 0, color, *around)])
+        covered = coverage(atlas.picture, np.minimum(_components(atlas, model).number, 1).astype(np.uint8))
+        share = np.zeros(atlas.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
         a, b, c, d = np.clip(around, 0, (*grid.shape[1::-1], *grid.shape[1::-1])).tolist()
         mask[b:d, a:c] = share[b - around[1] : d - around[1], a - around[0] : c - around[0]]
@@ -115,24 +114,24 @@ def color_masks(image: Image, model: ColorModel) -> SingleArray:
 
 
 class _Components(NamedTuple):
-    """K connected regions of a sheet that are worth measuring."""
+    """K connected components of an atlas that are measured."""
 
     number: NDArray[np.uint16]
-    """(rows, columns) uint16, which region each pixel is in, from 1; 0 for none."""
+    """(rows, columns) uint16, the component of each pixel, from 1; 0 for none."""
     box: IntArray
-    """(K, 4) left, top, right, bottom on the sheet."""
+    """(K, 4) left, top, right, bottom on the atlas."""
     certainty: Array
     """(K,) mean probability of the pixels' color in 0..1."""
 
 
-def _components(sheet: Sheet, model: ColorModel) -> _Components:
-    """Find each panel's regions of its color, without one-pixel holes.
+def _components(atlas: Atlas, model: ColorModel) -> _Components:
+    """Connected components of each panel's color, with one-pixel holes closed.
 
-    Specks and regions without a sure core are left out.
+    Specks and components without a sure core are left out.
     """
-    label, probability = model.classify(smooth(sheet.picture))
-    used = np.arange(len(label))[:, None] < sheet.height
-    mask = ((label == sheet.color) & used).view(np.uint8)
+    label, probability = model.classify(smooth(atlas.picture))
+    used = np.arange(len(label))[:, None] < atlas.height
+    mask = ((label == atlas.color) & used).view(np.uint8)
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, CROSS)
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
@@ -150,27 +149,27 @@ def _components(sheet: Sheet, model: ColorModel) -> _Components:
 
 
 def _measure(
-    sheet: Sheet, shape: tuple[int, ...], times: int, images: int, model: ColorModel
+    atlas: Atlas, shape: tuple[int, ...], times: int, images: int, model: ColorModel
 ) -> list[Regions]:
-    """Measure the regions on a sheet, in pixels of the grid that images of a shape halved `times` make."""
-    found = _components(sheet, model)
-    covered = coverage(sheet.picture, np.minimum(found.number, 1).astype(np.uint8))
-    # What lies in the band beyond the edges belongs to the region beside it.
+    """Measure the regions on a atlas, in pixels of the grid that images of a shape halved `times` make."""
+    found = _components(atlas, model)
+    covered = coverage(atlas.picture, np.minimum(found.number, 1).astype(np.uint8))
+    # Pixels in the band beyond the edges belong to the region beside it.
     owner = np.asarray(cv2.dilate(found.number, CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
-    row = covered.pixel // len(sheet.color)
-    column = covered.pixel - row * len(sheet.color)
-    x, y = column + sheet.shift[0].take(column), row + sheet.shift[1].take(column)
+    row = covered.pixel // len(atlas.color)
+    column = covered.pixel - row * len(atlas.color)
+    x, y = column + atlas.shift[0].take(column), row + atlas.shift[1].take(column)
     limits = np.array([shape[1], shape[0], shape[1], shape[0]])
-    right, bottom = limits[:2, None] // sheet.scale
+    right, bottom = limits[:2, None] // atlas.scale
     inside = (x >= 0) & (y >= 0) & (x < right.take(column)) & (y < bottom.take(column))
     moments = _moments(owner, covered.share * inside, x + 0.5, y + 0.5, len(found.certainty) + 1)[1:]
     first = found.box[:, 0]
-    scale = sheet.scale[first] >> times
+    scale = atlas.scale[first] >> times
     moments = moments * scale[:, None] ** MOMENT_POWERS
     limits = limits >> times
-    box = np.clip((found.box + np.tile(sheet.shift[:, first].T, 2)) * scale[:, None], 0, limits)
+    box = np.clip((found.box + np.tile(atlas.shift[:, first].T, 2)) * scale[:, None], 0, limits)
     clipped = (box[:, :2] <= 0).any(axis=1) | (box[:, 2:] > limits[2:] - scale[:, None]).any(axis=1)
-    image, color = sheet.image[first], sheet.color[first].astype(np.int64)
+    image, color = atlas.image[first], atlas.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= FEWEST_PIXELS]
     order = order[_rank(256 * image[order] + color[order]) < MOST_REGIONS]
@@ -180,7 +179,7 @@ def _measure(
 
 
 def _moments(owner: NDArray[np.uint16], weight: SingleArray, x: Array, y: Array, count: int) -> Array:
-    """Return raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
+    """Raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
     weight_x, weight_y = weight * x, weight * y
     terms = (weight, weight_x, weight_y, weight_x * x, weight_x * y, weight_y * y)
     moments = np.stack([np.bincount(owner, term, minlength=count) for term in terms], axis=-1).astype(float)
@@ -190,5 +189,5 @@ def _moments(owner: NDArray[np.uint16], weight: SingleArray, x: Array, y: Array,
 
 
 def _rank(ascending: IntArray) -> IntArray:
-    """Return each element's place among the equal ones of an ascending sequence."""
+    """Rank of each element among equal ones, in an ascending sequence."""
     return np.arange(len(ascending)) - np.searchsorted(ascending, ascending)

@@ -1,4 +1,4 @@
-"""Where in a picture the markers may be: windows about whatever has their colors on a coarse grid."""
+"""Search windows: boxes around the pixels of the markers' colors on a coarse grid."""
 
 from collections.abc import Sequence
 
@@ -10,18 +10,18 @@ from ...arrays import Image
 Box = tuple[int, int, int, int]
 
 MOST_BOXES = 12
-"""Boxes kept of each color in a frame, those with most of it."""
+"""Most boxes kept of each color in a frame, those with most pixels of it."""
 MARGIN = 6
-"""Pixels about a box when it is measured: border band, and background enough to know its color."""
+"""Margin in px around a measured box: the border band, and enough background to know its color."""
 
 
 def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
-    """Return boxes (left, top, right, bottom) about all of a color in pixels of the measuring grid.
+    """Boxes (left, top, right, bottom) around the components of a color, in pixels of the measuring grid.
 
     Args:
         label: (rows, columns) color of each pixel of the coarse grid.
-        color: which one.
-        factor: pixels of the measuring grid that one of the coarse grid spans.
+        color: Index of the color.
+        factor: Pixels of the measuring grid to one of the coarse grid.
     """
     mask = np.equal(label, color).view(np.uint8)
     x, y, columns, rows = cv2.boundingRect(mask)
@@ -39,13 +39,13 @@ def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
 
 
 def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
-    """Return boxes about what is to be measured; what would overlap with its margin shares one.
+    """Boxes to measure; those that overlap with their margins are merged.
 
     So no pixel is measured twice for a color.
 
     Args:
-        seen: where the color is seen.
-        followed: where it was just before; of use where the coarse grid slips through what is left of it.
+        seen: Boxes of the color on the coarse grid.
+        followed: Boxes in the frame before, for regions too small for the coarse grid.
     """
     pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
     boxes = []
@@ -62,6 +62,6 @@ def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
 
 
 def _overlap(first: Box, second: Box, gap: int) -> bool:
-    """Tell whether two boxes lie less than a gap apart."""
+    """Whether two boxes lie less than a gap apart."""
     across = first[0] - gap < second[2] and second[0] < first[2] + gap
     return across and first[1] - gap < second[3] and second[1] < first[3] + gap

@@ -1,7 +1,7 @@
-"""The grids that markers are searched and measured on, and the light smoothing all color decisions share.
+"""Working resolutions: grids for measuring, learning and searching, and the smoothing before classification.
 
-A camera's picture is halved until it is fine enough to measure on and no finer: halving is what processors
-average fastest. Markers are searched on a coarse grid of a part of its pixels.
+An image is halved until it is just fine enough to measure on: halving is the fastest averaging. Markers are
+searched on a coarser grid.
 """
 
 import cv2
@@ -10,20 +10,20 @@ import numpy as np
 from ...arrays import Image
 
 MEASURING_COLUMNS = 320
-"""Fewest on which borders are measured finer than any body model predicts them."""
+"""Fewest columns on which borders are measured more accurately than body models predict them."""
 LEARNING_COLUMNS = 240
-"""Fewest on which the inside of a forearm is clear of its blurred border."""
+"""Fewest columns on which a forearm has pixels clear of its blurred border."""
 SEARCHING_COLUMNS = 160
-"""Fewest that a marker worth measuring does not slip through."""
+"""Fewest columns on which no marker of a measurable size is missed."""
 
 
 def halvings(size: tuple[int, int]) -> int:
-    """Return how often an image of (width, height) is halved for measuring."""
+    """How often an image of (width, height) is halved for measuring."""
     return _halvings(max(size), MEASURING_COLUMNS)
 
 
 def measuring_image(image: Image, times: int) -> Image:
-    """Return an image halved `times`; odd last columns and rows are left out."""
+    """An image halved `times`; odd last columns and rows are left out."""
     for _ in range(times):
         rows, columns = image.shape[0] // 2, image.shape[1] // 2
         whole = image[: 2 * rows, : 2 * columns]
@@ -37,12 +37,12 @@ def learning_image(measuring: Image) -> Image:
 
 
 def searching_factor(grid: tuple[int, int]) -> int:
-    """Return by how much the grid of the search is coarser than the measuring one of (rows, columns)."""
+    """By how much the grid of the search is coarser than the measuring one of (rows, columns)."""
     return 1 << _halvings(max(grid), SEARCHING_COLUMNS)
 
 
 def searching_image(image: Image, factor: int) -> Image:
-    """Return the middle four pixels' mean of every square of `factor` by `factor`."""
+    """The middle four pixels' mean of every square of `factor` by `factor`."""
     rows, columns = image.shape[0] // factor, image.shape[1] // factor
     whole = image[: rows * factor, : columns * factor]
     return np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_LINEAR), dtype=np.uint8)
@@ -54,7 +54,7 @@ def smooth(image: Image) -> Image:
 
 
 def _halvings(columns: int, fewest: int) -> int:
-    """Return how often some columns can be halved and leave no fewer than the fewest."""
+    """How often some columns can be halved and leave no fewer than the fewest."""
     times = 0
     while columns >> (times + 1) >= fewest:
         times += 1

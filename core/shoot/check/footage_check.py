@@ -7,7 +7,7 @@ from ...footage.clips.clip_samples import SAMPLED_FRAMES, ClipSamples
 from ...footage.clips.clip_timing import is_variable_frame_rate
 from ...footage.clips.image_sequence import ImageSequence
 from ...footage.clips.packets import read_packets
-from ...footage.clips.spread_frames import glance
+from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.clips.video_file import VideoFile
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
@@ -74,7 +74,7 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
         findings.warn(rate)
     samples = None
     with findings.catching():
-        samples = run(glance(clip))
+        samples = run(sample_spread_frames(clip))
     if samples is None:
         return ()
     dark = _check_light(samples, findings)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ...arrays import Image
 from ...errors import InputError
 from ...footage.clips.clip import Clip
-from ...footage.clips.spread_frames import glance
+from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.colors.strong_colors import StrongColor, strong_colors
 from ...progress import run
 from ...take.description import KEYFRAME_FILE, TAKE_FILE, sidecar_file
@@ -91,7 +91,7 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
     chosen = opened[:: max(len(opened) // COLORED_CLIPS, 1)][:COLORED_CLIPS]
     for done, clip in enumerate(chosen):
         yield 0.8 + 0.2 * done / len(chosen)
-        images += run(glance(clip, COLORED_FRAMES)).images
+        images += run(sample_spread_frames(clip, COLORED_FRAMES)).images
     yield 1.0
     return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(images))
 

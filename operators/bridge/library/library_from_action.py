@@ -3,7 +3,7 @@
 import bpy
 
 from ....core.body.human import HUMAN
-from ....core.library.learning import About, learn_library
+from ....core.library.learning import LibraryMetadata, learn_library
 from ....core.library.library import Library
 from ....core.library.library_file import library_from_json, library_to_json
 from ....core.progress import run
@@ -16,7 +16,7 @@ def library_from_action(
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
     frame_s: float,
-    about: About,
+    about: LibraryMetadata,
     count: int | None = None,
 ) -> Library:
     """Learn a library from the motion that an Action holds for an actor.

@@ -22,7 +22,7 @@ from ....core.files.json_file import parse_json
 from ....core.library.library import Library, LibraryPosture
 from ....core.library.library_fields import LONGEST_TAG
 from ....core.library.library_file import library_from_json, library_to_json
-from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
+from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ....core.report.posture_picture import posture_picture
 from ..assets.catalogs import catalog_identifier
 from ..assets.marking import AssetDetails, mark_asset
@@ -190,7 +190,7 @@ def _joined(actions: Sequence[bpy.types.Action]) -> Library:
     now: dict[str, str] = {}
     for action in actions:
         posture = read_asset(action)
-        name = told_apart(posture.name, [other.name for other in postures])
+        name = unique_name(posture.name, [other.name for other in postures])
         now.setdefault(stored_name(action), name)
         postures.append(replace(posture, name=name))
     one = library_from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))

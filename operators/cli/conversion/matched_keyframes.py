@@ -7,7 +7,7 @@ from typing import Any
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import Reconstruction, reconstruct
 from ....core.library.library import Library
-from ....core.library.registry import find_library, shelved
+from ....core.library.registry import find_library, registered_libraries
 from ....core.library.texts import EVERY_LIBRARY
 from ....core.matching.match_take import LibraryChoice, match_take, with_matches
 from ....core.progress import Job, stretch
@@ -44,7 +44,7 @@ def chosen_libraries(wanted: str) -> tuple[Library, ...]:
     folders = library_folders()
     if wanted != EVERY_LIBRARY:
         return (find_library(wanted, folders),)
-    return tuple(found.library for found in shelved(folders) if found.library is not None)
+    return tuple(found.library for found in registered_libraries(folders) if found.library is not None)
 
 
 def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None) -> Job[Solved]:

@@ -8,7 +8,7 @@ from ....core.errors import InputError
 from ....core.files.json_file import write_atomically
 from ....core.library.library import Library, LibraryMotion
 from ....core.library.library_file import read_library
-from ....core.library.registry import find_library, shelved
+from ....core.library.registry import find_library, registered_libraries
 from ....core.report.canvas import write_png
 from ..console import arguments_console
 from ..line_parser import UsageError
@@ -18,7 +18,7 @@ from .folders import library_folders
 def list_command(arguments: argparse.Namespace) -> None:
     """List what lies on the shelf, also what cannot be used and why."""
     with arguments_console(arguments) as console:
-        found = shelved(library_folders())
+        found = registered_libraries(library_folders())
         rows = [
             {
                 "identifier": entry.identifier,

@@ -4,10 +4,10 @@ import argparse
 
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.library.learning import About, learn_library
+from ....core.library.learning import LibraryMetadata, learn_library
 from ....core.library.library import Library
 from ....core.library.library_file import write_library
-from ....core.library.merging import Choice, compare, joined, merged
+from ....core.library.merging import Choice, compare, join_libraries, merge_versions
 from ....core.library.mirroring import mirrored_library, with_mirrored
 from ....core.library.registry import find_library
 from ....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
@@ -26,7 +26,7 @@ def learn_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Reading the motion")
         motion = read_motion(arguments.motion)
-        about = About(
+        about = LibraryMetadata(
             title=arguments.title,
             author=arguments.author,
             license=arguments.license,
@@ -49,7 +49,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
         else:
             title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
             identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
-            library = joined(first, second, identifier, title)
+            library = join_libraries(first, second, identifier, title)
         _keep(console, arguments, library)
 
 
@@ -63,7 +63,7 @@ def _of_two_versions(first: Library, second: Library, choice: Choice | None) -> 
     if changed and choice is None:
         names = listed(map(repr, changed), 5)
         raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
-    return merged(first, second, choice)
+    return merge_versions(first, second, choice)
 
 
 def mirror_command(arguments: argparse.Namespace) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import bpy
 
 from ....core.body.kinematics import Body
-from ....core.library.texts import told_apart
+from ....core.library.texts import unique_name
 from ....core.report.posture_picture import posture_picture
 from ...bridge.library.pose_assets import header_text, show_asset, stamp_header
 from .library_from_scene import library_from_scene, postures_from_scene, unchecked_library
@@ -64,7 +64,7 @@ def posture_changed(entry: bpy.types.PropertyGroup) -> None:
         return
     with updates_suspended():
         others = [other.name for other in group.postures if other != entry]
-        entry.name = told_apart(entry.name.strip() or "Posture", others)
+        entry.name = unique_name(entry.name.strip() or "Posture", others)
         _rename_steps(group, entry.named, entry.name)
     update_assets(group)
 

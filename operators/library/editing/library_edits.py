@@ -15,7 +15,7 @@ from ....core.errors import InputError
 from ....core.library.library import LibraryMotion, LibraryPosture, MotionStep
 from ....core.library.library_fields import LONGEST_TAG, MOST_POSTURES
 from ....core.library.mirroring import with_mirrored
-from ....core.library.texts import LONGEST_NAME, text_fault, told_apart
+from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ...bridge.actor_lengths import read_body
 from ...bridge.keyframes import NOTICEABLE_M, keyed_frames, read_keyframes
 from ...bridge.library.pose_assets import add_asset
@@ -146,7 +146,7 @@ def _add_entries(group: bpy.types.PropertyGroup, postures: Sequence[LibraryPostu
     library = unchecked_library(group)
     names = []
     for posture in postures:
-        name = told_apart(posture.name, [entry.name for entry in group.postures])
+        name = unique_name(posture.name, [entry.name for entry in group.postures])
         named = replace(posture, name=name)
         add_posture_entry(group, named, add_asset(library, named, len(group.postures)))
         names.append(name)
@@ -197,7 +197,7 @@ def add_motion(
     if fault:
         raise InputError(f"the motion's name is '{name}'; it {fault}")
     times = [round(float(value), DECIMALS_S) for value in time_s]
-    free = told_apart(name.strip(), [motion.name for motion in group.motions])
+    free = unique_name(name.strip(), [motion.name for motion in group.motions])
     steps = tuple(MotionStep(posture, when) for posture, when in zip(postures, times, strict=False))
     motion = add_motion_entry(group, LibraryMotion(free, steps, times[-1], cyclic))
     group.active_motion = len(group.motions) - 1
@@ -232,7 +232,7 @@ def add_mirrored(group: bpy.types.PropertyGroup, *, only_chosen: bool) -> int:
     for motion in motions:
         steps = tuple(replace(step, posture=now.get(step.posture, step.posture)) for step in motion.steps)
         taken = [other.name for other in group.motions]
-        add_motion_entry(group, replace(motion, name=told_apart(motion.name, taken), steps=steps))
+        add_motion_entry(group, replace(motion, name=unique_name(motion.name, taken), steps=steps))
     update_assets(group)
     return len(names)
 

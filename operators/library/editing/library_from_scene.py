@@ -12,7 +12,7 @@ from ....core.errors import InputError
 from ....core.files.json_file import parse_json
 from ....core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from ....core.library.library_file import library_from_json, library_to_json
-from ....core.library.texts import told_apart
+from ....core.library.texts import unique_name
 from ...bridge.library.pose_assets import read_asset
 from .scene_libraries import TAG_SEPARATOR
 
@@ -50,7 +50,7 @@ def postures_from_scene(group: bpy.types.PropertyGroup) -> dict[str, LibraryPost
             continue
         posture = read_asset(entry.action)
         name = entry.name if posture.name == entry.named else posture.name
-        name = told_apart(name, [other.name for other in found.values()])
+        name = unique_name(name, [other.name for other in found.values()])
         exact = tuple(json.loads(entry.exact_tags or "[]"))
         tags = posture.tags if entry.tags == TAG_SEPARATOR.join(exact) else _split(entry.tags)
         found[entry.name] = replace(posture, name=name, tags=tags)

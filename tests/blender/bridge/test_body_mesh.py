@@ -5,9 +5,9 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
+from keymark.core.body.body_volume import body_pieces
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import body_pieces
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.body_mesh import build_body_mesh
 from keymark.operators.bridge.pose import write_posture

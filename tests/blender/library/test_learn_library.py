@@ -9,7 +9,7 @@ import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.library.library_file import read_library
-from keymark.core.library.posture_shape import shapes
+from keymark.core.library.posture_shape import shape_vectors
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
@@ -69,7 +69,7 @@ def test_a_motion_becomes_a_library_of_pose_assets_and_a_file(
     frames = [round(step.time_s * 30.0) for step in library.motions[0].steps]
     assert (frames[0], frames[-1]) == (0, FRAMES - 1)
     kept = Posture.stack([entry.posture for entry in library.postures])
-    apart = shapes(body, kept) - shapes(body, posture[np.array(frames)])
+    apart = shape_vectors(body, kept) - shape_vectors(body, posture[np.array(frames)])
     apart = apart.reshape(len(frames), -1, 3)
     apart -= apart.mean(axis=(0, 1)) * [0.0, 0.0, 1.0]  # the floor is found from the feet
     assert np.abs(apart).max() < 2e-3

@@ -10,7 +10,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import write_library
-from keymark.core.library.registry import shelved
+from keymark.core.library.registry import registered_libraries
 from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.conflicts import resolve_conflicts
@@ -60,7 +60,7 @@ def titles(folder: Path) -> list[tuple[str, str, int, int]]:
     """What lies in a folder."""
     return [
         (entry.identifier, entry.title, entry.version, len(entry.library.postures))
-        for entry in shelved([folder])
+        for entry in registered_libraries([folder])
         if entry.library is not None
     ]
 

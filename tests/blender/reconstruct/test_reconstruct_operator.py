@@ -25,13 +25,13 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     from keymark.core.footage import read_clip
 
     counted: list[int] = []
-    original = read_clip.sight_markers
+    original = read_clip.detect_markers
 
     def sight(*arguments):  # noqa: ANN002, ANN202
         counted.append(1)
         return original(*arguments)
 
-    monkeypatch.setattr(read_clip, "sight_markers", sight)
+    monkeypatch.setattr(read_clip, "detect_markers", sight)
     return counted
 
 

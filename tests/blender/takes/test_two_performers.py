@@ -8,9 +8,9 @@ import bpy
 import cv2
 import numpy as np
 import pytest
+from keymark.core.body.body_volume import body_pieces, marker_parts
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import body_pieces, marker_parts
 from keymark.core.footage.camera import Camera
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.shell.takes import active_take

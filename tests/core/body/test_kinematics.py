@@ -92,7 +92,7 @@ def test_the_jacobian_of_any_place_agrees_with_central_differences(segment: str)
     posture, local = Posture.rest(HUMAN).plus(np.full(34, 0.3)), np.array([0.05, -0.1, 0.2])
     plus, minus = (BODY.pose(posture.plus(s * STEP * np.eye(34))).place(joint, local) for s in (1.0, -1.0))
     pose = BODY.pose(posture)
-    jacobian = pose.place_jacobian(joint, pose.place(joint, local))
+    jacobian = pose.places_jacobian([joint], pose.place(joint, local)[None])[0]
     np.testing.assert_allclose(jacobian, (plus - minus).T / (2.0 * STEP), atol=1e-8)
 
 

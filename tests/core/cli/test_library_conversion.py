@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.library.learning import About, learn_library
+from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import write_library
 from keymark.core.take.motion_file import read_motion
 from keymark.operators.cli.library import folders
@@ -39,7 +39,7 @@ def take(pristine: Path, tmp_path: Path) -> Path:
 def library(tmp_path: Path) -> Path:
     """A library of just what the performer does."""
     posture = true_postures(FRAMES)
-    learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, About("Swaying", "Nobody"))
+    learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, LibraryMetadata("Swaying", "Nobody"))
     write_library(tmp_path / "swaying.json", learned)
     return tmp_path / "swaying.json"
 

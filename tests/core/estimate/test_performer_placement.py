@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
+from keymark.core.body.heading import yawed_in_place
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import hip_height_m, standing_height_m, standing_posture, turned
+from keymark.core.body.standing_posture import hip_height_m, standing_height_m, standing_posture
 from keymark.core.errors import InputError
 from keymark.core.estimate.performer_placement import ground_place, place_standing
 from keymark.core.footage.camera import Camera
@@ -104,7 +105,7 @@ def test_it_faces_the_camera_wherever_that_is(heading: float) -> None:
 
 def test_a_turn_keeps_the_hips_in_place() -> None:
     """Only about the vertical."""
-    batch = turned(standing_posture(BODY, np.array([1.0, 2.0, 0.0])), np.array([0.0, 1.0]))
+    batch = yawed_in_place(standing_posture(BODY, np.array([1.0, 2.0, 0.0])), np.array([0.0, 1.0]))
     np.testing.assert_allclose(batch.translation[0], batch.translation[1])
     assert np.allclose(batch.rotations[1, 0][2], [0.0, 0.0, 1.0])
     assert not np.allclose(batch.rotations[0, 0], batch.rotations[1, 0])

@@ -13,17 +13,17 @@ from keymark.core.estimate.single_frame import FrameFit, fit_frame
 from keymark.core.estimate.terms.regions import ObservedRegions
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import (
-    Belief,
-    belief_from_keyframes,
-    belief_from_pose,
-    belief_from_standing,
+    FramePrior,
+    prior_from_keyframes,
+    prior_from_pose,
+    prior_from_standing,
 )
 from keymark.core.prior.keyframes import Keyframe
 
 TRUTH = exercise(45)
 
 
-def fit(belief: Belief, tracks: RegionTracks, frame: int) -> FrameFit:
+def fit(belief: FramePrior, tracks: RegionTracks, frame: int) -> FrameFit:
     """Fit one frame of tracks."""
     observed = ObservedRegions.from_tracks(tracks)
     return fit_frame(uncalibrated(MODEL), observed[np.array([frame])], belief, frame)
@@ -44,7 +44,7 @@ def test_the_fit_leads_from_the_keyframe_before_towards_the_truth() -> None:
     tracks = film(TRUTH, noise_px=0.3, seed=1)
     before, after = [], []
     for frame in range(10, 45, 5):
-        belief = belief_from_keyframes(keyframes(frame - 10), frame, 30.0)
+        belief = prior_from_keyframes(keyframes(frame - 10), frame, 30.0)
         found = fit(belief, tracks, frame)
         before.append(error_mm(belief.posture, frame))
         after.append(error_mm(found.posture, frame))
@@ -56,7 +56,7 @@ def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
     tracks = film(TRUTH, noise_px=0.3, seed=2)
     before, after = [], []
     for frame in range(15, 30, 3):
-        belief = belief_from_keyframes(keyframes(frame - 15, frame + 15), frame, 30.0)
+        belief = prior_from_keyframes(keyframes(frame - 15, frame + 15), frame, 30.0)
         found = fit(belief, tracks, frame)
         before.append(error_mm(belief.posture, frame))
         after.append(error_mm(found.posture, frame))
@@ -73,7 +73,7 @@ def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
     centroid[:, rng.integers(5)] = np.nan
     tracks = replace(tracks, centroid=centroid)
     frame = int(rng.integers(10, 45))
-    belief = belief_from_keyframes(keyframes(frame - 10), frame, 30.0)
+    belief = prior_from_keyframes(keyframes(frame - 10), frame, 30.0)
     found = fit(belief, tracks, frame)
     assert np.nansum(np.log1p(found.residual_px**2)) <= np.nansum(np.log1p(found.before_px**2))
     hidden = ~np.isfinite(tracks.centroid[frame, :, 0])
@@ -84,7 +84,7 @@ def test_what_is_believed_exactly_stays() -> None:
     """With nothing seen the belief is the answer."""
     tracks = film(TRUTH)
     tracks = replace(tracks, centroid=np.full_like(tracks.centroid, np.nan))
-    found = fit(belief_from_keyframes(keyframes(5), 20, 30.0), tracks, 20)
+    found = fit(prior_from_keyframes(keyframes(5), 20, 30.0), tracks, 20)
     assert np.abs(found.posture.minus(TRUTH[5])).max() < 1e-9
     assert found.misplaced == ()
 
@@ -94,7 +94,7 @@ def test_a_marker_that_no_posture_explains_is_named() -> None:
     tracks = film(TRUTH)
     centroid = np.array(tracks.centroid)
     centroid[20, 3] = (4.0, 4.0)
-    found = fit(belief_from_keyframes(keyframes(15), 20, 30.0), replace(tracks, centroid=centroid), 20)
+    found = fit(prior_from_keyframes(keyframes(15), 20, 30.0), replace(tracks, centroid=centroid), 20)
     assert found.misplaced == (3,)
     assert np.nanmax(np.delete(found.residual_px, 3)) < 3.0
 
@@ -111,7 +111,7 @@ def test_the_ground_tells_how_far_away_someone_stands() -> None:
     for place in (-0.4, 0.3, 0.5):
         true = Posture.stack([standing_posture(BODY, np.array([0.0, place, 0.0]))])
         observed = ObservedRegions.from_tracks(film(true, noise_px=0.3, seed=6, model=model))
-        belief = belief_from_standing(believed)
+        belief = prior_from_standing(believed)
         fits = [
             fit_frame(uncalibrated(model), observed, known, 0)
             for known in (belief, replace(belief, grounded=None))
@@ -126,7 +126,7 @@ def test_hinges_keep_their_range() -> None:
     tracks = film(TRUTH, noise_px=2.0, seed=5)
     limits = BODY.skeleton.limits[BODY.skeleton.hinge_dofs]
     for frame in range(5, 45, 8):
-        angles = fit(belief_from_keyframes(keyframes(frame - 5), frame, 30.0), tracks, frame).posture.angles
+        angles = fit(prior_from_keyframes(keyframes(frame - 5), frame, 30.0), tracks, frame).posture.angles
         assert np.all(angles > limits[:, 0] - 0.1)
         assert np.all(angles < limits[:, 1] + 0.1)
 
@@ -136,7 +136,7 @@ def test_a_rough_pose_is_corrected() -> None:
     rng = np.random.default_rng(4)
     tracks = film(TRUTH, noise_px=0.3, seed=4)
     rough = np.where(np.arange(34) < 6, 0.02, 0.15) * rng.normal(size=34)
-    belief = belief_from_pose(TRUTH[20].plus(rough))
+    belief = prior_from_pose(TRUTH[20].plus(rough))
     found = fit(belief, tracks, 20)
     assert error_mm(found.posture, 20) < 0.8 * error_mm(belief.posture, 20)
     assert np.nanmean(found.residual_px) < 0.3 * np.nanmean(found.before_px)
@@ -148,7 +148,7 @@ def test_someone_who_merely_stands_there_is_fitted_too() -> None:
     frame = 8
     one = tracks.frame(frame)
     segments = tuple(placement.segment for placement in MODEL.placements)
-    belief = belief_from_standing(place_standing(BODY, CAMERA, 0, one, segments))
+    belief = prior_from_standing(place_standing(BODY, CAMERA, 0, one, segments))
     found = fit(belief, tracks, frame)
     assert np.nanmax(found.residual_px) < 3.0
     assert error_mm(found.posture, frame) < 150.0

@@ -16,7 +16,7 @@ from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
 from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight
 from keymark.core.observation import depths
-from keymark.core.prior.variability import acceleration_factor
+from keymark.core.prior.process_noise import process_noise_factor
 
 FRAMES = 6
 DOFS = HUMAN.dof_count
@@ -29,7 +29,7 @@ def state(seed: int = 1, size: float = 0.05) -> ClipState:
         BODY,
         exercise(FRAMES),
         np.arange(FRAMES),
-        acceleration_factor(exercise(FRAMES), np.arange(FRAMES) / 4.0),
+        process_noise_factor(exercise(FRAMES), np.arange(FRAMES) / 4.0),
         20.0 * size * rng.normal(size=(FRAMES, DOFS)),
         np.zeros((FRAMES, 0)),
     )

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.frame_checks import FrameWatch
-from keymark.core.footage.clips.watched_clip import watched
+from keymark.core.footage.clips.frame_checks import FrameChecks
+from keymark.core.footage.clips.watched_clip import watch_clip
 
 FRAMES = 4
 
@@ -43,7 +43,7 @@ class Drawn:
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
     """Frames, times and size pass unchanged; each frame's picture is that frame on half the grid."""
     album = Album()
-    clip = watched(Clip(Path("drawn"), Drawn()), FrameWatch(), album)
+    clip = watch_clip(Clip(Path("drawn"), Drawn()), FrameChecks(), album)
     read = list(clip.frames())
     assert [(index, time_s) for index, time_s, _ in read] == [(i, i / 25.0) for i in range(FRAMES)]
     assert (clip.size, clip.fps, clip.frame_count) == ((640, 480), 25.0, FRAMES)
@@ -57,7 +57,7 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
 def test_sampling_puts_nothing_into_the_album() -> None:
     """Only the pass over all frames fills it; a frame never read has no picture."""
     album = Album()
-    clip = watched(Clip(Path("drawn"), Drawn()), FrameWatch(), album)
+    clip = watch_clip(Clip(Path("drawn"), Drawn()), FrameChecks(), album)
     assert len(list(clip.sample(2))) == 2
     assert 0 not in album
     with pytest.raises(KeyError):

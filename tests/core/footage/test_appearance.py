@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.footage.appearance import NOTHING, Appearance, learn_appearance
+from keymark.core.footage.appearance import NO_PART, Appearance, learn_appearance
 
 PLACE = np.kron(np.random.default_rng(1).uniform(60, 220, size=(6, 8, 3)), np.ones((10, 10, 1)))
 RED = np.array([40.0, 40.0, 210.0])
@@ -14,7 +14,7 @@ def walk_by(shake: int = 0, stays: bool = False) -> Appearance:
     rng = np.random.default_rng(2)
     images, labels = [], []
     for frame in range(FRAMES):
-        label = np.full(PLACE.shape[:2], NOTHING, dtype=np.int8)
+        label = np.full(PLACE.shape[:2], NO_PART, dtype=np.int8)
         left = 30 if stays else 5 * frame
         label[20:44, left : left + 12] = 0
         scene = np.roll(PLACE, tuple(rng.integers(-shake, shake + 1, size=2)), axis=(0, 1))
@@ -41,7 +41,7 @@ def test_what_a_performer_who_stays_hides_is_not_known() -> None:
 
 @pytest.mark.parametrize("shake", [2, 6])
 def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
-    """Two pixels of shake are told from a tripod."""
+    """Two pixels of shake make a camera that is not static."""
     assert not walk_by(shake).steady
 
 
@@ -61,7 +61,7 @@ def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> Non
     """Of any number of pictures, as plain sorting finds it, pixel by pixel."""
     rng = np.random.default_rng(frames)
     images = rng.integers(0, 255, size=(frames, 8, 64, 3), dtype=np.uint8)
-    labels = np.full((frames, 8, 64), NOTHING, dtype=np.int8)
+    labels = np.full((frames, 8, 64), NO_PART, dtype=np.int8)
     labels[0, :, :20] = 0
     learned = learn_appearance(list(images), list(labels), 1)
     for column, free in ((5, images[1:]), (50, images)):

@@ -25,7 +25,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.frame_checks import FrameWatch
+from keymark.core.footage.clips.frame_checks import FrameChecks
 from keymark.core.progress import run
 from keymark.core.take import clip_check
 from keymark.core.take.clip_check import open_clip
@@ -57,10 +57,10 @@ def numbers(clip: Clip) -> list[int]:
 
 def noticed(clip: Clip) -> tuple[str, ...]:
     """What is said of a clip's frames."""
-    watch = FrameWatch()
+    checks = FrameChecks()
     for index, _, image in clip.frames():
-        watch.add(index, image)
-    return watch.noticed().notes(1)
+        checks.add(index, image)
+    return checks.findings().notes(1)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_frames_lost_in_the_middle_leave_the_others_in_their_places(video: Calla
     assert 0 < len(lost) < 12 and read[-1] == FRAMES - 1
     np.testing.assert_allclose(np.diff(clip.time_stamps()), 1.0 / FPS, atol=1e-6)
     (note,) = noticed(clip)
-    assert "nothing is to be seen in" in note and "damaged" in note
+    assert "frames are blank" in note and "damaged" in note
     sampled = dict(clip.source.at([2, FRAMES - 1]))
     assert {index: number_of(image) for index, image in sampled.items()} == {2: 2, FRAMES - 1: FRAMES - 1}
 
@@ -211,7 +211,7 @@ def test_what_the_file_says_of_itself_is_told(
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames (13 to 24)"),
+        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames are blank (13 to 24)"),
         (("-vf", "tinterlace=interleave_top,fieldorder=tff", "-flags", "+ilme+ildct"), "interlaced"),
         (("-vf", "negate=enable='gte(n,10)'"), "changes at frame 11:"),
     ],
@@ -229,11 +229,11 @@ def test_no_take_of_ours_is_suspected(take_folder: Callable[[str], Path], reposi
     """Neither combed nor cut nor blank: every sixth frame of each."""
     folders = [take_folder(name) for name in ("walk", "reach", "real_balance")]
     for folder in [*folders, repository / "presets" / "demo" / "aerobic"]:
-        watch = FrameWatch()
+        checks = FrameChecks()
         clip = Clip.open(folder / "clip.mp4")
         for place, (_, image) in enumerate(clip.source.at(range(0, clip.frame_count, 6))):
-            watch.add(15 * place, image)
-        assert watch.noticed().notes(1) == () and watch.nothing_seen() is None
+            checks.add(15 * place, image)
+        assert checks.findings().notes(1) == () and checks.nothing_seen() is None
 
 
 @pytest.mark.parametrize(
@@ -247,10 +247,10 @@ def test_no_take_of_ours_is_suspected(take_folder: Callable[[str], Path], reposi
 )
 def test_why_nothing_can_be_found_is_known(picture: np.ndarray, why: str) -> None:
     """Of clips in which no color could be."""
-    watch = FrameWatch()
+    checks = FrameChecks()
     for index in range(3):
-        watch.add(index, picture)
-    assert why in (watch.nothing_seen() or "")
+        checks.add(index, picture)
+    assert why in (checks.nothing_seen() or "")
 
 
 def test_a_clip_of_hours_is_refused_before_it_is_read(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:

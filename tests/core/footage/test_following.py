@@ -12,7 +12,7 @@ from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
 from keymark.core.footage.segmentation.matting import coverage
 from keymark.core.footage.segmentation.search_windows import boxes_to_measure
-from keymark.core.footage.segmentation.window_sheet import NO_COLOR, Window, lay_out
+from keymark.core.footage.segmentation.window_atlas import NO_COLOR, Window, pack_windows
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9
@@ -98,7 +98,7 @@ def alike(index: int) -> list[tuple[float, float]]:
 
 
 def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
-    """Either keeps to its own path, and one note says that their colors do not tell them apart."""
+    """Each keeps its own path, and one note says that their colors do not tell them apart."""
     rng = np.random.default_rng(6)
     other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
     styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))
@@ -135,7 +135,7 @@ def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> No
     """Of two images, one of them halved; columns between panels serve no color."""
     rng = np.random.default_rng(9)
     images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
-    sheet = lay_out(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
+    sheet = pack_windows(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
     np.testing.assert_array_equal(sheet.picture[:12, :10], images[0][6:18, 5:15])
     half = measuring_image(images[1], 1)
     np.testing.assert_array_equal(sheet.picture[:10, 13:21], half[10:20, :8])

@@ -15,7 +15,7 @@ from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions
-from keymark.core.footage.segmentation.mask_outlines import mask_outlines
+from keymark.core.footage.segmentation.region_outlines import mask_outlines
 from keymark.core.footage.segmentation.regions import color_masks
 
 Result = TypeVar("Result")
@@ -79,7 +79,7 @@ def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
 
 
 def test_a_wall_of_a_markers_color_is_named() -> None:
-    """Nothing tells the marker from the wall; the other marker is well."""
+    """One marker is indistinguishable from the wall; the other marker passes."""
     rng = np.random.default_rng(4)
     styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
     wall, blue = check([draw(moving(index), rng) for index in range(20)], styles).readouts
@@ -113,11 +113,11 @@ def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
     assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
     share = 22 * 16 / (22 * 16 + 16 * 6)
     assert red.distinctness == pytest.approx(1.0 - share, abs=0.05) and blue.distinctness > 0.95
-    assert "% of what has the color of red is something else" in words(result)
+    assert "% of the pixels with the color of red are something else" in words(result)
 
 
 def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
-    """Their expected places tell them apart."""
+    """Their expected regions tell them apart."""
     rng = np.random.default_rng(7)
     other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
     styles = (*STYLES, MarkerStyle("twin", "shin.L", (RED[0] - 4, RED[1], RED[2] + 3)))
@@ -154,7 +154,7 @@ def test_sentences_say_with_what_a_color_is_confused() -> None:
     (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
     assert other == "red and blue have colors too alike: 30 % of red would pass for blue"
     (wall,) = marker_warnings("red", 24, 24, 300.0, clear._replace(background=0.25))
-    assert wall.startswith("the background wears the color of red: 25 %")
+    assert wall.startswith("the background has the color of red: 25 %")
 
 
 def test_a_tiny_marker_is_called_small() -> None:

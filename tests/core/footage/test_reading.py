@@ -57,7 +57,7 @@ def moved(take: Take, by: float) -> Take:
 
 
 def test_a_reading_survives_as_arrays(take: Take) -> None:
-    """Tracks, pictures, sightings, notes and key."""
+    """Tracks, pictures, detections, notes and key."""
     reading = replace(run(read_footage(take)), notes=("it may be cut off",))
     back = reading_from_arrays(reading_arrays(reading))
     assert_alike(back.tracks, reading.tracks)
@@ -66,17 +66,17 @@ def test_a_reading_survives_as_arrays(take: Take) -> None:
     for frame in (0, FRAMES - 1):
         assert np.array_equal(back.album.picture(frame), reading.album.picture(frame))
     assert FRAMES not in back.album
-    assert back.sightings is not None and reading.sightings is not None
-    assert back.sightings.lessons == reading.sightings.lessons
+    assert back.detections is not None and reading.detections is not None
+    assert back.detections.learning_rounds == reading.detections.learning_rounds
     bare = reading_from_arrays(reading_arrays(Reading(reading.tracks)))
-    assert bare.album is None and bare.sightings is None and bare.notes == () and bare.key == ""
+    assert bare.album is None and bare.detections is None and bare.notes == () and bare.key == ""
 
 
 def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> None:
     """The very reading comes back."""
     reading = run(read_footage(take))
     again = run(read_footage(take, reading))
-    assert again.sightings is reading.sightings and again.tracks is reading.tracks
+    assert again.detections is reading.detections and again.tracks is reading.tracks
     assert len(passes) == 1
 
 
@@ -117,7 +117,7 @@ def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[i
     else:
         take = replace(take, markers=(replace(style, segment="chest"), *take.markers[1:]))
     again = run(read_footage(take, kept))
-    assert len(passes) == 2 and again.sightings is not kept.sightings
+    assert len(passes) == 2 and again.detections is not kept.detections
 
 
 def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passes: list[int]) -> None:

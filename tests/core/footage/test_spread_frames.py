@@ -1,4 +1,4 @@
-"""Glances at clips that are too long or too large to go through, and what their files tell undecoded."""
+"""Sampling of clips that are too long or too large to decode, and the packets of their files."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from keymark.core.footage.clips import spread_frames as glancing
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
 from keymark.core.footage.clips.packets import quickly_found, read_packets
-from keymark.core.footage.clips.spread_frames import glance
+from keymark.core.footage.clips.spread_frames import sample_spread_frames
 from keymark.core.progress import run
 
 SIZE = (64, 48)
@@ -42,7 +42,7 @@ def thrifty(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("thrifty")
 def test_frames_are_from_all_over_and_what_they_say(video: Path) -> None:
     """As many as can be afforded, each the frame of its index."""
-    samples = run(glance(Clip.open(video)))
+    samples = run(sample_spread_frames(Clip.open(video)))
     assert len(samples.indices) == 11 and samples.size == SIZE
     assert samples.indices[0] == 0 and samples.indices[-1] > 500 and max(np.diff(samples.indices)) < 90
     for index, image in zip(samples.indices, samples.images, strict=True):
@@ -51,7 +51,7 @@ def test_frames_are_from_all_over_and_what_they_say(video: Path) -> None:
 
 def test_what_can_be_gone_through_is(video: Path) -> None:
     """Then the frames are evenly spread."""
-    samples = run(glance(Clip.open(video), 6))
+    samples = run(sample_spread_frames(Clip.open(video), 6))
     assert samples.indices == (50, 150, 250, 350, 450, 550)
 
 
@@ -61,7 +61,7 @@ def test_of_what_cannot_be_searched_the_beginning_is_looked_at(
 ) -> None:
     """Within what may be decoded."""
     monkeypatch.setattr(glancing, "quickly_found", lambda path, wanted: [])
-    samples = run(glance(Clip.open(video)))
+    samples = run(sample_spread_frames(Clip.open(video)))
     assert len(samples.indices) > 5 and samples.indices[-1] < 181
 
 
@@ -74,7 +74,7 @@ def test_a_cut_off_file_is_looked_at_as_far_as_it_goes(video: Path, tmp_path: Pa
     clip = Clip.open(cut)
     packets = read_packets(cut)
     assert packets is not None and packets.complete and 200 < len(packets.time_s) < clip.frame_count == 600
-    samples = run(glance(clip))
+    samples = run(sample_spread_frames(clip))
     assert len(samples.indices) > 3 and samples.indices[-1] < len(packets.time_s)
     assert quickly_found(cut, [590]) == []
 
@@ -112,8 +112,8 @@ def test_images_are_looked_at_too(tmp_path: Path) -> None:
     """And one that cannot be read is named."""
     for index in range(30):
         cv2.imwrite(str(tmp_path / f"{index:04d}.png"), np.full((48, 64, 3), level(index), dtype=np.uint8))
-    samples = run(glance(Clip.open(tmp_path), 5))
+    samples = run(sample_spread_frames(Clip.open(tmp_path), 5))
     assert samples.indices == (3, 9, 15, 21, 27)
     (tmp_path / "0009.png").write_bytes(b"no image")
     with pytest.raises(InputError, match=r"0009\.png"):
-        run(glance(Clip.open(tmp_path), 5))
+        run(sample_spread_frames(Clip.open(tmp_path), 5))

@@ -94,7 +94,7 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
         (("identifier",), "Walk", "lower-case"),
         (("identifier",), "auto", "not .auto."),  # names the choice among all libraries
         (("identifier",), "walk.json", "no ending .json"),  # would name a file where libraries are named
-        (("title",), "\u200d", "something can be seen"),
+        (("title",), "\u200d", "visible characters"),
         (("motions", 1, "duration_s"), 1e-9, "from 0.001 to 600 s"),  # endless cycles between two frames
         (("titel",), "Walk", "unknown field 'titel' \\(is 'title' meant\\?\\)"),
         (("title",), None, "title is null"),

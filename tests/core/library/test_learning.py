@@ -6,20 +6,21 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
+from keymark.core.body.heading import headings_rad, turned_and_shifted
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.posture_spline import straight_course
+from keymark.core.body.posture_spline import linear_spline
 from keymark.core.body.skeleton import SIDES
 from keymark.core.body.standing_posture import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.cycles import average_cycle, find_period_s
-from keymark.core.library.learning import About, learn_library
+from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.posture_shape import ankle_heights, headings_rad, moved, shapes
+from keymark.core.library.posture_shape import ankle_heights, shape_vectors
 
 BODY = Body(Actor.from_stature(1.8))
 COLUMN = {name: place for place, name in enumerate(BODY.skeleton.dof_names)}
-ABOUT = About("Anna's Stroll", "Anna", "CC0-1.0")
+ABOUT = LibraryMetadata("Anna's Stroll", "Anna", "CC0-1.0")
 FPS = 30.0
 PERIOD_S, STRIDE_M = 1.1, 1.3
 
@@ -39,7 +40,7 @@ def stepping(frames: int, noise_rad: float = 0.0, arc_rad: float = 0.0) -> tuple
     posture = Posture.from_vector(BODY.skeleton, vector)
     heading = arc_rad * time_s / PERIOD_S
     step = STRIDE_M / PERIOD_S / FPS * np.stack([np.sin(heading), -np.cos(heading), 0.0 * heading], axis=1)
-    return moved(posture, heading, np.cumsum(step, axis=0) - step[0]), time_s
+    return turned_and_shifted(posture, heading, np.cumsum(step, axis=0) - step[0]), time_s
 
 
 def reaching(frames: int = 90) -> tuple[Posture, Array]:
@@ -53,7 +54,7 @@ def reaching(frames: int = 90) -> tuple[Posture, Array]:
 def test_a_walk_becomes_one_cycle_that_travels_straight_ahead() -> None:
     """Its length, its stride along -Y, and feet on the floor, wherever and whither it was walked."""
     posture, time_s = stepping(118)
-    elsewhere = moved(posture, 2.0, np.array([3.0, -1.0, 0.7]))
+    elsewhere = turned_and_shifted(posture, 2.0, np.array([3.0, -1.0, 0.7]))
     library = learn_library(BODY, elsewhere, time_s, ABOUT)
     (motion,) = library.motions
     assert motion.cyclic and motion.duration_s == pytest.approx(PERIOD_S, abs=0.01)
@@ -69,7 +70,7 @@ def test_place_and_direction_do_not_matter() -> None:
     """The same motion elsewhere, in another direction and height gives the same library."""
     posture, time_s = reaching()
     one = learn_library(BODY, posture, time_s, ABOUT)
-    other = learn_library(BODY, moved(posture, -1.3, np.array([5.0, 2.0, -0.4])), time_s, ABOUT)
+    other = learn_library(BODY, turned_and_shifted(posture, -1.3, np.array([5.0, 2.0, -0.4])), time_s, ABOUT)
     assert [step.time_s for step in one.motions[0].steps] == [step.time_s for step in other.motions[0].steps]
     for mine, its in zip(one.postures, other.postures, strict=True):
         assert np.abs(mine.posture.minus(its.posture)).max() < 1e-9
@@ -83,10 +84,10 @@ def test_a_walk_along_an_arc_turns_in_every_cycle() -> None:
     library = learn_library(BODY, posture, time_s, ABOUT)
     first = library.postures[0].posture
     period = int(round(PERIOD_S * FPS))
-    again = moved(first, motion.travel[2], np.array([*motion.travel[:2], 0.0]))
+    again = turned_and_shifted(first, motion.travel[2], np.array([*motion.travel[:2], 0.0]))
     # The same pair of frames in the motion, brought to where the first posture stands.
     turn = headings_rad(first) - headings_rad(posture[0])
-    begun = moved(posture[[0, period]], turn, np.zeros(3))
+    begun = turned_and_shifted(posture[[0, period]], turn, np.zeros(3))
     there = begun.translation[1] - begun.translation[0]
     assert np.allclose(again.translation - first.translation, there, atol=0.03)
 
@@ -99,8 +100,8 @@ def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
     lags = np.arange(0.0, PERIOD_S, 0.01)
     errors = []
     for seen in (cycle.posture, shaken[: len(cycle.time_s)]):
-        wanted = shapes(BODY, seen)
-        truth = [shapes(BODY, straight_course(exact, time_s, lag + cycle.time_s)) for lag in lags]
+        wanted = shape_vectors(BODY, seen)
+        truth = [shape_vectors(BODY, linear_spline(exact, time_s, lag + cycle.time_s)) for lag in lags]
         errors.append(min(np.linalg.norm(wanted - there, axis=1).mean() for there in truth))
     assert errors[0] < 0.7 * errors[1]
 
@@ -120,9 +121,9 @@ def test_what_does_not_repeat_itself_stays_whole() -> None:
 def test_no_cycle_is_found_in_what_is_seen_once() -> None:
     """A walk shorter than two strides, and standing still between two gestures."""
     posture, time_s = stepping(45)
-    assert find_period_s(shapes(BODY, posture), time_s) is None
+    assert find_period_s(shape_vectors(BODY, posture), time_s) is None
     still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (60, 1)))
-    assert find_period_s(shapes(BODY, still), np.arange(60) / FPS) is None
+    assert find_period_s(shape_vectors(BODY, still), np.arange(60) / FPS) is None
 
 
 @pytest.mark.parametrize(
@@ -140,7 +141,7 @@ def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
     """With a title as long as titles may be; identifier and names follow from it."""
     posture, time_s = reaching()
     identifier = "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
-    about = About("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")
+    about = LibraryMetadata("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")
     library = learn_library(BODY, posture, time_s, about)
     write_library(tmp_path / "it.json", library)
     read = read_library(tmp_path / "it.json")

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _any_library import libraries
 from _libraries import small_library
+from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import library_from_json, library_to_json, read_library, write_library

@@ -9,7 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import library_from_json, library_to_json
-from keymark.core.library.merging import Choice, chosen, compare, joined, merged
+from keymark.core.library.merging import Choice, choose_version, compare, join_libraries, merge_versions
 
 MINE = small_library()
 NEW = LibraryPosture("Jump", random_posture(9))
@@ -45,19 +45,19 @@ def test_the_comparison_says_what_differs() -> None:
 
 def test_nothing_is_overwritten_without_a_word() -> None:
     """Equal libraries need none; a newer one does, and an older one too."""
-    assert chosen(MINE, small_library()) is MINE
+    assert choose_version(MINE, small_library()) is MINE
     for offered in (THEIRS, newer(), replace(MINE, version=2), replace(MINE, title="Other")):
-        with pytest.raises(InputError, match=f"differs from version {offered.version}"):
-            chosen(MINE, offered)
-        assert chosen(MINE, offered, Choice.KEEP) is MINE
-        assert chosen(MINE, offered, Choice.REPLACE) is offered
+        with pytest.raises(InputError, match=f"differs from the offered version {offered.version}"):
+            choose_version(MINE, offered)
+        assert choose_version(MINE, offered, Choice.KEEP) is MINE
+        assert choose_version(MINE, offered, Choice.REPLACE) is offered
 
 
 def test_different_libraries_never_touch() -> None:
     """Only equal identifiers are compared, chosen between or merged."""
     stranger = replace(MINE, identifier="walking")
-    for act in (compare, merged, lambda a, b: chosen(a, b, Choice.REPLACE)):
-        with pytest.raises(InputError, match="'small_steps' and 'walking' are different"):
+    for act in (compare, merge_versions, lambda a, b: choose_version(a, b, Choice.REPLACE)):
+        with pytest.raises(InputError, match="'small_steps' and 'walking' have different identifiers"):
             act(MINE, stranger)
 
 
@@ -65,8 +65,8 @@ def test_different_libraries_never_touch() -> None:
 def test_merging_adds_what_is_new_and_asks_for_the_rest(choice: Choice) -> None:
     """Steps name the posture as it is called in the end; the version grows."""
     with pytest.raises(InputError, match="'Left foot lands' differ"):
-        merged(MINE, THEIRS)
-    result = merged(MINE, THEIRS, {"Left foot lands": choice})
+        merge_versions(MINE, THEIRS)
+    result = merge_versions(MINE, THEIRS, {"Left foot lands": choice})
     landing = "LEFT foot lands" if choice is Choice.REPLACE else "Left foot lands"
     assert names(result) == [landing, *names(MINE)[1:], "Jump"]
     kept = (OTHER_LANDING if choice is Choice.REPLACE else MINE.postures[0]).posture
@@ -79,15 +79,15 @@ def test_merging_adds_what_is_new_and_asks_for_the_rest(choice: Choice) -> None:
 
 def test_merging_with_a_part_of_itself_changes_nothing() -> None:
     """The result is one of the two where it equals it."""
-    assert merged(MINE, replace(MINE, motions=())) is MINE
+    assert merge_versions(MINE, replace(MINE, motions=())) is MINE
     longer = newer(postures=(*MINE.postures, NEW))
-    assert merged(MINE, longer) is longer
+    assert merge_versions(MINE, longer) is longer
 
 
 def test_postures_of_another_actor_are_fitted() -> None:
     """A taller person's new posture arrives on my proportions."""
     taller = Actor({name: 1.2 * length for name, length in ACTOR.segments_m.items()})
-    result = merged(MINE, newer(actor=taller, postures=(NEW,), motions=()), Choice.KEEP)
+    result = merge_versions(MINE, newer(actor=taller, postures=(NEW,), motions=()), Choice.KEEP)
     assert result.actor is MINE.actor
     np.testing.assert_allclose(
         result.by_name["Jump"].posture.translation, NEW.posture.translation / 1.2, atol=1e-9
@@ -99,7 +99,7 @@ def test_two_libraries_become_a_third() -> None:
     other = replace(
         THEIRS, identifier="other", license="CC-BY-4.0 OR MIT", author="B. Person", sources=("Another.",)
     )
-    both = joined(MINE, other, "both", "Both of them")
+    both = join_libraries(MINE, other, "both", "Both of them")
     assert names(both) == [*names(MINE), "Jump", "LEFT foot lands 2"]
     assert [motion.name for motion in both.motions] == ["Steps", "Once", "Leap"]
     assert [step.posture for step in both.motions[2].steps] == ["LEFT foot lands 2", "Jump"]
@@ -108,4 +108,4 @@ def test_two_libraries_become_a_third() -> None:
     assert both.sources == (*MINE.sources, "Another.")
     library_from_json(library_to_json(both), "here")
     with pytest.raises(InputError, match="identifier"):
-        joined(MINE, other, "../both", "Both")
+        join_libraries(MINE, other, "../both", "Both")

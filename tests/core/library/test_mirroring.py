@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _any_library import libraries
 from _libraries import ACTOR, small_library
+from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
@@ -15,7 +15,7 @@ from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import library_from_json, library_to_json
 from keymark.core.library.mirroring import mirrored_library, mirrored_name, with_mirrored
-from keymark.core.library.motion_playback import course
+from keymark.core.library.motion_playback import sample_motion
 
 LIBRARY = small_library()
 
@@ -58,9 +58,9 @@ def test_a_mirrored_motion_runs_as_in_a_mirror() -> None:
     """Over several cycles, turning and travelling to the other side."""
     times = np.linspace(0.0, 3.7, 30)
     body = Body(ACTOR)
-    there = course(LIBRARY, LIBRARY.motions[0], body, times)
+    there = sample_motion(LIBRARY, LIBRARY.motions[0], body, times)
     other = mirrored_library(LIBRARY)
-    here = course(other, other.motions[0], body, times)
+    here = sample_motion(other, other.motions[0], body, times)
     np.testing.assert_allclose(here.minus(mirrored(there)), 0.0, atol=1e-9)
     assert (there.translation * MIRROR)[-1] == pytest.approx(here.translation[-1])
 

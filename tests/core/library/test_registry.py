@@ -1,4 +1,4 @@
-"""Libraries on their shelf."""
+"""The library registry."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 from _libraries import small_library
 from keymark.core.errors import InputError
 from keymark.core.library.library_file import write_library
-from keymark.core.library.registry import find_library, library_path, shelved
+from keymark.core.library.registry import find_library, library_path, registered_libraries
 
 LIBRARY = small_library()
 
@@ -24,12 +24,12 @@ def folders(tmp_path: Path) -> list[Path]:
 
 def test_the_earliest_folder_counts(folders: list[Path]) -> None:
     """One entry a library, the user's own before a shipped one of the same name, by title."""
-    shelf = shelved(folders)
-    assert [(entry.identifier, entry.title, entry.version) for entry in shelf] == [
+    registered = registered_libraries(folders)
+    assert [(entry.identifier, entry.title, entry.version) for entry in registered] == [
         ("walk", "A walk", 3),
         ("small_steps", "Mine", 1),
     ]
-    assert shelf[1].path.parent == folders[0]
+    assert registered[1].path.parent == folders[0]
 
 
 def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
@@ -39,19 +39,19 @@ def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
 
 
 def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path]) -> None:
-    """It stands on the shelf with its sentence; other JSON files do too, the rest does not."""
+    """It is registered with its sentence, and so are other JSON files; files of other kinds are not."""
     (folders[0] / "broken.json").write_text('{"schema": "keymark-library", ')
     (folders[0] / "notes.txt").write_text("no library")
     (folders[0] / "folder.json").mkdir()
-    broken = next(entry for entry in shelved(folders) if entry.library is None)
+    broken = next(entry for entry in registered_libraries(folders) if entry.library is None)
     assert broken.identifier == "broken" and "no valid JSON" in broken.problem and "\n" not in broken.problem
-    assert len(shelved(folders)) == 3
+    assert len(registered_libraries(folders)) == 3
     with pytest.raises(InputError, match="no valid JSON"):
         find_library("broken", folders)
 
 
 def test_libraries_are_found_by_name_and_by_file(folders: list[Path]) -> None:
-    """By identifier, by title, however written; a file need not lie on the shelf."""
+    """By identifier or title, in any case of letters; a file need not be in a registered folder."""
     assert find_library("WALK", folders).identifier == "walk"
     assert find_library("a walk", folders).identifier == "walk"
     assert find_library(folders[2] / "small_steps.json", folders).title == LIBRARY.title

@@ -11,7 +11,7 @@ from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.motion_playback import course
+from keymark.core.library.motion_playback import sample_motion
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 
@@ -103,8 +103,8 @@ def test_the_second_step_mirrors_the_first(name: str, motion: str) -> None:
     body = Body(library.actor)
     cycle = next(candidate for candidate in library.motions if candidate.name == motion)
     times = np.linspace(0.0, 0.5 * cycle.duration_s, 12)
-    first = course(library, cycle, body, times)
-    second = mirrored(course(library, cycle, body, times + 0.5 * cycle.duration_s))
+    first = sample_motion(library, cycle, body, times)
+    second = mirrored(sample_motion(library, cycle, body, times + 0.5 * cycle.duration_s))
     on = Posture(
         first.skeleton,
         second.translation - 0.5 * np.array([cycle.travel[0], cycle.travel[1], 0.0]),
@@ -122,7 +122,7 @@ def test_knees_bend_as_gait_laboratories_measure() -> None:
     walk = library.motions[0]
     column = body.skeleton.dof_names.index("knee.L.flexion")
     shares = np.array([0.0, 0.14, 0.40, 0.60, 0.72])
-    postures = course(library, walk, body, shares * walk.duration_s)
+    postures = sample_motion(library, walk, body, shares * walk.duration_s)
     knee = np.degrees(postures.to_vector()[:, column])
     assert np.all(np.abs(knee - [5.0, 18.0, 7.0, 38.0, 61.0]) < 8.0), knee
 

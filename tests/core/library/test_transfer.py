@@ -9,7 +9,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m
 from keymark.core.library.library import LibraryPosture
-from keymark.core.library.transfer import applied, leg_length_m
+from keymark.core.library.transfer import leg_length_m, transferred
 
 OWN = Body(ACTOR)
 LENGTHS = dict(ACTOR.segments_m)
@@ -26,7 +26,7 @@ def test_the_same_proportions_get_the_same_posture() -> None:
     """Not even the last bit changes, whoever has been read from a file in between."""
     posture = random_posture(1)
     nearly = Actor({name: round(length, 9) for name, length in LENGTHS.items()})
-    assert applied(posture, ACTOR, Body(nearly)) is posture
+    assert transferred(posture, ACTOR, Body(nearly)) is posture
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_feet_stay_on_the_floor_or_as_far_above(lengths: dict[str, float], heigh
     body = Body(Actor(lengths))
     scale = leg_length_m(body.actor) / leg_length_m(ACTOR)
     posture = grounded(2, height_m)
-    fitted = applied(LibraryPosture("any", posture), ACTOR, body)
+    fitted = transferred(LibraryPosture("any", posture), ACTOR, body)
     assert sole_heights_m(body, body.pose(fitted)).min() == pytest.approx(scale * height_m, abs=1e-12)
     np.testing.assert_array_equal(fitted.rotations, posture.rotations)
     np.testing.assert_allclose(fitted.translation[:2], scale * posture.translation[:2])
@@ -53,7 +53,7 @@ def test_a_child_does_what_an_adult_does() -> None:
     """With all lengths scaled alike, every point is scaled; there and back again nothing has changed."""
     child = Body(Actor({name: 0.7 * length for name, length in LENGTHS.items()}))
     batch = Posture.stack([grounded(seed, 0.05 * seed) for seed in range(4)])
-    small = applied(batch, ACTOR, child)
+    small = transferred(batch, ACTOR, child)
     np.testing.assert_allclose(child.points(child.pose(small)), 0.7 * OWN.points(OWN.pose(batch)), atol=1e-12)
-    back = applied(small, child.actor, OWN)
+    back = transferred(small, child.actor, OWN)
     np.testing.assert_allclose(back.translation, batch.translation, atol=1e-12)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
-from keymark.core.body.heading import headed
+from keymark.core.body.heading import yawed_at
 from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
@@ -17,7 +17,7 @@ from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import read_library
-from keymark.core.library.motion_playback import course
+from keymark.core.library.motion_playback import sample_motion
 from keymark.core.matching.match_take import LibraryChoice, match_take, with_matches
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 from keymark.core.prior.keyframes import Keyframe
@@ -58,14 +58,14 @@ def performed(library: Library, heading_rad: float, style_rad: float = 0.08, flo
     """The library's first motion as this performer does it: a little faster, every joint turned a little."""
     rng = np.random.default_rng(3)
     time = 0.2 + 1.1 * np.arange(FRAMES) / FPS
-    led = course(library, library.motions[0], BODY, time)
+    led = sample_motion(library, library.motions[0], BODY, time)
     style = rng.normal(0.0, style_rad, led.skeleton.dof_count)
     style[:6] = 0.0
     led = led.plus(style)
     turn = np.array([[np.cos(heading_rad), -np.sin(heading_rad)], [np.sin(heading_rad), np.cos(heading_rad)]])
     middle = led.translation[:, :2].mean(axis=0)
     hips = np.column_stack([(led.translation[:, :2] - middle) @ turn.T, led.translation[:, 2] + floor_m])
-    return headed(led, np.full(FRAMES, heading_rad), hips)
+    return yawed_at(led, np.full(FRAMES, heading_rad), hips)
 
 
 def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take, Reading]:

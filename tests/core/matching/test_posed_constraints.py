@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
-from keymark.core.body.heading import headed
+from keymark.core.body.heading import yawed_at
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library
@@ -32,7 +32,7 @@ def test_a_posed_posture_is_its_own_in_its_own_heading(library: Library) -> None
     """Of all postures and headings the one that was posed costs least, by what usually is left over."""
     postures, points = shapes(library)
     for which, heading in ((0, 5), (7, 17)):
-        turned = headed(postures[[which]], HEADINGS[[heading]], np.array([[0.3, -0.4, 0.9]]))[0]
+        turned = yawed_at(postures[[which]], HEADINGS[[heading]], np.array([[0.3, -0.4, 0.9]]))[0]
         constraints = PosedConstraints.from_keyframes(BODY, [Keyframe(4, turned)])
         cost = constraints.cost(4, points, HEADINGS)
         assert cost is not None

@@ -59,14 +59,14 @@ def test_contours_lie_on_either_side_of_the_limb_and_point_outwards() -> None:
 
 
 def test_the_map_shows_the_nearest_part() -> None:
-    """A forearm held before the trunk covers it, and outside the body there is nothing."""
+    """A forearm held before the trunk occludes it, and pixels outside the body have no part."""
     posture = exercise(1)
     vector = posture.to_vector()
     for name, value in (("shoulder.L.rotation_z", -1.4), ("elbow.L.flexion", 1.4)):
         vector[:, HUMAN.dof_names.index(name)] = value
     posture = posture.from_vector(HUMAN, vector)
     pose = BODY.pose(posture)
-    parts = MODEL.covers(pose, FRAME)
+    parts = MODEL.part_outlines(pose, FRAME)
     labels = part_map(parts, 0, (320, 240), 1.0)
     for name in ("forearm.L", "shin.R", "head"):
         middle = 0.5 * sum(CAMERA.project(end)[0][0] for end in BODY.segment_ends(pose, name))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import marker_segments
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import marker_segments
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks

@@ -4,7 +4,7 @@ import numpy as np
 from _scene import exercise
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe, Matched
-from keymark.core.prior.performer_offset import with_style
+from keymark.core.prior.performer_offset import with_offset
 
 FPS = 30.0
 TRUTH = exercise(91)
@@ -29,12 +29,12 @@ def in_order(*keyframes: Keyframe) -> tuple[Keyframe, ...]:
 
 
 def test_a_difference_that_lasts_is_taken_out_of_all_matched_keyframes() -> None:
-    """Two posed keyframes take most of a style away, and more than one does."""
+    """Two posed keyframes remove most of the performer's offset, and more of it than one does."""
     library = TRUTH.plus(np.tile(STYLE, (91, 1)))
     every = matched(list(range(3, 90, 6)), library)
     before = in_order(*every)
-    one, doubt_one = with_style(in_order(*every, Keyframe(30, TRUTH[30])), FPS)
-    two, doubt_two = with_style(in_order(*every, Keyframe(20, TRUTH[20]), Keyframe(70, TRUTH[70])), FPS)
+    one, doubt_one = with_offset(in_order(*every, Keyframe(30, TRUTH[30])), FPS)
+    two, doubt_two = with_offset(in_order(*every, Keyframe(20, TRUTH[20]), Keyframe(70, TRUTH[70])), FPS)
     assert error(two) < 0.5 * error(before)
     assert error(two) < error(one) < 0.7 * error(before)
     assert doubt_two[doubt_two > 0.0].mean() < doubt_one[doubt_one > 0.0].mean() < 1.0
@@ -43,33 +43,33 @@ def test_a_difference_that_lasts_is_taken_out_of_all_matched_keyframes() -> None
 def test_posed_keyframes_stay_and_are_not_doubted() -> None:
     """Only matched ones are changed."""
     given = in_order(*matched([0, 30, 60, 90], TRUTH.plus(np.tile(STYLE, (91, 1)))), Keyframe(45, TRUTH[45]))
-    changed, doubt = with_style(given, FPS)
+    changed, doubt = with_offset(given, FPS)
     assert changed[2] is given[2] and doubt[2] == 0.0
     assert [keyframe.index for keyframe in changed] == [0, 30, 45, 60, 90]
     assert all(keyframe.matched == SAID for keyframe in changed if keyframe.index != 45)
 
 
 def test_without_posed_or_without_matched_ones_nothing_changes() -> None:
-    """There is nothing to learn from, or nobody to tell."""
+    """Without posed keyframes, or without matched ones, nothing changes."""
     unposed = in_order(*matched([0, 40, 80], TRUTH))
     posed = in_order(Keyframe(0, TRUTH[0]), Keyframe(80, TRUTH[80]))
-    assert with_style(unposed, FPS)[0] is unposed and with_style(unposed, FPS)[1].tolist() == [1.0] * 3
-    assert with_style(posed, FPS)[0] is posed and with_style(posed, FPS)[1].tolist() == [0.0] * 2
+    assert with_offset(unposed, FPS)[0] is unposed and with_offset(unposed, FPS)[1].tolist() == [1.0] * 3
+    assert with_offset(posed, FPS)[0] is posed and with_offset(posed, FPS)[1].tolist() == [0.0] * 2
 
 
 def test_a_posed_keyframe_far_from_all_matched_ones_says_little() -> None:
-    """What the library would have there is not known, so the difference is not taken for style."""
-    near = with_style(in_order(*matched([0, 10], TRUTH), Keyframe(12, TRUTH[60])), FPS)[0]
-    far = with_style(in_order(*matched([0, 10], TRUTH), Keyframe(60, TRUTH[60])), FPS)[0]
+    """The library's posture there is unknown, so the difference does not count as the performer's offset."""
+    near = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(12, TRUTH[60])), FPS)[0]
+    far = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(60, TRUTH[60])), FPS)[0]
     moved = [np.abs(one[1].posture.minus(TRUTH[10])).mean() for one in (near, far)]
     assert moved[1] < 0.1 * moved[0]
 
 
 def test_the_nearer_of_two_posed_keyframes_counts_more() -> None:
-    """A style that changes along the clip is followed."""
+    """An offset that changes along the clip is followed."""
     drift = STYLE * np.linspace(0.0, 1.0, 91)[:, None]
     library = TRUTH.plus(drift)
     given = in_order(*matched(list(range(3, 90, 6)), library), Keyframe(2, TRUTH[2]), Keyframe(88, TRUTH[88]))
-    changed, _ = with_style(given, FPS)
+    changed, _ = with_offset(given, FPS)
     steps = [-k.posture.minus(library[k.index])[0] for k in changed if k.matched is not None]
     assert 0.0 < steps[0] < steps[-1] < 1.05 * drift[88, 0]

@@ -1,4 +1,4 @@
-"""The sampled frames of a clip that colors are learned from: what lies where, and how often it occurs."""
+"""Indexed frames: sampled frames of a clip as indices into a table of their colors, for color learning."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
@@ -15,23 +15,23 @@ from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_
 _Number = TypeVar("_Number", bound=np.generic)
 
 CORE_DISTANCE = 7.8
-"""Squared distance of a sample's near colors: 95 % of a chi-squared with 3 degrees of freedom."""
+"""Squared distance of the colors at a distribution's core: 95 % of χ² with 3 degrees of freedom."""
 LEARNING_NOISE_LEVELS = 2.5
-"""Noise of what is learned from: pixels that only noise could have made so teach nothing."""
+"""Noise assumed in learning, lower than in classification: pixels explained by noise alone teach nothing."""
 NO_MARKER = 255
 LARGEST_SHARE = 0.25
-"""A region over a quarter of the image is a wall or a floor."""
+"""Largest share of the image of a marker's region: larger ones are walls or floors."""
 BACKGROUND_MARGIN = 3
 KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
-# A normal distribution of one cell's deviation, cut off after two.
+# A Gaussian kernel of one cell's deviation, cut off after two.
 SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
 
 
-class PlacedMask(NamedTuple):
-    """Some pixels of an image, as a mask of the part of it that holds them."""
+class CroppedMask(NamedTuple):
+    """A mask of an image, cropped to its bounding box."""
 
     left: int
-    """First column of the part."""
+    """First column of the box."""
     top: int
     """Its first row."""
     mask: Image
@@ -39,22 +39,22 @@ class PlacedMask(NamedTuple):
     area: int
     """Pixels that are 1."""
 
-    def within(self, place: Image) -> "PlacedMask":
-        """Return what of it lies in a mask of the whole image."""
-        return _placed(self.left, self.top, self.mask & self.cut(place))
+    def within(self, whole: Image) -> "CroppedMask":
+        """The intersection with a mask of the whole image."""
+        return _cropped(self.left, self.top, self.mask & self.crop(whole))
 
     def interior(self) -> Image:
-        """Return the mask without its mixed border where that leaves enough of it."""
+        """The mask without its blended border, if enough of it remains."""
         inner = cv2.erode(self.mask, KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
         return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
 
-    def cut(self, image: NDArray[_Number]) -> NDArray[_Number]:
-        """Return the part of an image that the mask is of."""
+    def crop(self, image: NDArray[_Number]) -> NDArray[_Number]:
+        """An image cropped to the mask's box."""
         rows, columns = self.mask.shape
         return image[self.top : self.top + rows, self.left : self.left + columns]
 
 
-class SampledColors:
+class IndexedFrames:
     """The sampled frames as indices into the table of the colors that occur in them."""
 
     def __init__(self, images: Sequence[Image]) -> None:
@@ -86,31 +86,31 @@ class SampledColors:
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
         return np.where(probability >= 0.5, label, NO_MARKER).astype(np.uint8)
 
-    def regions(self, labels: Image, core: Image, markers: int) -> list[list[PlacedMask]]:
-        """Return for each frame and marker its connected regions with enough of its core color."""
+    def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
+        """For each frame and marker, its connected regions with enough of its core color."""
         result = []
         for image in self._images:
             label = labels.take(image)
-            result.append([_with_core(label, image, core, marker) for marker in range(markers)])
+            result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
         return result
 
-    def colors(self, masks: Sequence[PlacedMask]) -> tuple[Array, Array]:
-        """Return chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
+    def colors(self, masks: Sequence[CroppedMask]) -> tuple[Array, Array]:
+        """Chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
         inside = [
-            mask.cut(image)[mask.interior().view(np.bool_)]
+            mask.crop(image)[mask.interior().view(np.bool_)]
             for image, mask in zip(self._images, masks, strict=True)
             if mask.area
         ]
         index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
-    def background_counts(self, masks: Sequence[Sequence[PlacedMask]]) -> Array:
-        """Count the colors clear of all masks by cells, (CELL_COUNT,), spread over neighboring cells."""
+    def background_counts(self, masks: Sequence[Sequence[CroppedMask]]) -> Array:
+        """Smoothed histogram (CELL_COUNT,) of the colors at a distance from all masks."""
         total = np.zeros(len(self._table))
         for image, placed in zip(self._images, masks, strict=True):
             covered = np.zeros(image.shape, dtype=np.uint8)
             for mask in placed:
-                mask.cut(covered)[:] |= mask.mask
+                mask.crop(covered)[:] |= mask.mask
             near = cv2.dilate(covered, KERNEL, iterations=BACKGROUND_MARGIN)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts = np.zeros(CELL_COUNT)
@@ -119,7 +119,7 @@ class SampledColors:
 
 
 def _spread(counts: Array) -> Array:
-    """Spread counts of cells (CELL_COUNT,) over the neighboring ones."""
+    """Smooth a histogram (CELL_COUNT,) over neighboring cells."""
     side = CELLS_PER_CHANNEL
     # Two channels are rows and columns of an image with as many channels as cells in the third.
     cube = cv2.sepFilter2D(
@@ -130,13 +130,13 @@ def _spread(counts: Array) -> Array:
     return np.asarray(lines.ravel(), dtype=np.float64)
 
 
-def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> PlacedMask:
-    """Keep regions of which enough is of the core color and which are not most of the image."""
+def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> CroppedMask:
+    """Keep regions with enough of the core color that are no wall or floor."""
     mask = np.equal(label, marker).view(np.uint8)
     left, top, columns, rows = cv2.boundingRect(mask)
     part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
     if not columns:
-        return PlacedMask(0, 0, part, 0)
+        return CroppedMask(0, 0, part, 0)
     count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(part)
     color = image[top : top + rows, left : left + columns].take(pixel)
@@ -144,8 +144,8 @@ def _with_core(label: Image, image: IndexArray, core: Image, marker: int) -> Pla
     area = stats[:, cv2.CC_STAT_AREA]
     good = (strong >= np.maximum(4, 0.25 * area)) & (area <= LARGEST_SHARE * label.size)
     good[0] = False
-    return _placed(left, top, good.astype(np.uint8).take(np.asarray(number)))
+    return _cropped(left, top, good.astype(np.uint8).take(np.asarray(number)))
 
 
-def _placed(left: int, top: int, mask: Image) -> PlacedMask:
-    return PlacedMask(left, top, mask, cv2.countNonZero(mask))
+def _cropped(left: int, top: int, mask: Image) -> CroppedMask:
+    return CroppedMask(left, top, mask, cv2.countNonZero(mask))

@@ -4,14 +4,14 @@ import numpy as np
 from _scene import exercise
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.prior.variability import NATURAL_SHARE, acceleration_factor
+from keymark.core.prior.process_noise import NATURAL_SHARE, process_noise_factor
 
 FRAMES = np.array([0, 12, 24, 36, 48])
 
 
 def covariance(keyframes: Posture, time_s: np.ndarray) -> np.ndarray:
     """The covariance that the factor is a root of."""
-    factor = acceleration_factor(keyframes, time_s)
+    factor = process_noise_factor(keyframes, time_s)
     return factor @ factor.T
 
 

@@ -1,4 +1,4 @@
-"""Putting a marker's pieces together, and saying how far the result can be trusted."""
+"""Joining the fragments of a marker's region, and the quality of the result."""
 
 from typing import NamedTuple
 
@@ -9,34 +9,34 @@ from ..arrays import Array, BoolArray, IntArray
 from .association import Candidates
 
 AREA_WINDOW = 31
-"""Frames about each in which the marker's full area is looked for: it turns and comes nearer more slowly."""
+"""Window in frames for a marker's full area; the marker turns and approaches more slowly."""
 CLIPPED_QUALITY = 0.4
 
 
-class OwnRegion(NamedTuple):
-    """What of the regions of its color is a marker's, in each of F frames."""
+class MarkerRegion(NamedTuple):
+    """A marker's joined region in each of F frames."""
 
     moments: Array
     """(F, 6) raw moments, zero where hidden."""
     clipped: BoolArray
     """(F,) whether it touches the image's border."""
     certainty: Array
-    """(F,) of its color, in 0..1."""
+    """(F,) certainty of its color, in 0..1."""
     share: Array
-    """(F,) share of its largest piece in its area."""
+    """(F,) share of its main fragment in its area."""
 
 
-def join_pieces(
+def join_fragments(
     found: Candidates, path: IntArray, cost: Array, reach_px: float, most_cost: float
-) -> OwnRegion:
-    """Add to each frame's main region the pieces that an arm before the marker cut off from it.
+) -> MarkerRegion:
+    """Join each frame's main region with the fragments that an occluding limb cut off from it.
 
     Args:
-        found: the marker's regions.
+        found: The marker's regions.
         path: (F,) main region of each frame, -1 where hidden.
         cost: (N,) cost of each region; too costly ones are clutter.
-        reach_px: widest gap between a piece and the main region.
-        most_cost: highest cost of a piece.
+        reach_px: Widest gap between a fragment and the main region.
+        most_cost: Highest cost of a fragment.
     """
     frames = len(path)
     main = path[found.frame]  # (N,) of each region, the main one of its frame
@@ -51,14 +51,14 @@ def join_pieces(
     share = np.zeros(frames)
     seen = np.flatnonzero(path >= 0)
     share[seen] = found.area[path[seen]] / area[seen]
-    return OwnRegion(moments, clipped, certainty, share)
+    return MarkerRegion(moments, clipped, certainty, share)
 
 
-def region_quality(own: OwnRegion) -> Array:
-    """Return how far each region can be trusted to be the whole marker, (F,) in 0..1; 0 where hidden.
+def region_quality(own: MarkerRegion) -> Array:
+    """Quality of each region as the whole marker, (F,) in 0..1; 0 where hidden.
 
-    The product of the area against the full area seen in frames around, of clipping by the image's border, of
-    the color's certainty, and of the scatter of its pieces.
+    The product of four factors: area relative to the full area in the frames around, clipping by the image's
+    border, certainty of the color, and fragmentation.
     """
     area = own.moments[:, 0]
     if not np.any(area > 0.0):
@@ -73,7 +73,7 @@ def region_quality(own: OwnRegion) -> Array:
 
 
 def _box_gap(box: Array, other: Array) -> Array:
-    """Return the distances between boxes (N, 4) and others (N, 4)."""
+    """Distances between boxes (N, 4) and others (N, 4)."""
     across = np.maximum(other[:, 0] - box[:, 2], box[:, 0] - other[:, 2])
     down = np.maximum(other[:, 1] - box[:, 3], box[:, 1] - other[:, 3])
     return np.asarray(np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)))

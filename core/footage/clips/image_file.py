@@ -1,4 +1,4 @@
-"""Reading one image file."""
+"""Image files: decoding of a single image to eight-bit color."""
 
 import zlib
 from pathlib import Path
@@ -12,10 +12,10 @@ from ... import MOST_PIXELS
 from ...arrays import Image
 from ...errors import InputError
 from ...files.regular_file import regular_file_size
-from .opencv_silence import opencv_silence
+from .opencv_workarounds import opencv_silence
 
 LARGEST_BYTES = 2**31
-"""Of one image: four times the pixels that are read, at sixteen bits."""
+"""Size limit of an image file: four channels of the largest image at sixteen bits."""
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -26,7 +26,7 @@ def read_image(path: Path) -> Image:
     dropped.
 
     Raises:
-        InputError: the file is missing, too large, or no image that OpenCV can read.
+        InputError: The file is missing, too large, or no image that OpenCV can read.
     """
     if regular_file_size(path, "an image") > LARGEST_BYTES:
         raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
@@ -62,7 +62,7 @@ def _decoded(data: Image) -> NDArray[Any] | None:
 
 
 def _is_whole(data: bytes) -> bool:
-    """Tell a damaged PNG, of which its decoder would complain on standard error."""
+    """Whether a PNG is undamaged, as its decoder reports damage on standard error; True for other formats."""
     if not data.startswith(PNG):
         return True
     at = len(PNG)

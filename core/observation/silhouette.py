@@ -1,8 +1,8 @@
-"""Where the visible outline of a tapered elliptical cylinder lies, as weighted sample points.
+"""The silhouette of tapered elliptical cylinders, as weighted sample points.
 
 Samples fill the silhouette between the two contour lines, and the elliptical ends. Each is a point of
 the solid: a contour line touches the surface where the cross-section reaches farthest across the view,
-so moving the samples rigidly with the segment moves the silhouette rightly to first order.
+so moving the samples rigidly with the segment moves the silhouette correctly to first order.
 
 Arrays lead with F frames and Q pieces.
 """
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
 from ..body.rotations import cross
-from ..body.shapes import PieceStack
 from ..footage.camera import Camera
 
 ALONG, ACROSS = 8, 4
@@ -24,7 +24,7 @@ TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Pieces' axes as the camera sees them, in the world: (F, Q, 3), or (F, Q) for lengths."""
+    """Viewing geometry of pieces in world axes: (F, Q, 3), or (F, Q) for lengths."""
 
     start: Array
     end: Array
@@ -45,7 +45,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class Silhouette:
     """Sample points of the pieces' silhouettes."""
 
     world: Array
@@ -66,31 +66,31 @@ def _unit(vector: Array) -> tuple[Array, Array]:
 
 
 def view_pieces(pieces: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> View:
-    """How the camera sees each piece in each frame."""
+    """Viewing geometry of each piece in each frame."""
     start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)
     matrix = camera.matrix_world[frame][:, None] if camera.is_moving else camera.matrix_world
     toward, _ = _unit(0.5 * (start + end) - matrix[..., :3, 3])
     lateral, sagittal = pieces.turn(pose, pieces.lateral), pieces.turn(pose, pieces.sagittal)
     axis = end - start
     along, length = _unit(axis - _dot(axis, toward)[..., None] * toward)
-    # Seen end on, any direction across the view will do.
+    # Seen end on, the axis has no direction across the view: take the piece's lateral one.
     spare, _ = _unit(lateral - _dot(lateral, toward)[..., None] * toward)
     along = np.where(length[..., None] > 1e-6, along, spare)
     return View(start, end, toward, cross(toward, along), along, length, lateral, sagittal)
 
 
-def outline(pieces: PieceStack, view: View) -> Outline:
+def sample_silhouette(pieces: PieceStack, view: View) -> Silhouette:
     """Samples of the pieces' silhouettes."""
     parts = [_wall(pieces.half_widths, view), *(_cap(pieces.half_widths, end, view) for end in (0, 1))]
-    places, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
+    points, area, rate = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
     axes = np.stack([view.start, view.end - view.start, view.lateral, view.sagittal], axis=-1)
-    return Outline(np.swapaxes(axes @ places, -1, -2), area, np.swapaxes(rate, -1, -2))
+    return Silhouette(np.swapaxes(axes @ points, -1, -2), area, np.swapaxes(rate, -1, -2))
 
 
 def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
-    """Samples between the contour lines: places (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
+    """Samples between the contour lines: points (F, Q, 4, S), areas (F, Q, S), area rates (F, Q, 3, S).
 
-    A place is four coordinates: one, the share of the axis, and meters along the cross-section's axes.
+    A point has four coordinates: one, the share of the axis, and meters along the cross-section's axes.
     """
     u = (np.arange(ALONG) + 0.5) / ALONG
     v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
@@ -104,12 +104,12 @@ def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
     # d half = touch · d reach; d length = ω · (axis × along).
     half_rate = np.swapaxes(_reach_rate(view, axis), -1, -2) @ touch  # (F, Q, 3, U)
     rate = cell * (cross(axis, view.along)[..., None] * half + length * half_rate)
-    # A product with a constant matrix makes a row's samples of each of its U places.
+    # A product with a constant matrix repeats each of the U cross-sections for its row of samples.
     alike, spread = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), v)  # (U, S)
-    places = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
-    places[:, :, 0], places[:, :, 1] = 1.0, u @ alike
-    np.matmul(touch, spread, out=places[:, :, 2:])
-    return places, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
+    points = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
+    points[:, :, 0], points[:, :, 1] = 1.0, u @ alike
+    np.matmul(touch, spread, out=points[:, :, 2:])
+    return points, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
 
 
 def _reach_rate(view: View, axis: Array) -> Array:
@@ -126,7 +126,7 @@ def _reach_rate(view: View, axis: Array) -> Array:
 
 
 def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]:
-    """The same of the half of the first or last elliptical end that shows beyond the contour lines."""
+    """Like `_wall`, for the half of the first or last elliptical end beyond the contour lines."""
     widths = half_widths[:, end]
     pole, length = _unit((1.0 if end else -1.0) * widths * view.reach(view.along))
     pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
@@ -134,17 +134,17 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
     radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
     angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
     disc = (radius[:, None] * np.stack([np.cos(angle), np.sin(angle)])[:, None]).reshape(2, -1)
-    places = np.empty((*pole.shape[:2], 4, disc.shape[1]))
-    places[:, :, 0], places[:, :, 1] = 1.0, end
-    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=places[:, :, 2:])
-    # The end's plane shows by the cosine between its normal and the view.
+    points = np.empty((*pole.shape[:2], 4, disc.shape[1]))
+    points[:, :, 0], points[:, :, 1] = 1.0, end
+    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=points[:, :, 2:])
+    # The end's disc is foreshortened by the cosine between its normal and the view.
     normal = cross(view.lateral, view.sagittal)
     cosine = _dot(normal, view.toward)[..., None]
     full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / disc.shape[1]  # (Q, 1)
     rate = full * np.sign(cosine) * cross(normal, view.toward)
     shape = (*pole.shape[:2], 3, disc.shape[1])
     return (
-        places,
+        points,
         np.broadcast_to(full * np.abs(cosine), (*shape[:2], shape[3])),
         np.broadcast_to(rate[..., None], shape),
     )

@@ -1,4 +1,4 @@
-"""Colors of a clip that lie near a given one, to help a person whose sample fits nothing."""
+"""The colors of a clip nearest to a sample, as suggestions where the sample matches nothing."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,19 +7,19 @@ from .color_space import cell_colors, chromaticity
 
 HOW_MANY = 3
 APART = 0.08
-"""Chromaticity that two colors must differ by to be named both."""
+"""Least difference in chromaticity of two suggested colors."""
 LIKE_LOG_LUMA = 0.25
 """Difference in the logarithm of luma up to which two grays look alike."""
 SHARE = 2e-5
-"""Share of the clip's pixels that a color must have, to be more than noise."""
+"""Least share of the clip's pixels of a color that is no noise."""
 
 
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """Return up to three colors (red, green, blue) found in the clip, the nearest to the sample first.
+    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first.
 
     Args:
         counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: the sought color in 0..255.
+        sample_srgb: The sought color in 0..255.
     """
     count = np.asarray(counts, dtype=np.float64)
     common = np.flatnonzero(count > max(SHARE * count.sum(), 0.5))
@@ -37,11 +37,11 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
 
 
 def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
-    """Return the share of the clip's pixels that look like a color.
+    """The share of the clip's pixels that look like a color.
 
     Args:
         counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: the color, (red, green, blue) in 0..255.
+        sample_srgb: The color, (red, green, blue) in 0..255.
     """
     count = np.asarray(counts, dtype=np.float64)
     present = np.flatnonzero(count)

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA
+from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.body.shapes import Piece, PieceStack
 from keymark.core.footage.camera import Camera
-from keymark.core.observation.outline import outline, view_pieces
+from keymark.core.observation.silhouette import sample_silhouette, view_pieces
 
 LENGTH, WIDE, DEEP = 0.4, 0.12, 0.05
 FRAME = np.zeros(1, dtype=np.intp)
 
 
 def upright(first: float = 1.0, last: float = 1.0) -> PieceStack:
-    """An upright cylinder at the hips, as wide as it is told at either end."""
+    """An upright cylinder at the hips, with given half-widths at either end."""
     widths = np.array([[WIDE, DEEP]]) * np.array([[first], [last]])
     return PieceStack.of(
         [
@@ -42,7 +42,7 @@ def at_camera_height(turn: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Post
 def seen(pieces: PieceStack, posture: Posture, camera: Camera = CAMERA):  # noqa: ANN201
     """Samples of the pieces' silhouettes."""
     pose = BODY.pose(posture)
-    return outline(pieces, view_pieces(pieces, pose, camera, FRAME))
+    return sample_silhouette(pieces, view_pieces(pieces, pose, camera, FRAME))
 
 
 def test_a_cylinder_from_the_front_fills_a_rectangle() -> None:

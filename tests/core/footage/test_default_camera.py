@@ -7,7 +7,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.first_camera import first_stand, guess_lens
+from keymark.core.footage.default_camera import default_camera_pose, guess_lens
 
 SIZES = [(1080, 1920), (2160, 3840), (640, 480), (320, 240), (1920, 1080), (1440, 1080), (720, 720)]
 
@@ -50,7 +50,7 @@ def test_the_guess_depends_on_the_shape_and_not_on_the_fineness(size: tuple[int,
 def test_the_performer_is_in_view_from_the_first_stand(size: tuple[int, int]) -> None:
     """Feet on the floor at the origin, arms stretched sideways: all in the picture, and not tiny."""
     guess = guess_lens(size)
-    stand = first_stand(guess.lens_mm, guess.sensor_width_mm, size)
+    stand = default_camera_pose(guess.lens_mm, guess.sensor_width_mm, size)
     camera = Camera(guess.lens_mm, guess.sensor_width_mm, size, stand)
     body = Body(Actor.from_stature(1.85))
     points = body.points(body.pose(Posture.rest(HUMAN)))

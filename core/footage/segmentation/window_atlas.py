@@ -1,7 +1,7 @@
-"""Windows of some pictures side by side on one sheet, so that every step of the work is done once for all.
+"""Window atlas: the search windows of some images, packed into one image for vectorized segmentation.
 
-Each panel of the sheet serves one marker. Where a window reaches beyond the picture, the picture's border is
-repeated, so that it is no edge of a region that it cuts.
+Each panel of the atlas serves one color. Where a window reaches beyond its image, the image's border is
+repeated, so that it makes no edge of a region that it cuts.
 """
 
 from collections.abc import Sequence
@@ -14,11 +14,11 @@ from ...arrays import Image, IntArray
 from .working_image import measuring_image
 
 NO_COLOR = 254
-"""Color of the columns between panels; no pixel bears it."""
+"""Color index of the columns between panels; no pixel has it."""
 
 
 class Window(NamedTuple):
-    """A part of one of some images in which a color is looked for, in pixels of the image halved `times`."""
+    """A window of an image to search for a color, in pixels of the image halved `times`."""
 
     image: int
     times: int
@@ -29,29 +29,29 @@ class Window(NamedTuple):
     bottom: int
 
 
-class Sheet(NamedTuple):
-    """Windows side by side, their tops at the sheet's first row, with a column between them."""
+class Atlas(NamedTuple):
+    """Windows side by side, their tops at the atlas's first row, with a column between them."""
 
     picture: Image
-    """(rows, columns, 3) uint8, both numbers even."""
+    """(rows, columns, 3) uint8, rows and columns even."""
     image: IntArray
-    """(columns,) int64, the image that each column is of."""
+    """(columns,) int64, index of each column's image."""
     color: Image
-    """(columns,) uint8, the color that it serves; NO_COLOR where panels meet."""
+    """(columns,) uint8, index of the color to search for; NO_COLOR between panels."""
     height: IntArray
     """(columns,) rows in use."""
     shift: IntArray
-    """(2, columns) what takes a column, and the rows in it, to the halved image."""
+    """(2, columns) offset of a column, and of its rows, to the halved image."""
     scale: IntArray
-    """(columns,) pixels of the image that one of the sheet spans."""
+    """(columns,) pixels of the image to one of the atlas."""
 
 
-def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
+def pack_windows(images: Sequence[Image], windows: Sequence[Window]) -> Atlas:
     """Cut windows out of images and lay them side by side.
 
     Args:
         images: (rows, columns, 3), all of one size.
-        windows: what to cut out, at least one; each overlaps its image.
+        windows: What to cut out, at least one; each overlaps its image.
     """
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))
@@ -70,7 +70,7 @@ def lay_out(images: Sequence[Image], windows: Sequence[Window]) -> Sheet:
         image[panel], used[panel], scale[panel] = window.image, rows, 1 << window.times
         shift[0, panel], shift[1, panel] = window.left - start, window.top
         start = end + 1
-    return Sheet(picture, image, color, used, shift, scale)
+    return Atlas(picture, image, color, used, shift, scale)
 
 
 def _cut(image: Image, window: Window, height: int) -> Image:

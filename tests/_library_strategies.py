@@ -1,4 +1,4 @@
-"""Any library, as hypothesis draws them."""
+"""Hypothesis strategies of libraries."""
 
 import numpy as np
 from hypothesis import strategies as st

@@ -1,4 +1,4 @@
-"""How well the learned colors tell the markers from one another and from the background."""
+"""Confusion matrix of the learned colors: how well markers are told from one another and the background."""
 
 import numpy as np
 
@@ -10,14 +10,14 @@ LEAST = 1e-300
 """A density that vanishes everywhere stays zero."""
 
 
-def color_claims(model: ColorModel) -> Array:
-    """Return for what the pixels of each color would be taken, (C, C + 1): each color, then none of them.
+def color_confusion(model: ColorModel) -> Array:
+    """Confusion matrix (C, C + 1): shares of each color's pixels classified as each color, and as background.
 
-    A pixel drawn from a color's learned density is weighed as the extraction weighs it, by the posterior
-    probability of its cell; rows sum to 1.
+    Pixels drawn from a color's learned density count by the posterior probability of their cells, as in
+    tracking; rows sum to 1.
 
     Args:
-        model: C colors learned for a clip, with its background weighed in.
+        model: C colors learned for a clip.
     """
     cells = np.arange(len(model.label), dtype=np.int32)
     chroma, luma = cell_chromaticity(cells)

@@ -1,4 +1,7 @@
-"""The markers' colors, learned from a clip while it is being read."""
+"""Streaming color learning: which frames colors are learned from, and when, while a clip is being read.
+
+The learning itself is `color_learning`.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,35 +12,36 @@ import numpy as np
 from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
-from ..detections import Lesson, Sightings
+from ..detections import Detections, LearningRound
 from ..marker_style import MarkerStyle, color_groups
 from ..region_tracks import ExpectedRegions
 from ..segmentation.working_image import halvings, learning_image, measuring_image
 from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel
-from .color_names import nearest_colors, share_of_color
+from .nearest_colors import nearest_colors, share_of_color
 
 SAMPLES = 12
-"""Frames that are learned from first; up to three times as many are kept."""
+"""Frames of the first learning; up to three times as many are kept later."""
 MOST_SAMPLES = 48
-"""Frames that are looked at where a marker is in none of the first."""
+"""Frames learned from if a marker is in none of the first ones."""
 WIDEST_SPACING = 96
 """Frames between samples at most: light changes in seconds."""
 FEWEST_LEARNED = 12
 FAR = 10000
-"""Pixels beyond which no circle that is drawn begins or ends."""
+"""Limit of drawn coordinates in px."""
 COMMON_COLOR = 0.02
-"""Share of the picture with which a color is a wall's or a floor's."""
+"""Share of the picture from which a color is a wall's or a floor's."""
 
 
-class ClipColors:
-    """The colors of a clip's markers: learned from its first stretch, and anew as more of it is seen.
+class StreamingColorLearner:
+    """Learns the colors of a clip's markers: from its first frames, and anew as it goes on."""
 
-    Attributes:
-        groups: of each color, the markers that bear it; more than one where samples are alike.
-        lessons: how the colors were learned so far.
-        samples: the images that were learned from, by their frames.
-    """
+    groups: list[list[int]]
+    """The markers of each color; several where their samples are alike."""
+    learning_rounds: list[LearningRound]
+    """Rounds of learning so far."""
+    samples: dict[int, Image]
+    """The images that were learned from, by frame."""
 
     def __init__(
         self,
@@ -49,10 +53,10 @@ class ClipColors:
         """Prepare for a clip.
 
         Args:
-            path: the clip, for messages.
-            size: width and height of its images in px.
-            styles: the markers, M of them.
-            expected: where they may be, to learn from the marker rather than from clutter of its color.
+            path: The clip, for messages.
+            size: Width and height of its images in px.
+            styles: The markers, M of them.
+            expected: Their expected regions, to learn from the markers rather than from clutter.
         """
         self.groups = color_groups(styles)
         self._path, self._styles, self._expected = path, styles, expected
@@ -61,12 +65,12 @@ class ClipColors:
         self._spacing = 1
         self._learned: LearnedColors | None = None
         self._most_found = np.zeros(len(self.groups), dtype=np.int64)
-        self.lessons: list[Lesson] = []
-        self.samples: dict[int, Image] = {}
+        self.learning_rounds = []
+        self.samples = {}
 
     @property
     def model(self) -> ColorModel:
-        """What has been learned so far."""
+        """The color model learned so far."""
         if self._learned is None:
             raise ValueError("nothing has been learned yet")
         return self._learned.model
@@ -74,7 +78,7 @@ class ClipColors:
     def learn(self, images: Sequence[Image]) -> None:
         """Learn from the clip's first images, (rows, columns, 3) on the measuring grid."""
         for count in (SAMPLES, MOST_SAMPLES):
-            # Middles of equal stretches: neither the first frame nor the last, which fades and cuts spoil.
+            # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
             middles = (np.arange(count) + 0.5) * len(images) / count
             indices = sorted({int(middle) for middle in middles})
             self._samples = [(index, learning_image(images[index])) for index in indices]
@@ -84,9 +88,9 @@ class ClipColors:
         self._spacing = min(max(len(images) // len(self._samples), 1), WIDEST_SPACING)
 
     def watch(self, index: int, image: Image) -> None:
-        """Take a later image, (rows, columns, 3) of the clip's size, into account where it is its turn.
+        """Sample a later image, (rows, columns, 3) of the clip's size, at the present spacing of samples.
 
-        Colors are learned anew with three times as many samples as at first; every third one then stays.
+        Colors are learned anew once there are three times as many samples as at first; a third is then kept.
         """
         if index - self._samples[-1][0] < self._spacing:
             return
@@ -96,27 +100,27 @@ class ClipColors:
             self._spacing = min(3 * self._spacing, WIDEST_SPACING)
             self._learn()
 
-    def learn_again(self, earlier: Sightings) -> bool:
-        """Learn from what was learned from before; tell whether it teaches exactly the same."""
-        for lesson in earlier.lessons:
-            self._samples = [(index, earlier.samples[index]) for index in lesson.frames]
+    def learn_again(self, earlier: Detections) -> bool:
+        """Repeat the learning of earlier detections; whether it gives exactly the same colors."""
+        for one in earlier.learning_rounds:
+            self._samples = [(index, earlier.samples[index]) for index in one.frames]
             self._learn()
-            if self.lessons[-1] != lesson:
+            if self.learning_rounds[-1] != one:
                 return False
-        return bool(earlier.lessons)
+        return bool(earlier.learning_rounds)
 
     def check_found(self) -> None:
         """Refuse colors that were found nowhere.
 
         Raises:
-            InputError: a marker's color matches nothing in the clip; the sentence names colors that are
-                there, or says that the surroundings have it too.
+            InputError: A marker's color matches nothing in the clip; the sentence names colors that occur, or
+                says that the surroundings have it too.
         """
         for sentence in self.complaints().values():
             raise InputError(f"{self._path}: marker {sentence}")
 
     def complaints(self) -> dict[int, str]:
-        """Return of each marker that was found nowhere, by index, a sentence that begins with its name."""
+        """A sentence that begins with the name, for each marker found nowhere, by index."""
         if self._learned is None:
             return {}
         counts = self._learned.background_counts
@@ -131,7 +135,7 @@ class ClipColors:
         return np.flatnonzero(self._most_found < FEWEST_LEARNED)
 
     def _learn(self) -> None:
-        """Learn from the samples at hand."""
+        """Learn from the present samples."""
         samples = [_mean_color([self._styles[marker] for marker in group]) for group in self.groups]
         allowed = None
         if self._expected is not None:
@@ -141,26 +145,26 @@ class ClipColors:
         self._learned = learn_colors([image for _, image in self._samples], samples, allowed)
         self._most_found = np.maximum(self._most_found, self._learned.found)
         model = self._learned.model
-        taught = digest(model.label, model.probability, self._learned.found)
-        self.lessons.append(Lesson(tuple(index for index, _ in self._samples), taught))
+        model_digest = digest(model.label, model.probability, self._learned.found)
+        self.learning_rounds.append(LearningRound(tuple(index for index, _ in self._samples), model_digest))
         self.samples.update(self._samples)
 
     def _allowed(self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions) -> Image | None:
-        """Return where each color may be looked for on the learning grid, (C, rows, columns)."""
+        """Masks of each color's expected regions on the learning grid, (C, rows, columns)."""
         if frame >= len(expected.center):
             return None
-        places = np.zeros((len(self.groups), *shape), dtype=np.uint8)
+        masks = np.zeros((len(self.groups), *shape), dtype=np.uint8)
         step = self._size[0] / shape[1]
-        for place, group in zip(places, self.groups, strict=True):
+        for mask, group in zip(masks, self.groups, strict=True):
             for marker in group:
                 # The radius bounds the centroid; the region itself reaches beyond it.
                 circle = (*expected.center[frame, marker] / step, 1.5 * expected.radius[frame, marker] / step)
                 if not np.isfinite(circle).all():
-                    place[:] = 1
+                    mask[:] = 1
                     continue
                 x, y, radius = np.clip(circle, -FAR, FAR).round().astype(int).tolist()
-                cv2.circle(place, (x, y), radius, (1.0,), -1)
-        return places
+                cv2.circle(mask, (x, y), radius, (1.0,), -1)
+        return masks
 
 
 def _mean_color(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
@@ -169,13 +173,13 @@ def _mean_color(styles: Sequence[MarkerStyle]) -> tuple[int, int, int]:
 
 
 def _complaint(style: MarkerStyle, counts: Array) -> str:
-    """Say why a color cannot be found among the background's, (CELL_COUNT,) pixels of each color cell."""
+    """Why a color was not found, by the background's histogram (CELL_COUNT,), as a sentence."""
     color = list(style.color_srgb)
     share = share_of_color(counts, style.color_srgb)
     if share > COMMON_COLOR:
         return (
             f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
-            "markers have too, so nothing tells it from them; wear a color that the surroundings do not have"
+            "markers have too, so it cannot be told apart; wear a color that the surroundings do not have"
         )
     nearest = ", ".join(str(list(near)) for near in nearest_colors(counts, style.color_srgb))
     return (

@@ -1,4 +1,4 @@
-"""The camera that is assumed before anybody has said what the footage was taken with."""
+"""The default camera of new footage: a lens guessed from the picture's size, and an initial pose."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -14,37 +14,37 @@ FULL_FRAME_DIAGONAL_MM = hypot(36.0, 24.0)
 PHONE_MM = 26.0
 """Full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28."""
 STABILISED = 1.1
-"""By how much phones narrow a video's view to steady it: a tenth is usual."""
+"""Crop factor of phones' video stabilization: a tenth is usual."""
 WEBCAM_DEGREES = 68.0
 """Diagonal view of a webcam in 16 to 9: makers state 60 (plain ones) to 78 (better ones)."""
 WEBCAM_HEIGHT_PX = 600
-"""Up to this height a picture of 4 to 3 is taken for a webcam's; above, cameras film wider pictures."""
+"""Largest height of a 4 to 3 picture that counts as a webcam's; other cameras film larger, wider pictures."""
 USUAL_MM = 35.0
-"""Of any other camera: between the wide end of a camera's usual zoom (24 to 28) and its middle (50) [mm]."""
+"""Lens of any other camera: between the wide end of a usual zoom (24 to 28) and its middle (50) [mm]."""
 
 EYE_HEIGHT_M = 1.4
 REACH_M = 1.0
-"""How far an adult with arms outstretched reaches from the origin to either side [m]."""
+"""Half the arm span of an adult [m]."""
 FILLED = 0.9
-"""Share of the picture that a performer at the origin may fill."""
+"""Largest share of the picture that a performer at the origin fills."""
 
 
 @dataclass(frozen=True)
 class LensGuess:
-    """A lens that nobody stated."""
+    """A guessed lens."""
 
     lens_mm: float
     sensor_width_mm: float
-    """Spans the picture's width; the sensor's long side is that of full frame [mm]."""
+    """Width of the sensor, which spans the picture's width; its long side is that of full frame [mm]."""
     reason: str
-    """What it was guessed from, to stand after "as of"."""
+    """Kind of camera that was assumed, to follow "as of"."""
 
 
 def guess_lens(size: tuple[int, int]) -> LensGuess:
     """Guess a lens from the size of the picture.
 
-    A picture higher than wide is a phone's; its focal length is stated for photographs of 4 to 3, whose long
-    side a video keeps. A small one of 4 to 3 is a webcam's, which cuts the sides off its view of 16 to 9.
+    An upright picture is a phone's; its focal length is stated for photographs of 4 to 3, whose long side a
+    video keeps. A small one of 4 to 3 is a webcam's, which crops the sides of its 16 to 9 view.
 
     Args:
         size: Width and height [px], as shown, so after any rotation that the file asks for.
@@ -61,11 +61,11 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
     return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
 
 
-def first_stand(lens_mm: float, sensor_width_mm: float, size: tuple[int, int]) -> Array:
-    """Where a camera is put at first: (4, 4) camera to world [m].
+def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int, int]) -> Array:
+    """Initial pose of a camera: (4, 4) camera to world [m].
 
-    It stands at eye height, looks level along +Y at the world's origin, and so far away that the floor there
-    and a performer with arms outstretched are within the picture.
+    At eye height, looking level along +Y at the world's origin, from a distance at which the floor there and
+    a performer with outstretched arms are within the picture.
 
     Args:
         lens_mm: Focal length.

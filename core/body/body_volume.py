@@ -2,7 +2,7 @@
 
 Half-widths are shares of stature, rounded from the averages of adults' breadths, depths and
 circumferences (Gordon et al. 2014, *2012 Anthropometric Survey of U.S. Army Personnel*, NATICK/TR-15/007).
-They start the calibration; the footage corrects them.
+The calibration starts from them and corrects them by the footage.
 """
 
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
     "foot": ((0.026, 0.024), (0.028, 0.014)),
 }
 HEAD_OVERSHOOT = 1.40
-"""The crown lies this far along the head segment, whose end is the head's center."""
+"""Position of the crown along the head segment, whose end is the head's center."""
 TRUNK = "trunk"
 TRUNK_PARTS = ("pelvis", "chest")
 
@@ -51,7 +51,7 @@ class Piece:
     """(2, 2) at start and end: lateral and sagittal half-width [m]."""
 
     def cut(self, first: float, last: float) -> "Piece":
-        """The part between two shares of the length; shares outside 0 to 1 extend it."""
+        """The part between two fractions of the length; fractions outside 0 to 1 extend it."""
         along = self.end - self.start
         widths = self.half_widths[0] + np.outer([first, last], self.half_widths[1] - self.half_widths[0])
         return Piece(
@@ -79,7 +79,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceStack:
-    """Several pieces side by side, so that all are placed and seen in one go."""
+    """Several pieces as stacked arrays, for vectorized projection."""
 
     segments: tuple[str, ...]
     joint: IndexArray
@@ -107,7 +107,7 @@ class PieceStack:
         )
 
     def place(self, pose: Pose, local: Array) -> Array:
-        """World places (F, Q, 3) of one point (Q, 3) a piece."""
+        """World positions (F, Q, 3) of one point (Q, 3) a piece."""
         return np.asarray(pose.origin[:, self.joint] + self.turn(pose, local))
 
     def turn(self, pose: Pose, direction: Array) -> Array:
@@ -119,7 +119,7 @@ class PieceStack:
 def segment_piece(body: Body, name: str) -> Piece:
     """The volume of one of the skeleton's segments; KeyError for a segment without volume.
 
-    Kept for the bodies asked for last: calibration cuts markers from the same few volumes again and again.
+    Cached: calibration cuts markers from the same few volumes again and again.
     """
     segment = next(s for s in body.skeleton.segments if s.name == name)
     start, end = body.local(segment.start), body.local(segment.end)
@@ -149,5 +149,5 @@ def marker_segments(body: Body) -> tuple[str, ...]:
 
 
 def marker_parts(segment: str) -> tuple[str, ...]:
-    """Segments that a marker bound to `segment` covers."""
+    """Segments covered by a marker that is bound to `segment`."""
     return TRUNK_PARTS if segment == TRUNK else (segment,)
