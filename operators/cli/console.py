@@ -10,9 +10,9 @@ from typing import Any
 
 from ...core.errors import ConversionError
 from ...core.progress import Progress
-from .line_parser import complain
 from .line_wrapping import broken, terminal_columns
 from .openjd_progress import FarmProgress, is_wanted
+from .usage import print_error
 
 JOB_SHARE = 0.9
 """What the job is of all a command does; the rest is writing files."""
@@ -80,7 +80,7 @@ class Console:
         if self.as_json or (self.quiet and error is None):
             return
         if self.quiet:
-            complain(error or "")
+            print_error(error or "")
             return
         if self._bar is not None:
             self._bar.clear()

@@ -1,32 +1,35 @@
-"""Keyframe libraries as the command line knows them: by name where they lie on the shelf, or by file."""
+"""The folders in which the command line finds libraries, and those that `--library` means."""
 
 import os
 import sys
 from pathlib import Path
 
-from ....core.library.registry import SHIPPED
-from ..line_parser import UsageError
+from ...core.library.library import Library
+from ...core.library.registry import SHIPPED, find_library, shelved
+from ...core.library.texts import EVERY_LIBRARY
 
 VARIABLE = "KEYMARK_LIBRARIES"
-"""Environment variable of further folders of libraries, apart as in PATH."""
+"""Environment variable with further folders of libraries, separated as in PATH."""
 
 
 def library_folders() -> list[Path]:
-    """Where libraries are looked for; of two with the same identifier the first counts."""
-    named = [Path(place) for place in os.environ.get(VARIABLE, "").split(os.pathsep) if place]
+    """The folders that are searched, in order; the first library with an identifier counts."""
+    folders = [Path(folder) for folder in os.environ.get(VARIABLE, "").split(os.pathsep) if folder]
     blender = sys.modules.get("bpy")
-    if blender is not None and blender.app.binary_path:  # a user's, who may have some of their own
-        from ...library.registry import own_folder
+    if blender is not None and blender.app.binary_path:  # where users keep libraries of their own
+        from ..library.registry import own_folder
 
-        named.append(own_folder())
-    return [*named, SHIPPED]
+        folders.append(own_folder())
+    return [*folders, SHIPPED]
 
 
-def refuse_existing(output: Path, replace: bool) -> None:
-    """Refuse to write where something is already, unless that is wanted.
+def requested_libraries(wanted: str) -> tuple[Library, ...]:
+    """The libraries that `--library` means: one by name or file, or every usable one.
 
     Raises:
-        UsageError: Something is there.
+        InputError: There is no such library, or none at all, or a file is unusable.
     """
-    if output.exists() and not replace:
-        raise UsageError(f"{output} is there already; name another file, or add --replace to replace it")
+    folders = library_folders()
+    if wanted != EVERY_LIBRARY:
+        return (find_library(wanted, folders),)
+    return tuple(found.library for found in shelved(folders) if found.library is not None)

@@ -15,9 +15,9 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ...core.errors import InputError, KeymarkError, unexpected
-from .arguments import build_parser
 from .blender_silence import codec_silence
-from .line_parser import UsageError, complain
+from .parser import build_parser
+from .usage import UsageError, print_error
 
 AS_IN_BLENDER = ["--command", "keymark"]
 """What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
@@ -83,7 +83,7 @@ def _say(sentence: str, status: int, debug: bool) -> int:
     """Write one line on standard error."""
     if debug:
         traceback.print_exc()
-    complain(sentence)
+    print_error(sentence)
     return status
 
 

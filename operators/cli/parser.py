@@ -1,12 +1,12 @@
-"""Words of the command line: commands, options, and their help."""
+"""The parser of the command line, made of the commands in `commands/`."""
 
 import argparse
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from typing import NoReturn
 
-from ...core.take.methods import METHODS
-from .library.arguments import add_library
-from .line_parser import Commands, LineParser, UsageError, add_command, program_name
-from .shoot_arguments import add_shoot_commands
+from .command import Command, CommandGroup
+from .commands import COMMANDS
+from .usage import UsageError, program_name
 from .version import version
 
 DESCRIPTION = "Turns one video of a performer wearing colored markers into an animated armature."
@@ -28,129 +28,67 @@ many; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
 
 
+class OneLineParser(argparse.ArgumentParser):
+    """A parser that tells a mistake in one sentence and leaves the exit to its caller."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of writing several lines and leaving the process."""
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
 def build_parser() -> argparse.ArgumentParser:
-    """The parser; its result has `run`, the chosen command."""
+    """The parser of all commands; its result has `run`, which runs the chosen one."""
     program = program_name()
-    parser = LineParser(
+    parser = OneLineParser(
         prog=program,
         description=DESCRIPTION,
         epilog=EXAMPLES.format(program=program),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"keymark {version()}")
-    parser.set_defaults(run=_no_command)
-    commands = parser.add_subparsers(metavar="COMMAND", title="commands")
-    _add_convert(commands)
-    add_shoot_commands(commands)
-    _add_propose(commands)
-    add_library(commands)
-    _add_demo(commands)
+    _add_commands(parser, COMMANDS, program)
     return parser
 
 
-def _add_convert(commands: "Commands[LineParser]") -> None:
-    convert = add_command(
-        commands,
-        "convert",
-        "convert a take to motion.json, motion.blend, motion.bvh and pictures",
-        "Reconstructs a take's motion. OUT then holds motion.json, motion.blend, motion.bvh and, in report/, "
-        "pictures of the result; it changes only once all of them are complete. With --library nothing needs "
-        "to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were matched.",
-        _convert,
-    )
-    convert.add_argument(
-        "take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"
-    )
-    convert.add_argument(
-        "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
-    )
-    convert.add_argument(
-        "--keyframes",
-        metavar="FILE",
-        type=Path,
-        help="keyframe file; by default TAKE/keyframes.json, with --library none",
-    )
-    convert.add_argument(
-        "--library",
-        metavar="NAME|FILE|auto",
-        help="match the footage with this keyframe library; auto chooses among all there are and says how "
-        "sure it is, or that none fits",
-    )
-    convert.add_argument(
-        "--floor",
-        metavar="HEIGHT",
-        type=float,
-        help="height of the floor in meters where it is known, which says best how far away the performer "
-        "is; with --library",
-    )
-    convert.add_argument(
-        "--method",
-        choices=METHODS,
-        help="map: the whole clip at once (default); ekf: the filter of the paper; "
-        "interpolation: the keyframes alone",
-    )
-    convert.add_argument("--no-report", action="store_true", help="draw no pictures")
+def _add_commands(
+    parser: argparse.ArgumentParser, commands: Sequence[Command | CommandGroup], program: str
+) -> None:
+    parser.set_defaults(run=_refuse_no_command(commands, program))
+    added = parser.add_subparsers(metavar="COMMAND", title="commands")
+    for command in commands:
+        if isinstance(command, CommandGroup):
+            inner = f"{program} {command.name}"
+            group = added.add_parser(
+                command.name,
+                help=command.summary,
+                description=command.description,
+                epilog=command.epilog.format(program=inner),
+                formatter_class=argparse.RawDescriptionHelpFormatter,
+            )
+            _add_commands(group, command.commands, inner)
+        elif command.hidden:  # without `help`, by which argparse would list it
+            _fill(added.add_parser(command.name), command)
+        else:
+            one = added.add_parser(command.name, help=command.summary, description=command.description)
+            one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
+            one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
+            one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
+            _fill(one, command)
 
 
-def _add_propose(commands: "Commands[LineParser]") -> None:
-    propose = add_command(
-        commands,
-        "propose",
-        "propose the frames to pose",
-        "Follows the markers and proposes frames to pose as keyframes: about evenly spaced, where the "
-        "markers move slowly.",
-        _propose,
-    )
-    propose.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
-    propose.add_argument(
-        "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
-    )
-    propose.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
-    propose.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
+def _fill(parser: argparse.ArgumentParser, command: Command) -> None:
+    command.add_arguments(parser)
+    parser.set_defaults(run=command.run)
 
 
-def _add_demo(commands: "Commands[LineParser]") -> None:
-    demo = add_command(
-        commands,
-        "demo",
-        "convert the demonstration take and score the result",
-        "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
-        "method is from it.",
-        _demo,
-    )
-    demo.add_argument(
-        "--output",
-        "-o",
-        metavar="DIR",
-        type=Path,
-        default=Path("keymark_demo"),
-        help="folder for the result (default: %(default)s)",
-    )
+def _refuse_no_command(
+    commands: Sequence[Command | CommandGroup], program: str
+) -> Callable[[argparse.Namespace], None]:
+    """What runs where the user names none of these commands."""
+    names = [command.name for command in commands if isinstance(command, CommandGroup) or not command.hidden]
+    valid = f"{', '.join(names[:-1])} and {names[-1]}"
 
+    def refuse(_arguments: argparse.Namespace) -> None:
+        raise UsageError(f"no command is given; {valid} are valid, see {program} --help")
 
-# Commands are imported when they run: --help and mistakes shall not wait for scipy, OpenCV and Blender.
-
-
-def _no_command(_arguments: argparse.Namespace) -> None:
-    raise UsageError(
-        "no command is given; convert, new, check, batch, merge, propose, library and demo are valid, see "
-        f"{program_name()} --help"
-    )
-
-
-def _convert(arguments: argparse.Namespace) -> None:
-    from .convert import convert_command
-
-    convert_command(arguments)
-
-
-def _propose(arguments: argparse.Namespace) -> None:
-    from .propose import propose_command
-
-    propose_command(arguments)
-
-
-def _demo(arguments: argparse.Namespace) -> None:
-    from .demo import demo_command
-
-    demo_command(arguments)
+    return refuse

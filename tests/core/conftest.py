@@ -15,5 +15,5 @@ def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
             (place / name).touch()
         return "0" * 64
 
-    monkeypatch.setattr(convert_take, "require_blender", lambda what: None)
+    monkeypatch.setattr(convert_take, "require_blender", lambda needing: None)
     monkeypatch.setattr(convert_take, "_write_scene", write)

@@ -14,8 +14,7 @@ from ...text import counted
 from .head import counts, first_things
 from .html_text import escaped, isolated, percent
 from .row import COLUMNS, SIGNS, kind, row
-from .script import SCRIPT
-from .style import STYLE
+from .style_and_script import SCRIPT, STYLE
 from .verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
 MOST_ROWS = 5000

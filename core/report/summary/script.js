@@ -1,6 +1,3 @@
-"""What searches and sorts the rows of a batch's page; the page is complete without it."""
-
-SCRIPT = """
 "use strict";
 (() => {
   const tools = document.getElementById("tools");
@@ -18,7 +15,7 @@ SCRIPT = """
     })));
 
   function search() {
-    const words = find.value.toLowerCase().split(/\\s+/).filter(Boolean);
+    const words = find.value.toLowerCase().split(/\s+/).filter(Boolean);
     let count = 0;
     for (const item of rows) {
       item.row.hidden = !words.every((word) => item.text.includes(word));
@@ -55,4 +52,3 @@ SCRIPT = """
   tools.hidden = false;
   if (find.value || order.value !== "need") sort(); /* kept by the browser on reload */
 })();
-"""

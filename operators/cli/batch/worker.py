@@ -16,16 +16,16 @@ from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
 from ..conversion.convert_take import convert, convert_if_changed
-from ..line_parser import UsageError
+from ..usage import UsageError
 from ..version import version
-from .memory import resident_bytes
+from .machine_resources import resident_bytes
 from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Answer, Done, Job, Ready, Step, answer_line
 
 BETWEEN_STEPS_S = 0.5
 """A batch is told no more often how far a job is."""
 
 
-def worker_command() -> None:
+def run_worker() -> None:
     """Convert the takes told on standard input, a job a line, and answer on standard output."""
     ending = _Ending()
     signal.signal(signal.SIGTERM, ending.asked)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ..line_parser import program_name
+from ..usage import program_name
 from .protocol import LONGEST_BYTES, Answer, Done, Job, Ready, Step, read_answer
 
 START = Path(__file__).with_name("start_worker.py")

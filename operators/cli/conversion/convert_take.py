@@ -1,13 +1,12 @@
 """The unit of work: one take in, one complete folder of results out. Running it again changes nothing."""
 
-import importlib.util
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ....core.errors import ConversionError, InputError
+from ....core.errors import InputError
 from ....core.files.output_folder import output_folder, real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
@@ -26,9 +25,11 @@ from ....core.take.motion_file import write_motion
 from ....core.take.take import Take, read_described
 from ..blender_silence import blender_silence
 from ..console import Console
+from ..library_search_path import requested_libraries
+from ..require_blender import require_blender
 from ..version import version
 from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
-from .matched_keyframes import chosen_libraries, solve
+from .matched_keyframes import solve
 from .result import Conversion, conversion_record
 from .unsupported_paths import check_places
 
@@ -108,7 +109,7 @@ def _work(
     check_places(description, output)
     aside: dict[str, str] = {}
     with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
-        libraries = () if settings.library is None else chosen_libraries(settings.library)
+        libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
         digest = conversion_digest(description, settings, digests, output, version())
         yield _Work(description, settings, libraries, digest, output, place, aside)
@@ -157,19 +158,6 @@ def _left_aside(description: Description, settings: ConversionSettings) -> tuple
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
     return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
-
-
-def require_blender(what: str) -> None:
-    """Say so at once, not after minutes of work, where a .blend cannot be written or read.
-
-    Raises:
-        ConversionError: There is no Blender; the sentence begins with `what`.
-    """
-    if importlib.util.find_spec("bpy") is None:
-        raise ConversionError(
-            f"{what} Blender: install its Python module (pip install 'keymark[blender]') "
-            "or run blender --command keymark in a Blender that has Keymark"
-        )
 
 
 def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> str:

@@ -7,14 +7,11 @@ from typing import Any
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import Reconstruction, reconstruct
 from ....core.library.library import Library
-from ....core.library.registry import find_library, shelved
-from ....core.library.texts import EVERY_LIBRARY
 from ....core.matching.match_take import LibraryChoice, match_take, with_matches
 from ....core.progress import Job, stretch
 from ....core.take.keyframe_file import FEWEST_KEYFRAMES
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
-from ..library.folders import library_folders
 
 NAMED = 3
 """So many libraries are named where none fits."""
@@ -33,18 +30,6 @@ class Solved:
     """Which library was matched; None where none was asked for, or none fits."""
     unfit: tuple[str, ...] = ()
     """A sentence where no library fits and the posed keyframes count alone."""
-
-
-def chosen_libraries(wanted: str) -> tuple[Library, ...]:
-    """The libraries that `--library` means: one by name or file, or all there are.
-
-    Raises:
-        InputError: There is no such library, or none at all, or a file is unusable.
-    """
-    folders = library_folders()
-    if wanted != EVERY_LIBRARY:
-        return (find_library(wanted, folders),)
-    return tuple(found.library for found in shelved(folders) if found.library is not None)
 
 
 def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None) -> Job[Solved]:

@@ -16,15 +16,15 @@ from ....core.shoot.finding.open_shoot import open_shoot
 from ....core.shoot.finding.take_names import check_output
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ..batch.batch_outcomes import Tally
+from ..batch.machine_resources import machine_bytes, processors
+from ..batch.protocol import Job
+from ..batch.worker_pool import Supervisor
+from ..batch.worker_process import LONGEST_SILENCE_S, WorkerProcess, worker_words
 from ..console import Console, arguments_console
-from ..conversion.convert_take import require_blender
-from ..conversion.matched_keyframes import chosen_libraries
-from ..line_parser import UsageError
-from .memory import machine_bytes, processors
-from .protocol import Job
-from .supervisor import Supervisor
-from .tally import Tally
-from .worker_process import LONGEST_SILENCE_S, WorkerProcess, worker_words
+from ..library_search_path import requested_libraries
+from ..require_blender import require_blender
+from ..usage import UsageError
 
 WORKER_BYTES = 1.5 * 2**30
 """What a worker may need; the default number of jobs leaves each so much."""
@@ -96,7 +96,7 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
     if arguments.floor is not None and not abs(arguments.floor) <= HIGHEST_FLOOR_M:
         raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
     if arguments.library is not None:
-        chosen_libraries(arguments.library)
+        requested_libraries(arguments.library)
     shoot = open_shoot(arguments.shoot, without=arguments.output)
     check_output(shoot, arguments.output)
     takes = _named(shoot, arguments.take) if arguments.take else shoot.takes

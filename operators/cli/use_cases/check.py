@@ -5,19 +5,19 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache, partial
 
-from ...core.errors import ConversionError, unexpected
-from ...core.progress import Job, Progress, run
-from ...core.shoot.check.odd_takes import with_odd_ones
-from ...core.shoot.check.take_check import TakeCheck, check_take
-from ...core.shoot.finding.open_shoot import open_shoot
-from ...core.shoot.shoot import Shoot, ShootTake
-from ...core.take.conversion_settings import ConversionSettings
-from ...core.text import counted
+from ....core.errors import ConversionError, unexpected
+from ....core.progress import Job, Progress, run
+from ....core.shoot.check.odd_takes import with_odd_ones
+from ....core.shoot.check.take_check import TakeCheck, check_take
+from ....core.shoot.finding.open_shoot import open_shoot
+from ....core.shoot.shoot import Shoot, ShootTake
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.text import counted
+from ..console import arguments_console
+from ..library_search_path import requested_libraries
+from ..line_wrapping import terminal_columns
+from ..usage import UsageError
 from .check_text import check_summary, check_text
-from .console import arguments_console
-from .conversion.matched_keyframes import chosen_libraries
-from .line_parser import UsageError
-from .line_wrapping import terminal_columns
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
@@ -45,7 +45,7 @@ def check_command(arguments: argparse.Namespace) -> None:
 
 def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
     """Look at all takes, some at a time; decoders leave the interpreter to others meanwhile."""
-    find_libraries = cache(chosen_libraries)
+    find_libraries = cache(requested_libraries)
     looks = [partial(_look, take, find_libraries, farther, debug) for take in shoot.takes]
     checks: dict[int, TakeCheck] = {}
     yield Progress(STAGE, 0.0)

@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ...core.files.fields import listed
-from ...core.shoot.check.take_check import TakeCheck
-from ...core.shoot.shoot import Shoot
-from ...core.take.shoot_file import whole_way
-from .line_wrapping import broken
+from ....core.files.fields import listed
+from ....core.shoot.check.take_check import TakeCheck
+from ....core.shoot.shoot import Shoot
+from ....core.take.shoot_file import whole_way
+from ..line_wrapping import broken
 
 READY, LOOK, FAILS = "ready", "look", "fails"
 """It would convert; it would, but something is likely to go wrong; it would not."""

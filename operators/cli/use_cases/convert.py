@@ -4,14 +4,14 @@ import argparse
 from dataclasses import replace
 from typing import Any
 
-from ...core.shoot.finding.take_location import take_place
-from ...core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
-from ...core.take.description import Description, chosen_settings, describe
-from .console import arguments_console
-from .conversion.convert_take import convert
-from .conversion.matched_keyframes import match_summary
-from .conversion.result import Conversion
-from .line_parser import UsageError
+from ....core.shoot.finding.take_location import take_place
+from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ....core.take.description import Description, chosen_settings, describe
+from ..console import arguments_console
+from ..conversion.convert_take import convert
+from ..conversion.matched_keyframes import match_summary
+from ..conversion.result import Conversion
+from ..usage import UsageError
 
 
 def convert_command(arguments: argparse.Namespace) -> None:

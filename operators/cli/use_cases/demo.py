@@ -3,18 +3,18 @@
 import argparse
 from collections.abc import Mapping
 
-from ...core.errors import InputError
-from ...core.estimate.reconstruct import reconstruct
-from ...core.progress import run
-from ...core.review.score import Score, read_truth, score_points
-from ...core.take.conversion_settings import ConversionSettings
-from ...core.take.description import describe
-from ...core.take.motion import Motion
-from ...core.take.take import Take
-from .console import arguments_console
-from .conversion.convert_take import BLEND, REPORT, convert
+from ....core.errors import InputError
+from ....core.estimate.reconstruct import reconstruct
+from ....core.progress import run
+from ....core.review.score import Score, read_truth, score_points
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.description import describe
+from ....core.take.motion import Motion
+from ....core.take.take import Take
+from ..console import arguments_console
+from ..conversion.convert_take import BLEND, REPORT, convert
+from ..version import ROOT
 from .convert import summary
-from .version import ROOT
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 KEYFRAMES = DEMO / "keyframes_noisy.json"

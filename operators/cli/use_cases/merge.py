@@ -6,22 +6,23 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import ConversionError, InputError
-from ...core.files.digest import content_digest
-from ...core.files.fields import listed
-from ...core.progress import Progress
-from ...core.shoot.outcomes.failures import Failure, read_failures
-from ...core.shoot.outcomes.results import Result, Results, find_results
-from ...core.take.motion import Motion
-from ...core.take.motion_file import read_motion
-from ...core.take.shoot_file import whole_way
-from .blender_silence import blender_silence
-from .console import Console, arguments_console
-from .conversion.convert_take import MOTION, require_blender
-from .line_wrapping import broken, terminal_columns
+from ....core.errors import ConversionError, InputError
+from ....core.files.digest import content_digest
+from ....core.files.fields import listed
+from ....core.progress import Progress
+from ....core.shoot.outcomes.failures import Failure, read_failures
+from ....core.shoot.outcomes.results import Result, Results, find_results
+from ....core.take.motion import Motion
+from ....core.take.motion_file import read_motion
+from ....core.take.shoot_file import whole_way
+from ..blender_silence import blender_silence
+from ..console import Console, arguments_console
+from ..conversion.convert_take import MOTION
+from ..line_wrapping import broken, terminal_columns
+from ..require_blender import require_blender
 
 if TYPE_CHECKING:
-    from ..bridge.assets.motions import MotionAsset
+    from ...bridge.assets.motions import MotionAsset
 
 ENDING = ".blend"
 LONGEST_NAME = 63
@@ -49,8 +50,8 @@ def merge_command(arguments: argparse.Namespace) -> None:
         gathering = Gathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):
-            from ..bridge.assets.catalogs import NAME
-            from ..bridge.assets.motions import write_motion_library
+            from ...bridge.assets.catalogs import NAME
+            from ...bridge.assets.motions import write_motion_library
 
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
@@ -80,7 +81,7 @@ class Gathering:
         Raises:
             ConversionError: There is none.
         """
-        from ..bridge.assets.motions import MotionAsset
+        from ...bridge.assets.motions import MotionAsset
 
         names: set[str] = set()
         for index, result in enumerate(self._found.sound):

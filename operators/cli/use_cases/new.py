@@ -4,15 +4,15 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...core.errors import InputError
-from ...core.files.json_layout import write_readable_json
-from ...core.progress import run, within
-from ...core.shoot.finding.find_takes import find_takes
-from ...core.shoot.template.clip_survey import ClipSurvey, survey_clips
-from ...core.shoot.template.shoot_template import clip_lines, shoot_template
-from ...core.take.shoot_file import NAME, shoot_files, whole_way
-from .console import arguments_console
-from .line_parser import program_name
+from ....core.errors import InputError
+from ....core.files.json_layout import write_readable_json
+from ....core.progress import run, within
+from ....core.shoot.finding.find_takes import find_takes
+from ....core.shoot.template.clip_survey import ClipSurvey, survey_clips
+from ....core.shoot.template.shoot_template import clip_lines, shoot_template
+from ....core.take.shoot_file import NAME, shoot_files, whole_way
+from ..console import arguments_console
+from ..usage import program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:

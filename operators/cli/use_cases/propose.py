@@ -3,15 +3,15 @@
 import argparse
 from pathlib import Path
 
-from ...core.arrays import Array, IndexArray
-from ...core.files.json_file import write_whole
-from ...core.footage.markers import track_markers
-from ...core.prior.marker_speed import marker_speed, propose_keyframes
-from ...core.progress import Job, run, within
-from ...core.report.canvas import write_png
-from ...core.report.speed_plot import speed_plot
-from ...core.take.take import Take, open_clip, read_take
-from .console import arguments_console
+from ....core.arrays import Array, IndexArray
+from ....core.files.json_file import write_whole
+from ....core.footage.markers import track_markers
+from ....core.prior.marker_speed import marker_speed, propose_keyframes
+from ....core.progress import Job, run, within
+from ....core.report.canvas import write_png
+from ....core.report.speed_plot import speed_plot
+from ....core.take.take import Take, open_clip, read_take
+from ..console import arguments_console
 
 
 def propose_command(arguments: argparse.Namespace) -> None:

@@ -14,8 +14,8 @@ import bpy
 import pytest
 from _shoot import write_shoot
 from keymark.core.take.conversion_record import read_record
-from keymark.operators.cli.batch import command
 from keymark.operators.cli.main import main
+from keymark.operators.cli.use_cases import batch as command
 
 TESTS = Path(__file__).resolve().parents[2]
 GOOD = ("day1/take01", "day1/take02", "day1/take03")

@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 from keymark.core.shoot.outcomes.failures import read_failure
-from keymark.operators.cli.batch import command, supervisor
+from keymark.operators.cli.batch import worker_pool
 from keymark.operators.cli.batch.batch_progress import Share
-from keymark.operators.cli.line_parser import program_name
 from keymark.operators.cli.main import main
+from keymark.operators.cli.usage import program_name
+from keymark.operators.cli.use_cases import batch as command
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 
@@ -51,11 +52,11 @@ class Studio:
 def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
     """A studio with nothing in it yet."""
     made = Studio(tmp_path)
-    monkeypatch.setattr(command, "require_blender", lambda what: None)
+    monkeypatch.setattr(command, "require_blender", lambda needing: None)
     monkeypatch.setattr(
         command, "worker_words", lambda: [sys.executable, "-I", "-S", str(STAND_IN), str(made.log)]
     )
-    monkeypatch.setattr(supervisor, "SHORTEST_WAIT_S", 0.001)
+    monkeypatch.setattr(worker_pool, "SHORTEST_WAIT_S", 0.001)
     return made
 
 

@@ -9,8 +9,8 @@ from keymark.core.shoot.outcomes.failures import Failure, read_failures, write_f
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.take.conversion_record import write_record
-from keymark.operators.cli.batch import tally
-from keymark.operators.cli.batch.tally import Tally
+from keymark.operators.cli.batch import batch_outcomes
+from keymark.operators.cli.batch.batch_outcomes import Tally
 from keymark.operators.cli.console import Console
 
 
@@ -34,7 +34,7 @@ def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
             write_record(output / "b", replace(RECORD, files={}))
         return ()
 
-    monkeypatch.setattr(tally, "write_summary", write)
+    monkeypatch.setattr(batch_outcomes, "write_summary", write)
     Tally(shoot, output, [], Console(quiet=True, as_json=False)).finish()
     assert [summary["b"] for summary in written] == [Status.WAITING, Status.CONVERTED]
 

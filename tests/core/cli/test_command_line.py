@@ -18,7 +18,8 @@ from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli import arguments
+from keymark.operators.cli import require_blender
+from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
@@ -95,7 +96,7 @@ def test_help_has_examples_and_version_is_the_manifests(
 
 def test_the_methods_offered_are_the_methods_there_are() -> None:
     """The parser, which must not load the estimators, lists exactly theirs."""
-    assert set(arguments.METHODS) == set(METHODS)
+    assert set(convert_arguments.METHODS) == set(METHODS)
 
 
 @pytest.mark.usefixtures("no_blender")
@@ -276,7 +277,7 @@ def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before any work, and with the output folder as it was."""
-    monkeypatch.setattr(convert_take.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(require_blender.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
     assert "pip install 'keymark[blender]'" in one_line(capsys.readouterr().err)

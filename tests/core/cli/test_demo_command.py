@@ -9,8 +9,8 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take.motion_file import read_motion
 from keymark.core.take.take import read_take
-from keymark.operators.cli import demo
 from keymark.operators.cli.main import main
+from keymark.operators.cli.use_cases import demo
 
 FRAMES = 16
 

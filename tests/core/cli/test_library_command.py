@@ -15,7 +15,7 @@ from _synthetic_take import BODY, true_postures
 from keymark.core.library.library_file import read_library, write_library
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import write_motion
-from keymark.operators.cli.library import folders
+from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 
 FRAMES = 40
@@ -28,8 +28,8 @@ def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     write_library(folder / "any name.json", small_library())
     (folder / "broken.json").write_text("{", encoding="utf-8")
-    monkeypatch.setenv(folders.VARIABLE, str(folder))
-    monkeypatch.setattr(folders, "SHIPPED", tmp_path / "nothing")
+    monkeypatch.setenv(library_search_path.VARIABLE, str(folder))
+    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "nothing")
     return folder
 
 

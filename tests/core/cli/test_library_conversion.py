@@ -13,7 +13,7 @@ from _synthetic_take import BODY, true_postures, write_json, write_synthetic_tak
 from keymark.core.library.learning import About, learn_library
 from keymark.core.library.library_file import write_library
 from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli.library import folders
+from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 
 FRAMES = 24
@@ -128,7 +128,7 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
         return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits")
 
     monkeypatch.setattr(matched_keyframes, "match_take", nothing_fits)
-    monkeypatch.setattr(folders, "SHIPPED", tmp_path)
+    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path)
     assert convert(take, tmp_path / "out", "--library", "auto", "--quiet") == 1
     said = capsys.readouterr().err
     assert "none of them fits; likeliest are Swaying 50%" in said and len(said.splitlines()) == 1
@@ -160,7 +160,7 @@ def test_what_cannot_be_matched_with_is_one_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Status 2, before anything is read of the clip."""
-    monkeypatch.setenv(folders.VARIABLE, str(library.parent))
+    monkeypatch.setenv(library_search_path.VARIABLE, str(library.parent))
     assert convert(take, tmp_path / "out", *more, "--quiet") == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1

@@ -56,7 +56,7 @@ def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
     _, told = module_process(tmp_path, repository, "--help").communicate()
     loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
-    assert "keymark.operators.cli.shoot_arguments" in loaded
+    assert "keymark.operators.cli.commands.batch" in loaded
     assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 

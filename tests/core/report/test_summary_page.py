@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.report.summary.html_text import LONGEST, duration, percent, visible
 from keymark.core.report.summary.page import summary_page
-from keymark.core.report.summary.style import DARK, LIGHT
+from keymark.core.report.summary.style_and_script import STYLE
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
@@ -131,12 +131,16 @@ def test_everyone_can_read_the_page() -> None:
         assert element.attributes.get("role") == roles.get(element.tag) or element.tag not in roles
 
 
+LIGHT, DARK = (dict(re.findall(r"--(\w+):(#\w{6});", line)) for line in STYLE.splitlines()[:2])
+"""The colors of day and night, by the names that the style has for them."""
+
+
 @pytest.mark.parametrize("colors", [LIGHT, DARK], ids=["light", "dark"])
 def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None:
     """Every color of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
 
     def luminance(color: str) -> float:
-        shares = [int(color[place : place + 2], 16) / 255 for place in (1, 3, 5)]
+        shares = [int(color[index : index + 2], 16) / 255 for index in (1, 3, 5)]
         linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
@@ -144,6 +148,7 @@ def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None
         low, high = sorted((luminance(colors[one]), luminance(colors[other])))
         return (high + 0.05) / (low + 0.05)
 
+    assert set(LIGHT) == set(DARK) and LIGHT != DARK
     words = ("ink", "soft", "link", "failed", "poor", "fair", "good")
     for word, ground in product(words, ("paper", "card")):
         assert contrast(word, ground) >= 4.5, (word, ground)

@@ -1,1 +1,1 @@
-"""`keymark library`: its words, its commands, and where libraries are found."""
+"""What the commands of `keymark library` do."""

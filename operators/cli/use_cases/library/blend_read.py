@@ -2,19 +2,19 @@
 
 import argparse
 
-from ....core.errors import InputError
-from ....core.library.library_file import write_library
-from ....core.library.registry import find_library
-from ....core.library.texts import checked_identifier
-from ..blender_silence import blender_silence
-from ..console import arguments_console
-from ..conversion.convert_take import require_blender
-from .folders import library_folders, refuse_existing
-from .inspect import described, library_summary
+from .....core.errors import InputError
+from .....core.library.registry import find_library
+from .....core.library.texts import checked_identifier
+from ...blender_silence import blender_silence
+from ...console import arguments_console
+from ...library_search_path import library_folders
+from ...require_blender import require_blender
+from .library_summary import library_summary
+from .new_library_file import refuse_existing, write_new_library
 
 
 def blend_command(arguments: argparse.Namespace) -> None:
-    """Write a library's postures as pose assets, with their catalog, into a folder of asset libraries."""
+    """Write a library's postures as pose assets, with their catalog, into the folder of an asset library."""
     require_blender("pose assets need")
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
@@ -22,8 +22,8 @@ def blend_command(arguments: argparse.Namespace) -> None:
         refuse_existing(file, arguments.replace)
         console.stage("Writing Blender's files")
         with blender_silence(arguments.debug):
-            from ...bridge.assets.catalogs import NAME
-            from ...bridge.library.library_blend import write_library_blend
+            from ....bridge.assets.catalogs import NAME
+            from ....bridge.library.library_blend import write_library_blend
 
             write_library_blend(file, library)
         files = [str(file), str(arguments.output / NAME)]
@@ -42,14 +42,11 @@ def read_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Reading the pose assets")
         with blender_silence(arguments.debug):
-            from ...bridge.library.library_blend import read_library_blend
+            from ....bridge.library.library_blend import read_library_blend
 
             found = read_library_blend(arguments.file)
         chosen = [one for one in found if arguments.identifier in (None, one.identifier)]
         if len(chosen) != 1:
             names = ", ".join(one.identifier for one in found)
             raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
-        library = chosen[0]
-        write_library(arguments.output, library)
-        result = {**library_summary(library), "files": [str(arguments.output)]}
-        console.finish(result, "\n".join([*described(library), f"Written: {arguments.output}"]))
+        write_new_library(console, arguments, chosen[0])

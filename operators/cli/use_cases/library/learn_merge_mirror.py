@@ -1,21 +1,20 @@
-"""`keymark library learn`, `merge` and `mirror`: new libraries from what there is."""
+"""`keymark library learn`, `merge` and `mirror`: a new library from a motion or from libraries."""
 
 import argparse
 
-from ....core.errors import InputError
-from ....core.files.fields import listed
-from ....core.library.learning import About, learn_library
-from ....core.library.library import Library
-from ....core.library.library_file import write_library
-from ....core.library.merging import Choice, compare, joined, merged
-from ....core.library.mirroring import mirrored_library, with_mirrored
-from ....core.library.registry import find_library
-from ....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
-from ....core.take.motion_file import read_motion
-from ..console import Console, arguments_console
-from ..line_parser import UsageError
-from .folders import library_folders, refuse_existing
-from .inspect import described, library_summary
+from .....core.errors import InputError
+from .....core.files.fields import listed
+from .....core.library.learning import About, learn_library
+from .....core.library.library import Library
+from .....core.library.merging import Choice, compare, joined, merged
+from .....core.library.mirroring import mirrored_library, with_mirrored
+from .....core.library.registry import find_library
+from .....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
+from .....core.take.motion_file import read_motion
+from ...console import arguments_console
+from ...library_search_path import library_folders
+from ...usage import UsageError
+from .new_library_file import refuse_existing, write_new_library
 
 
 def learn_command(arguments: argparse.Namespace) -> None:
@@ -34,7 +33,7 @@ def learn_command(arguments: argparse.Namespace) -> None:
         )
         console.stage("Choosing postures")
         library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
-        _keep(console, arguments, library)
+        write_new_library(console, arguments, library)
 
 
 def merge_command(arguments: argparse.Namespace) -> None:
@@ -45,19 +44,19 @@ def merge_command(arguments: argparse.Namespace) -> None:
         first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
         if first.identifier == second.identifier:
             choice = None if arguments.conflicts is None else Choice(arguments.conflicts)
-            library = _of_two_versions(first, second, choice)
+            library = _merge_versions(first, second, choice)
         else:
             title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
             identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
             library = joined(first, second, identifier, title)
-        _keep(console, arguments, library)
+        write_new_library(console, arguments, library)
 
 
-def _of_two_versions(first: Library, second: Library, choice: Choice | None) -> Library:
-    """Two versions of a library as one.
+def _merge_versions(first: Library, second: Library, choice: Choice | None) -> Library:
+    """Merge two versions of one library.
 
     Raises:
-        UsageError: They differ in something, and no choice is made.
+        UsageError: They differ, and `--conflicts` does not say which counts.
     """
     changed = compare(first, second).changed
     if changed and choice is None:
@@ -70,23 +69,16 @@ def mirror_command(arguments: argparse.Namespace) -> None:
     """Exchange left and right.
 
     Raises:
-        InputError: Both sides are wanted of an actor whose sides differ.
+        InputError: `--both` is given for an actor whose left and right sides differ.
     """
     refuse_existing(arguments.output, arguments.replace)
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
         if not arguments.both:
-            _keep(console, arguments, mirrored_library(library))
+            write_new_library(console, arguments, mirrored_library(library))
             return
         try:
             both = with_mirrored(library)
         except ValueError as error:
             raise InputError(f"library {library.identifier!r}: {error}") from error
-        _keep(console, arguments, both)
-
-
-def _keep(console: Console, arguments: argparse.Namespace, library: Library) -> None:
-    """Write a library, and say so."""
-    write_library(arguments.output, library)
-    result = {**library_summary(library), "files": [str(arguments.output)]}
-    console.finish(result, "\n".join([*described(library), f"Written: {arguments.output}"]))
+        write_new_library(console, arguments, both)
