@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bpy
 import pytest
+from _command_line import tree
 from _synthetic_take import write_synthetic_take
 from keymark.operators.cli.main import main
 
@@ -107,3 +108,34 @@ def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
     assert said.out == "" and "the exporter failed" in said.err and len(said.err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["takes"]
+
+
+@pytest.mark.parametrize("within", [False, True], ids=["staged beside", "staged within"])
+@pytest.mark.parametrize("writer", ["write_blend", "write_bvh"])
+def test_a_failure_leaves_the_old_files_and_nothing_else(
+    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, within: bool
+) -> None:
+    """Half a file never takes the place of a whole one, in whichever folder it was written."""
+    from keymark.core.errors import ConversionError
+    from keymark.core.files import output_folder
+    from keymark.operators.bridge import result_files
+
+    out = tmp_path / "results" / "out"
+    words = ["convert", str(take), "--output", str(out), "--method", "interpolation", "--quiet", "--no-report"]
+    assert main(words) == 0
+    before = tree(out.parent)
+    if within:
+        monkeypatch.setattr(output_folder.os, "access", lambda path, mode: Path(path) == out)
+    written: list[Path] = []
+
+    def fail(first: object, second: object, **_options: object) -> None:
+        path = first if isinstance(first, Path) else second
+        assert isinstance(path, Path)
+        path.write_bytes(b"half")
+        written.append(path)
+        raise ConversionError("the disk is full")
+
+    monkeypatch.setattr(result_files, writer, fail)
+    assert main(words) == 1
+    assert len(written) == 1 and (written[0].parent == out) == within
+    assert tree(out.parent) == before
