@@ -17,17 +17,17 @@ load_package()
 from keymark.operators.cli.conversion import convert_take  # noqa: E402
 from keymark.operators.cli.main import main  # noqa: E402
 
-write = convert_take._write_scene
+write = convert_take.write_blender_files
 
 
-def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
+def write_or_die(take: Any, motion: Any, staging_folder: Path, *rest: Any) -> None:
     """Write the scene, unless a death is due."""
-    assert (place / "motion.json").is_file()
+    assert (staging_folder / "motion.json").is_file()
     for due in Path(sys.argv[1]).glob(f"{take.name}*"):
         due.unlink()
         os.kill(os.getpid(), signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
-    write(take, motion, place, *rest)
+    write(take, motion, staging_folder, *rest)
 
 
-convert_take._write_scene = write_or_die
+convert_take.write_blender_files = write_or_die
 sys.exit(main(["worker"]))

@@ -15,7 +15,8 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion.convert_take import convert, convert_if_changed
+from ..conversion.convert_take import convert_take
+from ..conversion.skip_unchanged import convert_if_changed
 from ..usage import UsageError
 from ..version import version
 from .machine_resources import resident_bytes
@@ -50,7 +51,7 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
     try:
         description = job.take.describe()
         settings = job.take.settings(description, job.farther)
-        unit = convert if job.again else convert_if_changed
+        unit = convert_take if job.again else convert_if_changed
         made = unit(description, job.folder, _Steps(say), settings, job.debug)
         result, error, kind = UNCHANGED if made is None else CONVERTED, None, None
     except BusyError as busy:

@@ -8,7 +8,7 @@ from ....core.shoot.finding.take_location import take_place
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ....core.take.description import Description, chosen_settings, describe
 from ..console import arguments_console
-from ..conversion.convert_take import convert
+from ..conversion.convert_take import convert_take
 from ..conversion.matched_keyframes import match_summary
 from ..conversion.result import Conversion
 from ..usage import UsageError
@@ -20,7 +20,7 @@ def convert_command(arguments: argparse.Namespace) -> None:
         console.stage("Reading the take")
         description = describe(take_place(arguments.take))
         settings = _settings(arguments, description)
-        conversion = convert(description, arguments.output, console, settings, arguments.debug)
+        conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
         console.finish(summary(conversion), _text(conversion))
 
 

@@ -12,7 +12,8 @@ from ....core.take.description import describe
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
-from ..conversion.convert_take import BLEND, REPORT, convert
+from ..conversion.blender_files import BLEND
+from ..conversion.convert_take import REPORT, convert_take
 from ..version import ROOT
 from .convert import summary
 
@@ -29,7 +30,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
         )
     with arguments_console(arguments) as console:
-        done = convert(
+        done = convert_take(
             describe(DEMO), arguments.output, console, ConversionSettings(KEYFRAMES), arguments.debug
         )
         console.stage("Trying the paper's filter")

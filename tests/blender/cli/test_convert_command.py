@@ -121,7 +121,16 @@ def test_a_failure_leaves_the_old_files_and_nothing_else(
     from keymark.operators.bridge import result_files
 
     out = tmp_path / "results" / "out"
-    words = ["convert", str(take), "--output", str(out), "--method", "interpolation", "--quiet", "--no-report"]
+    words = [
+        "convert",
+        str(take),
+        "--output",
+        str(out),
+        "--method",
+        "interpolation",
+        "--quiet",
+        "--no-report",
+    ]
     assert main(words) == 0
     before = tree(out.parent)
     if within:

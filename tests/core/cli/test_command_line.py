@@ -107,7 +107,7 @@ def test_a_conversion_writes_its_files_and_says_so(
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
-    for name in set(convert_take.BELONGINGS) - {f"report/{MATCHES}"}:
+    for name in set(convert_take.RESULT_FILES) - {f"report/{MATCHES}"}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"
@@ -251,7 +251,7 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
         (place / "motion.blend").write_bytes(b"half a file")
         raise problem
 
-    monkeypatch.setattr(convert_take, "_write_scene", fail)
+    monkeypatch.setattr(convert_take, "write_blender_files", fail)
     before = tree(out.parent)
     assert convert(take, out, *FAST, "--quiet") == status
     assert sentence in one_line(capsys.readouterr().err)
@@ -267,7 +267,7 @@ def test_debug_shows_where(
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
-    monkeypatch.setattr(convert_take, "_write_scene", fail)
+    monkeypatch.setattr(convert_take, "write_blender_files", fail)
     assert convert(take, out, *FAST, "--quiet", "--debug") == 1
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("Traceback") and "something odd" in lines[-1]
