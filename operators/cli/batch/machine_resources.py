@@ -1,4 +1,4 @@
-"""How much memory a process holds, and how much a machine has, as far as the system tells."""
+"""Memory and processors of the machine, and the memory of this process, as far as the system tells."""
 
 import os
 import sys
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def resident_bytes() -> int | None:
-    """What this process holds in memory now, or else the most it has held; None where nothing tells."""
+    """Resident memory of this process, or else its peak; None where the system tells neither."""
     with suppress(OSError, ValueError, IndexError):
         pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[1]
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
@@ -19,8 +19,8 @@ def resident_bytes() -> int | None:
     return most if sys.platform == "darwin" else most * 1024
 
 
-def machine_bytes() -> int | None:
-    """The memory this process may use: the machine's, or less where a container limits it."""
+def available_memory_bytes() -> int | None:
+    """Memory that this process may use: the machine's, or less where a container limits it."""
     known = []
     with suppress(OSError, ValueError, AttributeError):
         known.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -29,8 +29,8 @@ def machine_bytes() -> int | None:
     return min((size for size in known if size > 0), default=None)
 
 
-def processors() -> int:
-    """The processors this process may use."""
+def processor_count() -> int:
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""The summary of a batch: one line a take for programs, and one page for people."""
+"""The summary of a batch: JSON Lines with one take each for programs, and an HTML page for people."""
 
 import json
 from collections.abc import Sequence
@@ -18,31 +18,31 @@ LINES, PAGE = "summary.jsonl", "summary.html"
 
 
 def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tuple[Path, ...]:
-    """Write `summary.jsonl` and `summary.html`, each whole; where several do so at once, the last one counts.
+    """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts.
 
     Args:
-        output: Folder of the results of all takes.
-        shoot: What was converted.
-        outcomes: What became of each of its takes.
+        output: Folder of all results.
+        shoot: The shoot that is converted.
+        outcomes: The outcome of each of its takes.
 
     Returns:
-        The files.
+        Paths of both files.
 
     Raises:
         ConversionError: A file cannot be written.
     """
     ordered = sorted(outcomes, key=lambda outcome: outcome.take)
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
-    lines = "".join(f"{json.dumps(line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
+    lines = "".join(f"{json.dumps(summary_line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
     page = summary_page(whole_way(shoot.path).name, ordered, output)
     for name, text in ((LINES, lines), (PAGE, page)):
-        write_whole(output / name, lambda beside, text=text: _write(beside, text))
+        write_whole(output / name, lambda staged, text=text: _write(staged, text))
     return (output / LINES, output / PAGE)
 
 
-def line(outcome: Outcome, output: Path) -> dict[str, Any]:
-    """What programs learn of one take; what a record says counts where it is of this input."""
-    said: dict[str, Any] = {
+def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
+    """One take as an object; fields of its record are null where the record is not of this input."""
+    fields: dict[str, Any] = {
         "take": outcome.take,
         "status": outcome.status.value,
         "error": outcome.error,
@@ -50,12 +50,12 @@ def line(outcome: Outcome, output: Path) -> dict[str, Any]:
     }
     record = result(outcome)
     for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
-        said[name] = None if record is None else getattr(record, name)
+        fields[name] = None if record is None else getattr(record, name)
     for name in ("method", "library", "keyframes", "matched"):
-        said[name] = None if record is None else getattr(record, name)
+        fields[name] = None if record is None else getattr(record, name)
     way = way_to(outcome.folder, output)
     names = () if record is None else (*record.files, RECORD)
-    return {**said, "files": [name if way == "." else f"{way}/{name}" for name in names]}
+    return {**fields, "files": [name if way == "." else f"{way}/{name}" for name in names]}
 
 
 def _write(path: Path, text: str) -> None:

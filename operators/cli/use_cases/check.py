@@ -1,4 +1,4 @@
-"""`keymark check`."""
+"""`keymark check`: look through a shoot before it is converted."""
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
@@ -24,43 +24,44 @@ STAGE = "Looking at the takes"
 
 
 def check_command(arguments: argparse.Namespace) -> None:
-    """Look through the takes that the command line names, and say what is wrong with each.
+    """Check the takes that the command line names, and list the problems of each.
 
     Raises:
         InputError: The shoot is unusable.
-        ConversionError: Some take would not convert.
+        UsageError: `--jobs` is out of range.
+        ConversionError: A take would not convert.
     """
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
-    farther = ConversionSettings(library=arguments.library, method=arguments.method)
+    defaults = ConversionSettings(library=arguments.library, method=arguments.method)
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
-        checks = run(_checks(shoot, farther, jobs, arguments.debug), console.progress)
+        checks = run(_check_takes(shoot, defaults, jobs, arguments.debug), console.progress)
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {counted(len(checks), 'take')} would not convert")
 
 
-def _checks(shoot: Shoot, farther: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
-    """Look at all takes, some at a time; decoders leave the interpreter to others meanwhile."""
+def _check_takes(shoot: Shoot, defaults: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
+    """Check all takes, several at a time in threads: decoders release the interpreter lock."""
     find_libraries = cache(requested_libraries)
-    looks = [partial(_look, take, find_libraries, farther, debug) for take in shoot.takes]
+    tasks = [partial(_check_one, take, find_libraries, defaults, debug) for take in shoot.takes]
     checks: dict[int, TakeCheck] = {}
     yield Progress(STAGE, 0.0)
-    for index, check in _some_at_a_time(looks, jobs):
+    for index, check in _in_threads(tasks, jobs):
         checks[index] = check
-        yield Progress(STAGE, len(checks) / len(looks))
+        yield Progress(STAGE, len(checks) / len(tasks))
     return with_odd_ones([checks[index] for index in sorted(checks)])
 
 
-def _look(
-    take: ShootTake, find_libraries: Callable[[str], object], farther: ConversionSettings, debug: bool
+def _check_one(
+    take: ShootTake, find_libraries: Callable[[str], object], defaults: ConversionSettings, debug: bool
 ) -> TakeCheck:
-    """Look at a take; what nobody has thought of is said of this one, and stops no look at the others."""
+    """Check one take; an unexpected error becomes a problem of this take and does not stop the others."""
     try:
-        return check_take(take, find_libraries, farther)
+        return check_take(take, find_libraries, defaults)
     except Exception as error:
         if debug:
             raise
@@ -69,14 +70,14 @@ def _look(
         return TakeCheck(take.name, (said,), ())
 
 
-def _some_at_a_time(looks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
+def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
     if jobs == 1:
-        for index, look in enumerate(looks):
-            yield index, look()
+        for index, task in enumerate(tasks):
+            yield index, task()
         return
     pool = ThreadPoolExecutor(jobs)
     try:
-        running = {pool.submit(look): index for index, look in enumerate(looks)}
+        running = {pool.submit(task): index for index, task in enumerate(tasks)}
         for done in as_completed(running):
             yield running[done], done.result()
     finally:

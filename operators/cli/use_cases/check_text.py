@@ -1,4 +1,4 @@
-"""What `keymark check` says: a line a take with what is wrong below it, or one object."""
+"""Output of `keymark check`: a table of the takes with the problems of each, or one object for `--json`."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -8,24 +8,24 @@ from ....core.files.fields import listed
 from ....core.shoot.check.take_check import TakeCheck
 from ....core.shoot.shoot import Shoot
 from ....core.take.shoot_file import whole_way
-from ..line_wrapping import broken
+from ..line_wrapping import wrapped
 
 READY, LOOK, FAILS = "ready", "look", "fails"
-"""It would convert; it would, but something is likely to go wrong; it would not."""
+"""The take would convert; it would, but something is likely to go wrong; it would not."""
 STOPS, LIKELY = "!", "-"
-"""Before what stops a conversion, and before what is only likely to go wrong."""
+"""Before a problem that stops the conversion, and before a warning."""
 FEWEST_IN_COMMON = 3
-"""Takes that must share a sentence for it to be said once."""
+"""Number of takes from which on a sentence that they share is printed once."""
 MOST_NAMED = 3
-BETWEEN = "  "
-"""Two columns."""
+SEPARATOR = "  "
+"""Between two columns of the table."""
 NARROWEST_NAME = 12
-"""Columns that a name has at least beside its figures."""
+"""Smallest width of the column of names."""
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
-    """What was found, for `--json`."""
-    counts = Counter(map(_word, checks))
+    """The checks as an object for `--json`."""
+    counts = Counter(map(_status, checks))
     efforts = [check.effort for check in checks if check.effort is not None]
     return {
         "takes": [_take(check) for check in checks],
@@ -36,12 +36,12 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
 
 
 def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
-    """What was found, for people.
+    """The checks as text for people.
 
     Args:
-        shoot: What was looked at.
-        checks: Of every take.
-        columns: Width of the terminal, to which sentences are broken; None where nothing is to be broken.
+        shoot: The shoot that was checked.
+        checks: The check of every take.
+        columns: Width of the terminal, to which sentences are wrapped; None keeps them whole.
     """
     shared = _shared(checks)
     lines = _table(shoot, checks, shared, columns)
@@ -51,33 +51,35 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
     for those, sentences in together.items():
         where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
         lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
-        lines += [line for sentence in sentences for line in broken(sentence, 2, columns)]
-    return "\n".join([*lines, "", *broken(_last_line(checks), 0, columns)])
+        lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
+    return "\n".join([*lines, "", *wrapped(_last_line(checks), 0, columns)])
 
 
 def _table(
     shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
 ) -> list[str]:
-    """A line a take in columns, what is wrong with it alone below."""
+    """A row a take, and below it the sentences on this take alone."""
     names = [_name(shoot, check) for check in checks]
     markers = _common_markers(checks)
     titles = ("", "take", "frames", "size", "rate", "keyframes", *markers)
-    rows = [(_word(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)]
+    rows = [
+        (_status(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)
+    ]
     widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
     if columns is not None:
-        figures = sum(width + len(BETWEEN) for width in (widths[0], *widths[2:]))
+        figures = sum(width + len(SEPARATOR) for width in (widths[0], *widths[2:]))
         widths[1] = max(min(widths[1], columns - figures), NARROWEST_NAME)
     said_once = set(shared)
     lines = _aligned(titles, widths)
     for check, row in zip(checks, rows, strict=True):
         lines += _aligned(row, widths)
         own = [sentence for sentence in _marked(check) if sentence not in said_once]
-        lines += [line for sentence in own for line in broken(sentence, widths[0] + 2, columns)]
+        lines += [line for sentence in own for line in wrapped(sentence, widths[0] + 2, columns)]
     return lines
 
 
 def _marked(check: TakeCheck) -> tuple[str, ...]:
-    """All sentences on a take, those marked that stop its conversion."""
+    """All sentences on a take, marked by whether they stop its conversion."""
     return (
         *(f"{STOPS} {sentence}" for sentence in check.problems),
         *(f"{LIKELY} {sentence}" for sentence in check.warnings),
@@ -94,23 +96,23 @@ def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
 
 
 def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
-    """Words to the left, numbers to the right; below a name that is too long for its column."""
+    """A row with words to the left and numbers to the right; two lines where the name is too long."""
     first, name, *rest = cells
     numbers = [f"{cell:>{width}}" for cell, width in zip(rest, widths[2:], strict=True)]
     words = f"{first:{widths[0]}}"
     if len(name) > widths[1]:
-        whole = BETWEEN.join([words, name])
-        return [whole, BETWEEN.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
-    return [BETWEEN.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
+        whole = SEPARATOR.join([words, name])
+        return [whole, SEPARATOR.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
+    return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
 
 
 def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
-    """The markers of all takes, each name once, in the order they are met."""
+    """Names of the markers of all takes, without repetition, in order of appearance."""
     return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
 
 
 def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
-    """Sentences that several takes share, with these: a mistake in a shoot's description is one mistake."""
+    """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
     found: dict[str, list[str]] = {}
     for check in checks:
         for sentence in _marked(check):
@@ -119,7 +121,7 @@ def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
 
 
 def _last_line(checks: Sequence[TakeCheck]) -> str:
-    counts = Counter(map(_word, checks))
+    counts = Counter(map(_status, checks))
     said = [
         f"{counts[READY]} ready",
         f"{counts[LOOK]} to look at",
@@ -147,7 +149,7 @@ def _name(shoot: Shoot, check: TakeCheck) -> str:
     return whole_way(shoot.folder).name if check.name == "." else check.name
 
 
-def _word(check: TakeCheck) -> str:
+def _status(check: TakeCheck) -> str:
     if not check.converts:
         return FAILS
     return LOOK if check.warnings else READY
@@ -156,7 +158,7 @@ def _word(check: TakeCheck) -> str:
 def _take(check: TakeCheck) -> dict[str, Any]:
     return {
         "take": check.name,
-        "status": _word(check),
+        "status": _status(check),
         "problems": list(check.problems),
         "warnings": list(check.warnings),
         "size": None if check.size is None else list(check.size),

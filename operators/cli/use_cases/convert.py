@@ -1,4 +1,4 @@
-"""`keymark convert`."""
+"""`keymark convert`: convert one take and report the result."""
 
 import argparse
 from dataclasses import replace
@@ -15,17 +15,17 @@ from ..usage import UsageError
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
-    """Convert the take that the command line names, and say what was made."""
+    """Convert the take that the command line names, and list the files that were made."""
     with arguments_console(arguments) as console:
         console.stage("Reading the take")
         description = describe(take_place(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
-        console.finish(summary(conversion), _text(conversion))
+        console.finish(conversion_summary(conversion), _text(conversion))
 
 
-def summary(conversion: Conversion) -> dict[str, Any]:
-    """What a conversion made, for `--json`."""
+def conversion_summary(conversion: Conversion) -> dict[str, Any]:
+    """The result of a conversion as an object for `--json`."""
     motion = conversion.reconstruction.motion
     return {
         "files": [str(file) for file in conversion.files],
@@ -40,10 +40,10 @@ def summary(conversion: Conversion) -> dict[str, Any]:
 
 
 def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
-    """What the command line asks for, and else the take: a library that is asked for here is matched alone.
+    """The settings of the command line, and else of the take; a library given here is matched alone.
 
     Raises:
-        UsageError: Options contradict each other.
+        UsageError: The options contradict each other.
     """
     given = ConversionSettings(
         keyframes=arguments.keyframes,

@@ -1,4 +1,4 @@
-"""`keymark demo`: the demonstration take, whose true motion is known."""
+"""`keymark demo`: convert the demonstration take, whose true motion is known, and score the result."""
 
 import argparse
 from collections.abc import Mapping
@@ -15,16 +15,16 @@ from ..console import arguments_console
 from ..conversion.blender_files import BLEND
 from ..conversion.convert_take import REPORT, convert_take
 from ..version import ROOT
-from .convert import summary
+from .convert import conversion_summary
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 KEYFRAMES = DEMO / "keyframes_noisy.json"
-"""Posed with a person's errors, as users' keyframes are."""
+"""Keyframes with the errors that a person makes when posing."""
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
 def demo_command(arguments: argparse.Namespace) -> None:
-    """Convert the demonstration take and say how far each method is from the truth."""
+    """Convert the demonstration take and print the error of each method."""
     if not DEMO.is_dir():
         raise InputError(
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
@@ -40,16 +40,19 @@ def demo_command(arguments: argparse.Namespace) -> None:
             "ekf": _score(done.take, filtered.motion),
             "map": _score(done.take, done.reconstruction.motion),
         }
-        result = {**summary(done), "scores_mm": {name: score.to_dict() for name, score in scores.items()}}
+        result = {
+            **conversion_summary(done),
+            "scores_mm": {name: score.to_dict() for name, score in scores.items()},
+        }
         output = arguments.output
-        words = [
+        lines = [
             f"Error against the true motion of {scores['map'].frames} frames, posed in "
             f"{scores['map'].keyframes} of them, in millimeters:",
             *_table(scores),
             f"Open in Blender: {output / BLEND}",
             f"Pictures:        {output / REPORT}",
         ]
-        console.finish(result, "\n".join(words))
+        console.finish(result, "\n".join(lines))
 
 
 def _score(take: Take, motion: Motion) -> Score:

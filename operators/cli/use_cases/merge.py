@@ -1,4 +1,4 @@
-"""`keymark merge`: the motions of a batch as one asset library."""
+"""`keymark merge`: gather the motions of a batch in one asset library."""
 
 import argparse
 import os
@@ -18,19 +18,19 @@ from ....core.take.shoot_file import whole_way
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console
 from ..conversion.convert_take import MOTION
-from ..line_wrapping import broken, terminal_columns
+from ..line_wrapping import terminal_columns, wrapped
 from ..require_blender import require_blender
 
 if TYPE_CHECKING:
     from ...bridge.assets.motions import MotionAsset
 
-ENDING = ".blend"
-LONGEST_NAME = 63
-"""Bytes of a data-block's name in Blender 4.5; later ones hold more."""
-LONGEST_TAG = 63
+SUFFIX = ".blend"
+LONGEST_NAME_BYTES = 63
+"""Of a data-block's name in Blender 4.5; later versions allow more."""
+LONGEST_TAG_BYTES = 63
 LONGEST_DESCRIPTION = 1000
-NAMED = 5
-"""So many takes are named in the last line."""
+MOST_NAMED = 5
+"""Takes named in the last line."""
 STAGE = "Gathering the motions"
 
 
@@ -38,16 +38,16 @@ def merge_command(arguments: argparse.Namespace) -> None:
     """Gather all results below a folder in one .blend of Action assets.
 
     Raises:
-        InputError: There are no results, or the .blend cannot lie where it is asked for.
+        InputError: There are no results, or the .blend cannot be written where it is asked for.
         ConversionError: Some results are damaged, or takes have failed; all others have been gathered.
     """
     require_blender("an asset library needs")
     with arguments_console(arguments) as console:
         console.stage("Looking for results")
         found = find_results(arguments.results)
-        _check_place(arguments.output, found)
+        _check_output(arguments.output, found)
         name = arguments.name or whole_way(arguments.results).name
-        gathering = Gathering(found, read_failures(arguments.results), name, console)
+        gathering = MotionGathering(found, read_failures(arguments.results), name, console)
         console.stage(STAGE)
         with blender_silence(arguments.debug):
             from ...bridge.assets.catalogs import NAME
@@ -55,31 +55,30 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
-        wrong = gathering.wrong
-        result = {"motions": gathering.count, "wrong": wrong, "files": files}
-        console.finish(result, _text(gathering.count, files, wrong))
-    if wrong:
-        raise ConversionError(
-            f"{arguments.output} lacks takes or holds earlier results of them: {listed(sorted(wrong), NAMED)}"
-        )
+        problems = gathering.problems
+        result = {"motions": gathering.count, "wrong": problems, "files": files}
+        console.finish(result, _text(gathering.count, files, problems))
+    if problems:
+        named = listed(sorted(problems), MOST_NAMED)
+        raise ConversionError(f"{arguments.output} lacks takes or holds earlier results of them: {named}")
 
 
-class Gathering:
-    """Results on their way into a library; those that turn out to be damaged are remembered."""
+class MotionGathering:
+    """Yields the assets of sound results one by one, and collects the problems of the others."""
 
     def __init__(self, found: Results, failures: Sequence[Failure], shoot: str, console: Console) -> None:
-        self.wrong = dict(found.damaged)
-        """Of each take that the library lacks, or has of an earlier input, why, in a sentence."""
-        self.wrong |= {failure.take: failure.error for failure in failures}
+        self.problems = dict(found.damaged)
+        """The problem of each take that the library lacks or has of an earlier input, in a sentence."""
+        self.problems |= {failure.take: failure.error for failure in failures}
         self.count = 0
-        """How many are in the library."""
+        """Number of motions in the library."""
         self._found, self._shoot, self._console = found, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset]":
-        """Every motion that is sound, one at a time: together they may not fit into memory.
+        """Yield the asset of every sound motion, one at a time: together they may not fit into memory.
 
         Raises:
-            ConversionError: There is none.
+            ConversionError: No motion is sound.
         """
         from ...bridge.assets.motions import MotionAsset
 
@@ -89,7 +88,7 @@ class Gathering:
             try:
                 motion = _motion(result)
             except InputError as error:
-                self.wrong[result.name] = str(error)
+                self.problems[result.name] = str(error)
                 continue
             name = asset_name(result.name, names)
             names.add(name)
@@ -97,32 +96,32 @@ class Gathering:
             catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
             yield MotionAsset(name, catalog, description(result), tags(result), motion)
         if not names:
-            raise ConversionError(f"none of the results can be used: {_listed(self.wrong)}")
+            raise ConversionError(f"none of the results can be used: {_listed(self.problems)}")
 
 
 def asset_name(take: str, taken: Collection[str]) -> str:
-    """A name for a take's Action that no other has and Blender does not cut.
+    """A unique name for a take's Action, short enough for Blender not to cut it.
 
-    The end of a long one stays, for there takes differ.
+    Of a long name the end is kept, for there takes differ.
     """
     whole = " ".join(take.split("/"))
     for number in range(1, len(taken) + 2):
-        ending = "" if number == 1 else f" {number}"
+        number_suffix = "" if number == 1 else f" {number}"
         name = whole
-        while len(f"{name}{ending}".encode()) > LONGEST_NAME:
+        while len(f"{name}{number_suffix}".encode()) > LONGEST_NAME_BYTES:
             name = f"…{name.lstrip('…')[1:]}"
-        if f"{name}{ending}" not in taken:
+        if f"{name}{number_suffix}" not in taken:
             break
-    return f"{name}{ending}"
+    return f"{name}{number_suffix}"
 
 
 def catalog_part(name: str) -> str:
-    """A folder's name as a catalog may be called: slashes and colons mean something else there."""
+    """A folder's name as a part of a catalog's path, in which slashes and colons have a meaning."""
     return "".join("-" if letter in ":/\\" or not letter.isprintable() else letter for letter in name)
 
 
 def description(result: Result) -> str:
-    """What an asset browser says of a motion, with what a person should know of it."""
+    """The description of a motion in an asset browser: frames, confidence and notes."""
     record = result.record
     last = record.frame_start + record.frames - 1
     sentences = [
@@ -137,10 +136,10 @@ def description(result: Result) -> str:
 
 
 def tags(result: Result) -> tuple[str, ...]:
-    """By what an asset browser finds a motion."""
+    """The tags of a motion in an asset browser."""
     library = () if result.record.library is None else (result.record.library,)
     return tuple(
-        tag.encode()[:LONGEST_TAG].decode(errors="ignore")
+        tag.encode()[:LONGEST_TAG_BYTES].decode(errors="ignore")
         for tag in ("keymark", result.record.method, *library)
     )
 
@@ -149,7 +148,7 @@ def _motion(result: Result) -> Motion:
     """The motion of a result, as it was when the record was written.
 
     Raises:
-        InputError: It is missing, unusable, or another.
+        InputError: The motion is missing, unusable, or has changed.
     """
     file = result.folder / MOTION
     if content_digest(file) != result.record.files.get(MOTION):
@@ -157,30 +156,30 @@ def _motion(result: Result) -> Motion:
     return read_motion(file)
 
 
-def _check_place(output: Path, found: Results) -> None:
-    if output.suffix.lower() != ENDING:
-        raise InputError(f"{output}: is no name of a .blend; it must end in {ENDING}, as in library.blend")
+def _check_output(output: Path, found: Results) -> None:
+    if output.suffix.lower() != SUFFIX:
+        raise InputError(f"{output}: is no name of a .blend; it must end in {SUFFIX}, as in library.blend")
     if output.is_dir():
         raise InputError(f"{output}: is a folder; it must be a file to write, as in library.blend")
-    place = Path(os.path.realpath(output))
+    real = Path(os.path.realpath(output))
     for result in found.sound:
-        if Path(os.path.realpath(result.folder)) in place.parents:
+        if Path(os.path.realpath(result.folder)) in real.parents:
             raise InputError(
                 f"{output}: lies in the results of the take {result.name}; name a file outside of them"
             )
 
 
-def _text(count: int, files: Sequence[str], wrong: dict[str, str]) -> str:
+def _text(count: int, files: Sequence[str], problems: dict[str, str]) -> str:
     lines = ["1 motion:" if count == 1 else f"{count} motions:", *(f"  {file}" for file in files)]
-    if wrong:
+    if problems:
         lines.append("Takes that are not in it, or as they were before:")
-    for name in sorted(wrong):
-        lines += broken(f"{name}: {wrong[name]}", 2, terminal_columns())
+    for name in sorted(problems):
+        lines += wrapped(f"{name}: {problems[name]}", 2, terminal_columns())
     return "\n".join(lines)
 
 
-def _listed(wrong: dict[str, str]) -> str:
-    """The reasons, the first few of many."""
-    reasons = [wrong[name] for name in sorted(wrong)]
-    more = [f"{len(reasons) - NAMED} more"] if len(reasons) > NAMED else []
-    return "; ".join([*reasons[:NAMED], *more])
+def _listed(problems: dict[str, str]) -> str:
+    """The first few of the problems."""
+    reasons = [problems[name] for name in sorted(problems)]
+    more = [f"{len(reasons) - MOST_NAMED} more"] if len(reasons) > MOST_NAMED else []
+    return "; ".join([*reasons[:MOST_NAMED], *more])

@@ -1,4 +1,4 @@
-"""`keymark new`."""
+"""`keymark new`: describe a folder of clips in a shoot.json."""
 
 import argparse
 from collections.abc import Sequence
@@ -16,7 +16,11 @@ from ..usage import program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:
-    """Write a shoot's description from its clips."""
+    """Write a shoot's description, as far as its clips tell, and list what a person must fill in.
+
+    Raises:
+        InputError: The file exists, or no clip can be read or needs a description.
+    """
     folder: Path = arguments.shoot
     output: Path = arguments.output or folder / NAME
     with arguments_console(arguments) as console:
@@ -31,19 +35,19 @@ def new_command(arguments: argparse.Namespace) -> None:
         above = [file for file in shoot_files(folder) if file != whole_way(folder) / NAME]
         template = shoot_template(survey, bool(above))
         write_readable_json(output, template)
-        todo = to_fill_in(template)
+        todo = null_fields(template)
         console.finish(_summary(survey, output, todo), _text(folder, survey, output, todo))
 
 
-def to_fill_in(template: object, way: str = "") -> list[str]:
-    """The fields that are null, each by its way from the outermost object."""
+def null_fields(template: object, path: str = "") -> list[str]:
+    """Paths of the fields that are null and must be filled in, as `camera.lens_mm`."""
     if template is None:
-        return [way]
+        return [path]
     if not isinstance(template, dict):
         return []
     found = []
     for name, value in template.items():
-        found += to_fill_in(value, f"{way}.{name}" if way else name)
+        found += null_fields(value, f"{path}.{name}" if path else name)
     return found
 
 
@@ -70,6 +74,6 @@ def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str,
 
 def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
     lines = [*clip_lines(survey), "", f"{output} describes them. Now fill in"]
-    lines += [f"  {way}" for way in todo]
+    lines += [f"  {field_path}" for field_path in todo]
     lines.append("and put right the lens, which is a guess; the comments beside each say how.")
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])

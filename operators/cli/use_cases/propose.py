@@ -1,4 +1,4 @@
-"""`keymark propose`."""
+"""`keymark propose`: propose the frames of a take to pose."""
 
 import argparse
 from pathlib import Path
@@ -15,10 +15,10 @@ from ..console import arguments_console
 
 
 def propose_command(arguments: argparse.Namespace) -> None:
-    """Say which frames of the take are worth posing."""
+    """Print the frames that are worth posing, with the markers' speed for `--json`."""
     with arguments_console(arguments) as console:
         take = read_take(arguments.take, keyframes_required=False)
-        speed = run(_speed(take), console.progress)
+        speed = run(_marker_speed_job(take), console.progress)
         indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
         frames = [int(index) + take.frame_start for index in indices]
         if arguments.picture is not None:
@@ -27,7 +27,7 @@ def propose_command(arguments: argparse.Namespace) -> None:
         console.finish(result, " ".join(str(frame) for frame in frames))
 
 
-def _speed(take: Take) -> Job[Array]:
+def _marker_speed_job(take: Take) -> Job[Array]:
     tracks = yield from within(
         "Following the markers", track_markers(open_clip(take), take.markers), 0.0, 1.0
     )
@@ -36,4 +36,4 @@ def _speed(take: Take) -> Job[Array]:
 
 def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
     picture = speed_plot(speed, [int(index) for index in indices], start)
-    write_whole(path, lambda beside: write_png(str(beside), picture))
+    write_whole(path, lambda staged: write_png(str(staged), picture))

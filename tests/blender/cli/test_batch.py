@@ -140,7 +140,7 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
     for death in ("take01-1", "take02-1", "take02-2"):
         (tmp_path / death).touch()
     words = [sys.executable, str(TESTS / "_dying_worker.py"), str(tmp_path)]
-    monkeypatch.setattr(command, "worker_words", lambda: words)
+    monkeypatch.setattr(command, "worker_command_line", lambda: words)
     out = shoot.parent / "killed"
     chosen = [word for name in GOOD for word in ("--take", name)]
     status, said = batch(shoot, out, capsys, "--jobs", "2", *chosen)
@@ -193,7 +193,7 @@ def interrupt(shoot: Path, out: Path, send: Callable[[int, int], None], how: int
 
 def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
     """A worker whose batch is gone stops at the next thing it would have told, and cleans up."""
-    words = [*command.worker_words()]
+    words = [*command.worker_command_line()]
     worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert worker.stdin is not None and worker.stdout is not None
     assert b"ready" in worker.stdout.readline()

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from keymark.core.shoot.outcomes.failures import read_failure
 from keymark.operators.cli.batch import worker_pool
-from keymark.operators.cli.batch.batch_progress import Share
+from keymark.operators.cli.batch.batch_progress import BatchProgress
 from keymark.operators.cli.main import main
 from keymark.operators.cli.usage import program_name
 from keymark.operators.cli.use_cases import batch as command
@@ -54,9 +54,9 @@ def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
     made = Studio(tmp_path)
     monkeypatch.setattr(command, "require_blender", lambda needing: None)
     monkeypatch.setattr(
-        command, "worker_words", lambda: [sys.executable, "-I", "-S", str(STAND_IN), str(made.log)]
+        command, "worker_command_line", lambda: [sys.executable, "-I", "-S", str(STAND_IN), str(made.log)]
     )
-    monkeypatch.setattr(worker_pool, "SHORTEST_WAIT_S", 0.001)
+    monkeypatch.setattr(worker_pool, "SHORTEST_BACKOFF_S", 0.001)
     return made
 
 
@@ -132,7 +132,7 @@ def test_a_worker_that_says_nothing_is_given_up(
 ) -> None:
     """After its time it is ended; its take is tried once more, and the others go on."""
     studio.takes("a", "hang")
-    monkeypatch.setattr(command, "LONGEST_SILENCE_S", 0.3)
+    monkeypatch.setattr(command, "HEARTBEAT_TIMEOUT_S", 0.3)
     assert studio.batch(jobs=1) == 1
     assert "hang: the process that converted it told of no progress for" in capsys.readouterr().out
     assert [job["take"] for job in studio.told] == ["a", "hang", "hang"]
@@ -163,11 +163,11 @@ def test_no_worker_no_batch(
     """Where none starts, the batch ends with what it said last; no take has failed for it."""
     studio.takes("a", "b")
     broken = [sys.executable, "-I", "-S", str(STAND_IN), str(studio.log.with_name("broken.log"))]
-    monkeypatch.setattr(command, "worker_words", lambda: broken)
+    monkeypatch.setattr(command, "worker_command_line", lambda: broken)
     assert studio.batch() == 1
     assert "no worker process starts: the module cv9 is missing" in capsys.readouterr().err
     assert studio.summary["a"]["status"] == "waiting" and read_failure(studio.out, "a") is None
-    monkeypatch.setattr(command, "worker_words", lambda: [str(studio.shoot / "no_such_program")])
+    monkeypatch.setattr(command, "worker_command_line", lambda: [str(studio.shoot / "no_such_program")])
     assert studio.batch() == 1
     assert "no_such_program: cannot be run" in capsys.readouterr().err
 
@@ -198,7 +198,7 @@ def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
     def interrupted(self: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command.Tally, "finish", interrupted)
+    monkeypatch.setattr(command.BatchOutcomes, "finish", interrupted)
     studio.takes("a", "b")
     assert studio.batch() == 130
     assert "2 of 2 takes are converted" in capsys.readouterr().err
@@ -275,13 +275,13 @@ def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.Capture
 
 def test_the_share_of_all_work_counts_frames_where_they_are_known() -> None:
     """A take of unknown length counts as the usual one; what is learned of it counts from then on."""
-    share = Share([300, None, 100])
-    assert share.value == 0.0
-    share.come(0, 1.0)
-    assert share.value == pytest.approx(300 / 600)
-    share.come(1, 0.5)
-    assert share.value == pytest.approx((300 + 100) / 600)
-    share.come(1, 1.0, 50)
-    assert share.value == pytest.approx(350 / 450)
-    share.come(2, 1.0, 100)
-    assert share.value == pytest.approx(1.0) and Share([]).value == 1.0
+    progress = BatchProgress([300, None, 100])
+    assert progress.fraction == 0.0
+    progress.update(0, 1.0)
+    assert progress.fraction == pytest.approx(300 / 600)
+    progress.update(1, 0.5)
+    assert progress.fraction == pytest.approx((300 + 100) / 600)
+    progress.update(1, 1.0, 50)
+    assert progress.fraction == pytest.approx(350 / 450)
+    progress.update(2, 1.0, 100)
+    assert progress.fraction == pytest.approx(1.0) and BatchProgress([]).fraction == 1.0

@@ -10,7 +10,7 @@ from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.take.conversion_record import write_record
 from keymark.operators.cli.batch import batch_outcomes
-from keymark.operators.cli.batch.batch_outcomes import Tally
+from keymark.operators.cli.batch.batch_outcomes import BatchOutcomes
 from keymark.operators.cli.console import Console
 
 
@@ -35,7 +35,7 @@ def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
         return ()
 
     monkeypatch.setattr(batch_outcomes, "write_summary", write)
-    Tally(shoot, output, [], Console(quiet=True, as_json=False)).finish()
+    BatchOutcomes(shoot, output, [], Console(quiet=True, as_json=False)).finish()
     assert [summary["b"] for summary in written] == [Status.WAITING, Status.CONVERTED]
 
 
@@ -47,7 +47,7 @@ def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path
     (tmp_path / "folder").mkdir()
     for name in ("a", "gone", "day1/clip", "day1/gone", "day2/gone", "folder"):
         write_failure(output, Failure(name, "it is cut off", "input"))
-    Tally(shoot, output, [], Console(quiet=True, as_json=False))
+    BatchOutcomes(shoot, output, [], Console(quiet=True, as_json=False))
     assert [failure.take for failure in read_failures(output)] == ["a", "day1/clip", "folder"]
 
 
@@ -58,5 +58,5 @@ def test_a_list_makes_nobody_forget_the_takes_it_lacks(shoot: Shoot, tmp_path: P
         write_failure(output, Failure(name, "it is cut off", "input"))
     part = replace(shoot, path=tmp_path / "part.jsonl")
     part.path.touch()
-    Tally(part, output, [], Console(quiet=True, as_json=False))
+    BatchOutcomes(part, output, [], Console(quiet=True, as_json=False))
     assert [failure.take for failure in read_failures(output)] == ["a", "of the larger shoot"]

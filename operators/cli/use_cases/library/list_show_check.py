@@ -55,7 +55,7 @@ def show_command(arguments: argparse.Namespace) -> None:
 
             console.stage("Drawing the postures")
             picture = library_sheet(library)
-            write_whole(arguments.sheet, lambda beside: write_png(str(beside), picture))
+            write_whole(arguments.sheet, lambda staged: write_png(str(staged), picture))
             lines.append(f"Picture: {arguments.sheet}")
             result["sheet"] = str(arguments.sheet)
         console.finish(result, "\n".join(lines))
