@@ -35,7 +35,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
 
     The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
     colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
-    A failure may leave half a file at these paths: the caller writes into a staging folder and moves the files
+    A failure may leave half a file at these paths: the caller passes a staging folder and moves the files
     when both are complete, as `operators/cli/conversion` does.
 
     Args:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ....core.files.json_file import write_whole
-from ....core.report.summary.html_text import way_to
+from ....core.report.summary.html_text import relative_path
 from ....core.report.summary.page import summary_page
-from ....core.report.summary.verdict import result
+from ....core.report.summary.verdict import current_record
 from ....core.shoot.outcomes.outcome import Outcome
 from ....core.shoot.shoot import Shoot
 from ....core.take.conversion_record import NAME as RECORD
@@ -48,14 +48,14 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
         "error": outcome.error,
         "seconds": None if outcome.seconds is None else round(outcome.seconds, 3),
     }
-    record = result(outcome)
+    record = current_record(outcome)
     for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
         fields[name] = None if record is None else getattr(record, name)
     for name in ("method", "library", "keyframes", "matched"):
         fields[name] = None if record is None else getattr(record, name)
-    way = way_to(outcome.folder, output)
+    path = relative_path(outcome.folder, output)
     names = () if record is None else (*record.files, RECORD)
-    return {**fields, "files": [name if way == "." else f"{way}/{name}" for name in names]}
+    return {**fields, "files": [name if path == "." else f"{path}/{name}" for name in names]}
 
 
 def _write(path: Path, text: str) -> None:

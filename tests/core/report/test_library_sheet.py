@@ -13,7 +13,7 @@ from keymark.core.library.library import LibraryMotion, MotionStep
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.library_sheet import MARGIN, WIDTH, library_sheet
 from keymark.core.report.mannequin import View, draw_mannequin
-from keymark.core.report.mannequin_feet import drawn_frames, foot_frame
+from keymark.core.report.mannequin_feet import foot_frame_index, skin_frames
 from keymark.core.report.posture_picture import SIZE, posture_picture
 
 BODY = Body(ACTOR)
@@ -88,11 +88,11 @@ def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
     """The rigid foot of a leaning shin dips; drawn, its sole is level, and its ankle stays where it was."""
     posture = crouching(knee)
     pose = BODY.pose(posture)
-    turned, origins = drawn_frames(BODY, pose)
+    turned, origins = skin_frames(BODY, pose)
     assert sole_heights_m(BODY, pose).max() < -0.01
     for side, heights in zip(("L", "R"), sole_places(BODY, pose)[..., 2], strict=True):
         foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
-        frame = foot_frame(BODY, foot.name)
+        frame = foot_frame_index(BODY, foot.name)
         ankle, tip = (BODY.local(end) for end in (foot.start, foot.end))
         heel = np.array([tip[0], ankle[1] + HEEL_BEHIND * BODY.actor.segments_m[foot.name], tip[2]])
         drawn = [(origins[frame] + turned[frame] @ place)[2] for place in (heel, tip)]
@@ -105,10 +105,10 @@ def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
 def test_a_foot_in_the_air_is_drawn_as_the_shin_has_it() -> None:
     """Nothing but the floor turns it."""
     pose = BODY.pose(moved(crouching(0.8), (0.0, 0.0, 0.5)))
-    turned, _ = drawn_frames(BODY, pose)
+    turned, _ = skin_frames(BODY, pose)
     for side in ("L", "R"):
         foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
-        np.testing.assert_array_equal(turned[foot_frame(BODY, foot.name)], pose.rotation[foot.joint])
+        np.testing.assert_array_equal(turned[foot_frame_index(BODY, foot.name)], pose.rotation[foot.joint])
 
 
 def test_every_posture_is_on_the_sheet() -> None:

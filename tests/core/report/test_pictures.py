@@ -10,7 +10,7 @@ from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_t
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.report.canvas import ACCENT, INK, LEFT, RIGHT, Canvas, ticks, write_png
-from keymark.core.report.contact_sheet import chosen_frames
+from keymark.core.report.contact_sheet import evenly_spaced_frames
 from keymark.core.report.overlay_sheet import CELL_WIDTH, overlay_sheet
 from keymark.core.report.pictures import PICTURES, write_pictures
 from keymark.core.report.speed_plot import speed_plot
@@ -165,7 +165,7 @@ def test_a_camera_that_looks_straight_down_or_up_has_views(motion: Motion, pitch
 @pytest.mark.parametrize(("frame_count", "shown"), [(1, 1), (2, 2), (12, 12), (118, 12)])
 def test_frames_shown_are_spread_from_first_to_last(frame_count: int, shown: int) -> None:
     """At most twelve, the ends among them, never one twice."""
-    frames = chosen_frames(frame_count)
+    frames = evenly_spaced_frames(frame_count)
     assert len(frames) == shown and frames[0] == 0 and frames[-1] == frame_count - 1
     assert len(set(np.diff(frames))) <= 2
 
