@@ -17,7 +17,7 @@ def program_name() -> str:
 
 
 def print_error(sentence: str) -> None:
-    """Write one line on standard error, whatever characters the sentence holds."""
+    """Write one line on standard error, with every character in a form that it can encode."""
     line = f"{program_name()}: {seen(' '.join(sentence.split()))}"
     encoding = sys.stderr.encoding or "utf-8"
     with suppress(OSError):  # the exit status tells, too

@@ -1,4 +1,4 @@
-"""Script that runs a worker in plain Python: loads the package from this tree, whatever its folder's name."""
+"""Script that runs a worker in plain Python; loads the package from this tree under the name `keymark`."""
 
 import importlib.util
 import sys

@@ -143,8 +143,8 @@ class WorkerProcess:
             await asyncio.wait([self._draining], timeout=TERMINATION_GRACE_S)
         status = self._process.returncode or 0
         if status >= 0:
-            said = f" ({self._last_line})" if self._last_line else ""
-            return f"ended with exit status {status}{said}"
+            reason = f" ({self._last_line})" if self._last_line else ""
+            return f"ended with exit status {status}{reason}"
         with suppress(ValueError):
             return f"was killed by {signal.Signals(-status).name}"
         return f"was killed by signal {-status}"

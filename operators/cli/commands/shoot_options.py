@@ -27,5 +27,5 @@ def add_defaults(parser: argparse.ArgumentParser) -> None:
 
 
 def _none_if_empty(text: str) -> str | None:
-    """The text; None for the empty text that farms pass for a setting nobody has filled in."""
+    """The text; None for an empty one, which farms pass for a setting that is not filled in."""
     return text or None

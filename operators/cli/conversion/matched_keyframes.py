@@ -58,8 +58,8 @@ def reconstruct_or_match(
             likely = ", ".join(
                 f"{library.title} {share:.0%}" for library, share in choice.ranking[:MOST_NAMED]
             )
-            said = f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written"
-            raise ConversionError(said)
+            sentence = f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written"
+            raise ConversionError(sentence)
         result = yield from stretch(reconstruct(take, method, reading), matched, 1.0)
         return MatchedReconstruction(
             take, result, mismatch_notes=(f"{choice.reason}; only the posed keyframes count",)

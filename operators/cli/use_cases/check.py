@@ -66,8 +66,8 @@ def _check_one(
         if debug:
             raise
         what = unexpected(error)
-        said = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
-        return TakeCheck(take.name, (said,), ())
+        problem = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        return TakeCheck(take.name, (problem,), ())
 
 
 def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:

@@ -122,13 +122,13 @@ def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
 
 def _last_line(checks: Sequence[TakeCheck]) -> str:
     counts = Counter(map(_status, checks))
-    said = [
+    counted = [
         f"{counts[READY]} ready",
         f"{counts[LOOK]} to look at",
         f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
     efforts = [check.effort for check in checks if check.effort is not None]
-    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(said)}."
+    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(counted)}."
     if not efforts:
         return line
     seconds, size = sum(one.seconds for one in efforts), sum(one.size_bytes for one in efforts)

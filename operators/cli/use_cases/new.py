@@ -16,7 +16,7 @@ from ..usage import program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:
-    """Write a shoot's description, as far as its clips tell, and list what a person must fill in.
+    """Write a shoot's description from its clips, and list the fields that a person must fill in.
 
     Raises:
         InputError: The file exists, or no clip can be read or needs a description.

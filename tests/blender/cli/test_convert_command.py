@@ -1,4 +1,4 @@
-"""The command line with Blender in the process: all files, and no chatter on standard output."""
+"""The command line with Blender in the process: all files, and standard output free of Blender's messages."""
 
 import json
 import os
@@ -39,7 +39,7 @@ def test_converting_writes_a_scene_that_opens_and_finds_its_clip(take: Path, tmp
 def test_a_folder_filled_from_within_finds_its_clip_as_well(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the work cannot lie beside the output, the clip's relative path is right all the same."""
+    """Where staging beside the output is impossible, the clip's relative path is right as well."""
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
     from keymark.core.files import output_folder
@@ -73,7 +73,7 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     reason="a Blender program's own Python has no bpy; tests/real_blender converts in it",
 )
 def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: Path) -> None:
-    """In a process of its own, Blender's chatter reaches neither standard output nor standard error."""
+    """In a process of its own, Blender's messages reach neither standard output nor standard error."""
     links = tmp_path / "links"
     links.mkdir()
     (links / "keymark").symlink_to(repository, target_is_directory=True)
@@ -115,7 +115,7 @@ def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
 def test_a_failure_leaves_the_old_files_and_nothing_else(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, within: bool
 ) -> None:
-    """Half a file never takes the place of a whole one, in whichever folder it was written."""
+    """Half a file never replaces a whole one, with staging beside the output and within it."""
     from keymark.core.errors import ConversionError
     from keymark.core.files import output_folder
     from keymark.operators.bridge import result_files

@@ -1,4 +1,4 @@
-"""Several machines on one shoot: what the last of them writes lacks nothing that another has done."""
+"""Several machines on one shoot: the last summary has the outcomes of all of them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,14 +16,14 @@ from keymark.operators.cli.console import Console
 
 @pytest.fixture
 def shoot(tmp_path: Path) -> Shoot:
-    """Two takes, of which nothing needs to be there."""
+    """Two takes without files."""
     return Shoot(tmp_path, tuple(ShootTake(name, tmp_path / name) for name in ("a", "b")))
 
 
 def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
     shoot: Shoot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Though the other machine has written its summary before this one had written its own."""
+    """Also where the other machine writes its summary before this one does."""
     output = tmp_path / "out"
     written: list[dict[str, Status]] = []
 
@@ -40,7 +40,7 @@ def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
 
 
 def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path: Path) -> None:
-    """Else every library merged from then on would be called incomplete."""
+    """Otherwise every library merged from then on would count as incomplete."""
     output = tmp_path / "out"
     (tmp_path / "day1").mkdir()
     (tmp_path / "day1" / "clip.mp4").touch()
@@ -52,7 +52,7 @@ def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path
 
 
 def test_a_list_makes_nobody_forget_the_takes_it_lacks(shoot: Shoot, tmp_path: Path) -> None:
-    """It may name a part of a larger shoot, whose other failures still count."""
+    """A list may be part of a larger shoot, whose other failures still count."""
     output = tmp_path / "out"
     for name in ("a", "of the larger shoot"):
         write_failure(output, Failure(name, "it is cut off", "input"))
