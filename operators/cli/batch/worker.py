@@ -41,7 +41,7 @@ def run_worker() -> None:
 
 
 def run_job(job: Job, send: Callable[[Message], None]) -> Done:
-    """Convert one take; every error becomes part of the answer.
+    """Convert one take; an error becomes part of the message.
 
     Args:
         job: The take and its settings.

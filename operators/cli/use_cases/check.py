@@ -66,7 +66,7 @@ def _check_one(
         if debug:
             raise
         what = unexpected(error)
-        problem = f"{take.place}: looking at it failed unexpectedly ({what}); --debug shows where"
+        problem = f"{take.place}: the check failed unexpectedly ({what}); --debug shows where"
         return TakeCheck(take.name, (problem,), ())
 
 

@@ -26,7 +26,7 @@ def new_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         if output.exists():
             raise InputError(
-                f"{output}: is there already, and is never replaced; take it away, or name another file with "
+                f"{output}: is there already and is never replaced; move it away, or name another file with "
                 "--output"
             )
         shoot = find_takes(folder, undescribed=True)
@@ -57,8 +57,8 @@ def _check_clips(folder: Path, survey: ClipSurvey) -> None:
     if survey.unreadable:
         raise InputError(f"{folder}: none of its clips can be read; the first: {survey.unreadable[0]}")
     raise InputError(
-        f"{folder}: every take in it has a take.json of its own; there is nothing to describe but what they "
-        "say, see keymark check"
+        f"{folder}: every take in it has a take.json of its own, and no clip needs a description; run "
+        "keymark check to look through them"
     )
 
 
@@ -75,5 +75,5 @@ def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str,
 def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
     lines = [*clip_lines(survey), "", f"{output} describes them. Now fill in"]
     lines += [f"  {field_path}" for field_path in todo]
-    lines.append("and put right the lens, which is a guess; the comments beside each say how.")
+    lines.append("and correct the lens, which is a guess; the comment beside each field says how.")
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])

@@ -224,7 +224,7 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     monkeypatch.setattr(command, "check_take", fail)
     assert main(["check", str(pristine), "--jobs", jobs]) == 1
     said = capsys.readouterr()
-    assert "take01.mp4: looking at it failed unexpectedly (ZeroDivisionError: two lines)" in said.out
+    assert "take01.mp4: the check failed unexpectedly (ZeroDivisionError: two lines)" in said.out
     assert (
         said.out.count("\nready") == 2 and said.err == f"{program_name()}: 1 of 3 takes would not convert\n"
     )

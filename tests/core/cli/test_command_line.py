@@ -19,6 +19,7 @@ from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.core.take.motion_file import read_motion
 from keymark.operators.cli import require_blender
+from keymark.operators.cli.commands import COMMANDS
 from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
@@ -92,6 +93,18 @@ def test_help_has_examples_and_version_is_the_manifests(
     assert main(["--version"]) == 0
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert capsys.readouterr().out == f"keymark {manifest['version']}\n"
+
+
+def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
+    files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
+    assert files - {"__init__", "shoot_options"} == {command.name for command in COMMANDS}
+    shown = [command.name for command in COMMANDS if not getattr(command, "hidden", False)]
+    assert main(["--help"]) == 0
+    helped = capsys.readouterr().out
+    assert all(f"\n    {name} " in helped for name in shown) and "\n    worker " not in helped
+    assert main([]) == 2
+    assert f"{', '.join(shown[:-1])} and {shown[-1]} are valid" in one_line(capsys.readouterr().err)
 
 
 def test_the_methods_offered_are_the_methods_there_are() -> None:

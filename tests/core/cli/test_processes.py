@@ -51,10 +51,13 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
 
 
-def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("words", [("--help",), ("convert",), ("library", "show", "--help")])
+def test_help_and_mistakes_wait_for_no_library(
+    words: tuple[str, ...], tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Heavy modules are imported by the command that needs them alone."""
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
-    _, told = module_process(tmp_path, repository, "--help").communicate()
+    _, told = module_process(tmp_path, repository, *words).communicate()
     loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
     assert "keymark.operators.cli.commands.batch" in loaded
     assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
