@@ -13,6 +13,9 @@ setup(
     version=manifest["version"],
     package_dir={"keymark": "."},
     packages=["keymark", *(f"keymark.{name}" for name in find_packages(str(ROOT), include=ROOMS))],
-    package_data={"keymark": ["blender_manifest.toml", "presets/**/*"]},
+    package_data={
+        "keymark": ["blender_manifest.toml", "presets/**/*"],
+        "keymark.core.report.summary": ["*.css", "*.js"],
+    },
     include_package_data=False,
 )

@@ -34,7 +34,7 @@ CORE = ("extract", "estimate")
 
 @dataclass(frozen=True)
 class Cost:
-    """What some commands cost, all processes they start counted."""
+    """What some commands cost, all processes they start pluralize."""
 
     takes: int
     wall_s: float
@@ -105,7 +105,7 @@ def conversion_s(take: Path) -> dict[str, float]:
     load_project()
     import cv2
     from keymark.core.take.description import describe, effective_settings
-    from keymark.operators.cli.conversion.convert_take import convert
+    from keymark.operators.cli.conversion.convert_take import convert_take
 
     cv2.setNumThreads(1)
     description = describe(take)
@@ -114,7 +114,7 @@ def conversion_s(take: Path) -> dict[str, float]:
         for number in range(CONVERSIONS + 1):
             clock = StageClock(time.process_time)
             output = Path(temporary) / str(number)
-            convert(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
+            convert_take(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
             if number:  # the first starts Blender
                 spent = {name: spent[name] + value for name, value in clock.seconds().items()}
     return {name: value / CONVERSIONS for name, value in spent.items()}

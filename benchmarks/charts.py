@@ -90,12 +90,12 @@ def draw_chart(
     named = ticks(first, last, 14) if x_ticks is None else [x for x in x_ticks if first <= x <= last]
     axes.draw(named, ticks(0.0, top, 9))
     for x in marks:
-        canvas.dashed(axes.place(x, 0.0), axes.place(x, top), PALE)
+        canvas.dashed(axes.to_canvas(x, 0.0), axes.to_canvas(x, top), PALE)
     if level is not None:
-        canvas.dashed(axes.place(first, level), axes.place(last, level), ACCENT)
+        canvas.dashed(axes.to_canvas(first, level), axes.to_canvas(last, level), ACCENT)
     for curve in curves:
         _draw(axes, curve)
-    axes.name(labels.title, labels.x, labels.y)
+    axes.label(labels.title, labels.x, labels.y)
     _legend(axes, [curve for curve in curves if curve.name])
     _write(name, canvas)
 
@@ -133,7 +133,7 @@ def _write(name: str, canvas: Canvas) -> None:
 
 
 def _draw(axes: Axes, curve: Curve) -> None:
-    places = [axes.place(x, y) for x, y in zip(curve.x, curve.y, strict=True)]
+    places = [axes.to_canvas(x, y) for x, y in zip(curve.x, curve.y, strict=True)]
     axes.canvas.line(places, curve.color, curve.thickness)
     if curve.points:
         for place in places:

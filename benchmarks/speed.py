@@ -64,13 +64,13 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     load_project()
     import bpy  # noqa: F401  # loading it is part of the start-up
     from keymark.core.take.description import describe, effective_settings
-    from keymark.operators.cli.conversion.convert_take import convert
+    from keymark.operators.cli.conversion.convert_take import convert_take
 
     clock = StageClock()
     started = time.perf_counter() - began
     description = describe(folder)
     # No more of a console is needed.
-    result = convert(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
+    result = convert_take(description, output, clock, effective_settings(description))  # type: ignore[arg-type]
     frames = len(result.reconstruction.motion.time_s)
     return {
         "frames": frames,

@@ -1,10 +1,10 @@
-"""What tests look at after a command: its line on standard error, and the files there."""
+"""Checks after a command: the line on standard error, and the files in a folder."""
 
 from pathlib import Path
 
 
 def tree(folder: Path) -> dict[str, bytes | None]:
-    """Every path below a folder, with what is in the files."""
+    """Every path below a folder, with the content of files."""
     return {
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
         for path in sorted(folder.rglob("*"))

@@ -17,7 +17,7 @@ load_package()
 from keymark.operators.cli.conversion import convert_take  # noqa: E402
 from keymark.operators.cli.main import main  # noqa: E402
 
-write = convert_take._write_scene
+write = convert_take.write_blender_files
 
 
 def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
@@ -29,5 +29,5 @@ def write_or_die(take: Any, motion: Any, place: Path, *rest: Any) -> None:
     write(take, motion, place, *rest)
 
 
-convert_take._write_scene = write_or_die
+convert_take.write_blender_files = write_or_die
 sys.exit(main(["worker"]))

@@ -1,4 +1,4 @@
-"""A page as a program sees it: its elements one after the other, and the text in each."""
+"""Parsed HTML pages: their elements in order, with the text in each."""
 
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
@@ -34,7 +34,7 @@ class Page(HTMLParser):
         assert not self._open, [element.tag for element in self._open]
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note an element."""
+        """Begin an element."""
         names = [name for name, _ in attrs]
         assert len(names) == len(set(names)), names
         around = tuple(element.tag for element in self._open)
@@ -44,16 +44,16 @@ class Page(HTMLParser):
             self._open.append(element)
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note an element that closes itself, as those of pictures do."""
+        """Add an element that closes itself."""
         assert tag in VOID, tag
         self.handle_starttag(tag, attrs)
 
     def handle_endtag(self, tag: str) -> None:
-        """Leave an element."""
+        """End an element."""
         assert self._open.pop().tag == tag
 
     def handle_data(self, data: str) -> None:
-        """Give text to all elements around it."""
+        """Add text to all open elements."""
         for element in self._open:
             element.text += data
 
@@ -66,5 +66,5 @@ class Page(HTMLParser):
         return [element for element in self.all("tr") if element.attributes.get("id", "").startswith("take-")]
 
     def shape(self) -> list[tuple[str, tuple[str, ...]]]:
-        """What the page is built of, without any text or value."""
+        """Tags and attribute names of all elements, without texts and values."""
         return [(element.tag, tuple(element.attributes)) for element in self.elements]

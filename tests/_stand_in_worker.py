@@ -1,4 +1,4 @@
-"""A worker without Keymark: it answers as its jobs' names ask, quickly, and logs what it was told.
+"""A stand-in worker without Keymark: it answers as its jobs' names ask, and logs the jobs.
 
 Usage: _stand_in_worker.py LOG. A name's last part up to a dash says what happens; else the take converts.
 """
@@ -14,12 +14,12 @@ log = Path(sys.argv[1])
 
 
 def say(answer: str, /, **said: Any) -> None:
-    """Answer."""
+    """Write a message."""
     print(json.dumps({answer: said}), flush=True)
 
 
 def done(result: str, error: str | None = None, kind: str | None = None, memory: int = 1000) -> None:
-    """Answer that the job is done."""
+    """Write the message that the job is done."""
     say("done", result=result, seconds=0.25, error=error, kind=kind, memory_bytes=memory)
 
 

@@ -1,4 +1,4 @@
-"""The axes of a plot: where values stand in the picture, their ticks, and what they are."""
+"""The axes of a plot: scales from values to the canvas, ticks and labels."""
 
 from collections.abc import Sequence
 
@@ -18,40 +18,40 @@ class Axes:
         """Lay the axes out.
 
         Args:
-            canvas: Where to.
+            canvas: The canvas to draw on.
             x_range: Values at the left and the right end of the x axis.
             top: Value at the upper end of the y axis.
-            logarithmic: Whether equal ratios of x, not equal differences, are equally far apart.
+            logarithmic: Whether the x axis is logarithmic.
         """
         self.canvas, self.top = canvas, top
         self.right, self.floor = canvas.width - RIGHT_EDGE, canvas.height - LOWER_EDGE
         self._logarithmic = logarithmic
-        self._first, self._last = (self._along(x) for x in x_range)
+        self._first, self._last = (self._x_scale(x) for x in x_range)
 
-    def place(self, x: float, y: float) -> tuple[float, float]:
-        """Where the picture shows a pair of values."""
-        share = (self._along(x) - self._first) / (self._last - self._first)
-        across = LEFT_EDGE + share * (self.right - LEFT_EDGE)
-        return across, self.floor - y / self.top * (self.floor - UPPER_EDGE)
+    def to_canvas(self, x: float, y: float) -> tuple[float, float]:
+        """Point of the canvas for a pair of values."""
+        share = (self._x_scale(x) - self._first) / (self._last - self._first)
+        canvas_x = LEFT_EDGE + share * (self.right - LEFT_EDGE)
+        return canvas_x, self.floor - y / self.top * (self.floor - UPPER_EDGE)
 
     def draw(self, x_ticks: Sequence[float], y_ticks: Sequence[float]) -> None:
         """Draw the axes, a pale line at every tick of y, and the ticks' values."""
         canvas, right, floor = self.canvas, self.right, self.floor
         for level in y_ticks:
-            y = self.place(x_ticks[0], level)[1]
+            y = self.to_canvas(x_ticks[0], level)[1]
             canvas.line([[LEFT_EDGE, y], [right, y]], PALE)
             canvas.text(f"{level:g}", LEFT_EDGE - 9.0, y + 4.0, 9.0, INK, "right")
         for tick in x_ticks:
-            x = self.place(tick, 0.0)[0]
+            x = self.to_canvas(tick, 0.0)[0]
             canvas.line([[x, floor], [x, floor + 5.0]], GRAY)
             canvas.text(f"{tick:g}", x, floor + 19.0, 9.0, INK, "middle")
         canvas.line([[LEFT_EDGE, UPPER_EDGE], [LEFT_EDGE, floor], [right, floor]], GRAY, 1.2)
 
-    def name(self, title: str, x_title: str, y_title: str) -> None:
-        """Write what the plot shows, and what its axes are."""
+    def label(self, title: str, x_title: str, y_title: str) -> None:
+        """Write the title of the plot and those of its axes."""
         self.canvas.text(title, 16.0, 31.0, 12.0, INK)
         self.canvas.text(x_title, 0.5 * (LEFT_EDGE + self.right), self.floor + 40.0, 9.0, INK, "middle")
         self.canvas.vertical_text(y_title, 26.0, 0.5 * (UPPER_EDGE + self.floor), 9.0, INK)
 
-    def _along(self, x: float) -> float:
+    def _x_scale(self, x: float) -> float:
         return float(np.log(x)) if self._logarithmic else float(x)

@@ -1,4 +1,4 @@
-"""A picture to draw on, in picture units with fractions, anti-aliased."""
+"""An anti-aliased picture to draw on, in pixels with fractions."""
 
 from collections.abc import Sequence
 
@@ -17,13 +17,13 @@ PALE: Color = (226, 222, 219)
 GRAY: Color = (140, 134, 130)
 LEFT: Color = (178, 114, 0)
 RIGHT: Color = (0, 94, 213)
-"""Blue and vermilion, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
+"""Blue and vermilion, distinct also for color-blind eyes: Okabe and Ito (2008), *Color Universal Design*."""
 ACCENT: Color = (115, 158, 0)
 
 SCALE = 2
-"""Everything is drawn this much larger and reduced at the end, for smoother lines and letters."""
-SHIFT = 4
-"""OpenCV takes coordinates in sixteenths of a pixel."""
+"""Supersampling: everything is drawn this much larger and reduced at the end."""
+SUBPIXEL_BITS = 4
+"""Fractional bits of coordinates: OpenCV draws to sixteenths of a pixel."""
 FONT = cv2.FONT_HERSHEY_DUPLEX
 LETTER_PX = 21.0
 """Height of the font's capital letters at scale 1."""
@@ -43,22 +43,30 @@ class Canvas:
         return np.asarray(reduced, dtype=np.uint8)
 
     def paste(self, image: Image, left: int, top: int, width: int, height: int) -> None:
-        """Fit a picture into a rectangle that lies on the canvas."""
+        """Resize a picture to a rectangle of the canvas."""
         size = (width * SCALE, height * SCALE)
         larger = size[0] > image.shape[1]
-        way = cv2.INTER_CUBIC if larger else cv2.INTER_AREA
+        interpolation = cv2.INTER_CUBIC if larger else cv2.INTER_AREA
         rows = slice(top * SCALE, top * SCALE + size[1])
-        self._pixels[rows, left * SCALE : left * SCALE + size[0]] = cv2.resize(image, size, interpolation=way)
+        self._pixels[rows, left * SCALE : left * SCALE + size[0]] = cv2.resize(
+            image, size, interpolation=interpolation
+        )
 
     def line(self, points: ArrayLike, color: Color, thickness: float = 1.0, *, closed: bool = False) -> None:
         """Draw a line through points (N, 2); it is broken where a point is not finite."""
-        places = np.asarray(points, dtype=np.float64)
-        finite = np.isfinite(places).all(axis=-1)
-        for run in np.split(np.arange(len(places)), np.flatnonzero(np.diff(finite)) + 1):
+        vertices = np.asarray(points, dtype=np.float64)
+        finite = np.isfinite(vertices).all(axis=-1)
+        for run in np.split(np.arange(len(vertices)), np.flatnonzero(np.diff(finite)) + 1):
             if finite[run[0]] and len(run) > 1:
-                whole = closed and len(run) == len(places)
+                whole = closed and len(run) == len(vertices)
                 cv2.polylines(
-                    self._pixels, [_fixed(places[run])], whole, color, _width(thickness), cv2.LINE_AA, SHIFT
+                    self._pixels,
+                    [_fixed(vertices[run])],
+                    whole,
+                    color,
+                    _width(thickness),
+                    cv2.LINE_AA,
+                    SUBPIXEL_BITS,
                 )
 
     def dashed(self, start: ArrayLike, end: ArrayLike, color: Color, dash: float = 5.0) -> None:
@@ -79,34 +87,34 @@ class Canvas:
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""
         corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]], dtype=np.float64)
-        cv2.fillConvexPoly(self._pixels, _fixed(corners), color, cv2.LINE_AA, SHIFT)
+        cv2.fillConvexPoly(self._pixels, _fixed(corners), color, cv2.LINE_AA, SUBPIXEL_BITS)
 
     def polygon(self, corners: ArrayLike, color: Color) -> None:
         """Fill a convex polygon of corners (N, 2)."""
         cv2.fillConvexPoly(
-            self._pixels, _fixed(np.asarray(corners, dtype=np.float64)), color, cv2.LINE_AA, SHIFT
+            self._pixels, _fixed(np.asarray(corners, dtype=np.float64)), color, cv2.LINE_AA, SUBPIXEL_BITS
         )
 
     def text(
         self, words: str, x: float, y: float, size: float = 9.0, color: Color = INK, align: str = "left"
     ) -> None:
-        """Write ASCII words with their base line at `y`; `size` is the height of capital letters.
+        """Write ASCII text with its baseline at `y`; `size` is the height of capital letters.
 
-        `align` says what of the words stands at `x`: their `left`, `middle` or `right`.
+        `align` says which part of the text is at `x`: its `left`, `middle` or `right`.
         """
         x -= self.text_width(words, size) * {"left": 0.0, "middle": 0.5, "right": 1.0}[align]
-        at = (round(x * SCALE), round(y * SCALE))
+        origin = (round(x * SCALE), round(y * SCALE))
         weight = max(1, round(size * SCALE / 14.0))
-        cv2.putText(self._pixels, words, at, FONT, size * SCALE / LETTER_PX, color, weight, cv2.LINE_AA)
+        cv2.putText(self._pixels, words, origin, FONT, size * SCALE / LETTER_PX, color, weight, cv2.LINE_AA)
 
     @staticmethod
     def text_width(words: str, size: float = 9.0) -> float:
-        """Width of words as `text` writes them."""
+        """Width of a text as `text` writes it."""
         (width, _), _ = cv2.getTextSize(words, FONT, size * SCALE / LETTER_PX, 1)
         return float(width) / SCALE
 
     def vertical_text(self, words: str, x: float, y: float, size: float = 9.0, color: Color = INK) -> None:
-        """Write words upwards, their middle at `y` and their base line at `x`."""
+        """Write text upwards, with its middle at `y` and its baseline at `x`."""
         width, height = round(self.text_width(words, size)) + 4, round(2.0 * size)
         strip = Canvas(width, height)
         strip.text(words, 2.0, 1.5 * size, size, color)
@@ -115,15 +123,15 @@ class Canvas:
         self._pixels[top : top + turned.shape[0], left : left + turned.shape[1]] = turned
 
     def _circle(self, center: ArrayLike, radius: float, color: Color, thickness: int) -> None:
-        place = np.asarray(center, dtype=np.float64)
-        if np.isfinite(place).all():
-            x, y = _fixed(place[None])[0, 0]
-            size = round(radius * SCALE * 2**SHIFT)
-            cv2.circle(self._pixels, (int(x), int(y)), size, color, thickness, cv2.LINE_AA, SHIFT)
+        point = np.asarray(center, dtype=np.float64)
+        if np.isfinite(point).all():
+            x, y = _fixed(point[None])[0, 0]
+            size = round(radius * SCALE * 2**SUBPIXEL_BITS)
+            cv2.circle(self._pixels, (int(x), int(y)), size, color, thickness, cv2.LINE_AA, SUBPIXEL_BITS)
 
 
 def write_png(path: str, image: Image) -> None:
-    """Write a picture as PNG, on every system to every path.
+    """Write a picture as PNG; unlike OpenCV's own writer to any path on any system.
 
     Raises:
         OSError: The file cannot be written.
@@ -132,7 +140,7 @@ def write_png(path: str, image: Image) -> None:
 
 
 def write_jpg(path: str, image: Image) -> None:
-    """Write a picture as JPEG, on every system to every path.
+    """Write a picture as JPEG; unlike OpenCV's own writer to any path on any system.
 
     Raises:
         OSError: The file cannot be written.
@@ -152,10 +160,10 @@ def ticks(low: float, high: float, most: int) -> Sequence[float]:
 
 
 def _fixed(points: Array) -> NDArray[np.int32]:
-    """Points (N, 2) for polygons: (N, 1, 2) in sixteenths, pixel centers at whole numbers."""
-    reach = 2.0**14  # far outside every picture; more would overflow
-    places = np.clip(points * SCALE - 0.5, -reach, reach)
-    return np.round(places * 2**SHIFT).astype(np.int32)[:, None]
+    """Points (N, 2) in OpenCV's fixed-point form: (N, 1, 2) in sixteenths, pixel centers at integers."""
+    limit = 2.0**14  # far outside every picture; more would overflow
+    clipped = np.clip(points * SCALE - 0.5, -limit, limit)
+    return np.round(clipped * 2**SUBPIXEL_BITS).astype(np.int32)[:, None]
 
 
 def _write(path: str, image: Image, kind: str, options: Sequence[int]) -> None:

@@ -1,4 +1,4 @@
-"""A sheet of equal cells with a title: which frames it shows, and where each cell lies."""
+"""Layout of a contact sheet: equal cells with a title, one for each frame."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ GAP = 8
 TITLE = 34
 FOOT = 22
 LABEL = 20
-"""Height of the strip that a frame's number takes of its cell."""
+"""Height of the frame's number within its cell."""
 
 
 @dataclass(frozen=True)
@@ -20,15 +20,15 @@ class Cell:
     """A rectangle of the sheet for one frame."""
 
     frame: int
-    """Position in the clip."""
+    """Index in the clip."""
     left: int
     top: int
     width: int
     height: int
 
 
-def chosen_frames(frame_count: int, most: int = 12) -> tuple[int, ...]:
-    """At most `most` positions of the clip, evenly spaced, the first and the last among them."""
+def evenly_spaced_frames(frame_count: int, most: int = 12) -> tuple[int, ...]:
+    """At most `most` frame indices of the clip, evenly spaced, with the first and the last."""
     return tuple(int(i) for i in np.unique(np.round(np.linspace(0, frame_count - 1, min(most, frame_count)))))
 
 
@@ -46,12 +46,12 @@ def sheet(
     cells = [
         Cell(
             frame,
-            MARGIN + (place % columns) * (cell_width + GAP),
-            MARGIN + TITLE + (place // columns) * (cell_height + GAP),
+            MARGIN + (index % columns) * (cell_width + GAP),
+            MARGIN + TITLE + (index // columns) * (cell_height + GAP),
             cell_width,
             cell_height,
         )
-        for place, frame in enumerate(frames)
+        for index, frame in enumerate(frames)
     ]
     return canvas, cells
 

@@ -1,4 +1,4 @@
-"""A strip of small pictures of the footage with the estimate over it: one look a take, in a list of hundreds.
+"""A strip of small pictures of the footage with the estimate over it, by which a list shows a take.
 
 Each picture is a square around the performer, so that a small figure in a wide shot is still seen.
 """
@@ -17,17 +17,17 @@ from .stick_figure import draw_figure, stick_figure
 
 PICTURES = 6
 SIDE = 160
-"""Of one picture [px]; a list shows it at about half of that, sharp on screens of twice the points."""
+"""Side of one picture [px]; a list shows it at about half of that, sharp on screens of double density."""
 GAP = 4
 SIZE = (PICTURES * SIDE + (PICTURES - 1) * GAP, SIDE)
 """Width and height of every strip, so that a page knows them before it is loaded."""
 LIMB_WIDTH = 2.2
 PAPER = (226, 222, 219)
-"""Where the clip has fewer frames, or the square is larger than the picture."""
-ROOM = 1.35
-"""Side of the square in heights or widths of the largest figure: the points end at the head's center."""
-SMALLEST_SHARE = 0.3
-"""Of the picture's shorter side: a posture that is squeezed to a dot is not magnified without end."""
+"""Color where the clip has fewer frames, or the square is larger than the picture."""
+PADDING = 1.35
+"""Side of the square in heights or widths of the largest figure, whose points end at the head's center."""
+SMALLEST_SIDE = 0.3
+"""Smallest side of the square, of the picture's shorter side: limits the magnification of a tiny figure."""
 
 
 def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image:
@@ -36,8 +36,8 @@ def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image
     Args:
         take: The take.
         motion: Its motion.
-        images: At most `PICTURES` frames of the clip by position, in the order to show them; they may be
-            smaller than the clip's.
+        images: At most `PICTURES` frames of the clip by frame index, in the order to show them; reduced or
+            whole.
 
     Returns:
         (SIZE[1], SIZE[0], 3) picture.
@@ -45,7 +45,7 @@ def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image
     strip = Canvas(*SIZE, PAPER)
     figure = stick_figure(motion)
     centers, side = _squares(take, motion, list(images))
-    for place, ((frame, image), center) in enumerate(zip(images.items(), centers, strict=True)):
+    for index, ((frame, image), center) in enumerate(zip(images.items(), centers, strict=True)):
         corner, scale = center - 0.5 * side, SIDE / side
         tile = Canvas(SIDE, SIDE)
         tile.paste(_cut(image, corner, side, take.camera.resolution), 0, 0, SIDE, SIDE)
@@ -57,31 +57,31 @@ def film_strip(take: Take, motion: Motion, images: Mapping[int, Image]) -> Image
             return scale * (pixels - corner), depth
 
         draw_figure(tile, figure, frame, project, LIMB_WIDTH, outlined=True)
-        strip.paste(tile.image(), place * (SIDE + GAP), 0, SIDE, SIDE)
+        strip.paste(tile.image(), index * (SIDE + GAP), 0, SIDE, SIDE)
     return strip.image()
 
 
 def _squares(take: Take, motion: Motion, frames: list[int]) -> tuple[Array, float]:
-    """Centers (K, 2) and the one side of squares that hold the figure in every frame [px].
+    """Centers (K, 2) and common side of squares around the figure in each frame [px].
 
     They stay inside the picture where they fit.
     """
     size = np.array(take.camera.resolution, dtype=np.float64)
     centers, extents = np.tile(0.5 * size, (len(frames), 1)), np.zeros(len(frames))
-    for place, frame in enumerate(frames):
+    for index, frame in enumerate(frames):
         pixels, _ = take.camera.project(motion.points[frame], frame)
         seen = pixels[np.isfinite(pixels).all(axis=-1)]
         if len(seen):
             low, high = np.clip(seen.min(axis=0), 0.0, size), np.clip(seen.max(axis=0), 0.0, size)
-            centers[place], extents[place] = 0.5 * (low + high), (high - low).max()
-    wanted = ROOM * extents.max() if extents.any() else size.max()
-    side = float(np.clip(wanted, SMALLEST_SHARE * size.min(), size.max()))
+            centers[index], extents[index] = 0.5 * (low + high), (high - low).max()
+    wanted = PADDING * extents.max() if extents.any() else size.max()
+    side = float(np.clip(wanted, SMALLEST_SIDE * size.min(), size.max()))
     half = np.minimum(0.5 * side, 0.5 * size)
     return np.clip(centers, half, size - half), side
 
 
 def _cut(image: Image, corner: Array, side: float, resolution: tuple[int, int]) -> Image:
-    """The square of a frame, paler, filled up where it reaches beyond the picture."""
+    """The square of a frame, paler, padded where it reaches beyond the picture."""
     shrunk = image.shape[1] / resolution[0]
     across = max(round(shrunk * side), 1)
     left, top = (int(value) for value in np.round(shrunk * corner))

@@ -1,4 +1,4 @@
-"""A library on one sheet: every motion as a strip of its postures, then the postures that belong to none."""
+"""A library on one sheet: every motion as a strip of its postures, then the postures in no motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,47 +10,47 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..library.library import Library, LibraryMotion, LibraryPosture
 from .canvas import GRAY, INK, LEFT, RIGHT, Canvas, Color
-from .captions import cut, plain, wrapped
+from .captions import ascii_text, truncated, wrapped
 from .mannequin import View, draw_mannequin, view_axes
-from .posture_picture import FLESH_M, TILT_RAD, outermost, showing_turn, stage
+from .posture_picture import FLESH_M, TILT_RAD, backdrop, best_view_turn, projected_landmarks
 
 MARGIN = 28
 LEAST_WIDTH, WIDTH = 900, 1520
-"""Of what lies between the margins, at least and at most."""
+"""Least and greatest width between the margins."""
 SCALE = 86.0
 """Pixels a meter, the same for every figure."""
 NARROWEST, WIDEST = 98, 230
-"""Width of a cell."""
+"""Least and greatest width of a cell."""
 HEADER, SECTION = 96, 34
-BETWEEN, BELOW = 40, 22
-"""Space between two strips side by side, and below them."""
-FLOOR_ROOM = 22
-"""Height below the floor's middle, where the nearer foot is."""
-LETTER, LINE, MOST_LINES = 8.0, 11.5, 3
+STRIP_GAP, ROW_GAP = 40, 22
+"""Space between two strips side by side, and below a row of strips."""
+FLOOR_HEIGHT = 22
+"""Height below the middle of the floor, for the nearer foot."""
+LETTER_SIZE, LINE_HEIGHT, MOST_LINES = 8.0, 11.5, 3
 
 
 @dataclass(frozen=True)
 class _Strip:
-    """Postures that are shown side by side from one direction."""
+    """Postures drawn side by side from one direction."""
 
     title: str
     detail: str
     cyclic: bool
     captions: tuple[tuple[str, str], ...]
-    """Name and time of each."""
+    """Name and time of each posture."""
     postures: Posture
-    """A batch."""
+    """Batch of the postures."""
     turn_rad: float
     middle_m: float
-    """What stands in the middle of a cell, so far to the right of the hips."""
+    """Middle of a cell, to the right of the hips [m]."""
     cell: int
-    """Width of what one posture takes."""
-    high: int
-    """Height of the stage."""
+    """Width of one posture's cell."""
+    figure_height: int
+    """Height of the figures with their floor."""
 
     @property
     def columns(self) -> int:
-        """Postures in a row; where one row is too short for all they are divided evenly."""
+        """Postures in a row; several rows share them evenly."""
         rows = -(-len(self.captions) * self.cell // WIDTH)
         return -(-len(self.captions) // rows)
 
@@ -60,18 +60,18 @@ class _Strip:
         return max(len(_name_lines(name, self.cell)) for name, _ in self.captions)
 
     @property
-    def row(self) -> int:
-        """Height of a row with what is written below."""
-        return self.high + round(LINE * (self.lines + 1)) + 12
+    def row_height(self) -> int:
+        """Height of a row with its captions."""
+        return self.figure_height + round(LINE_HEIGHT * (self.lines + 1)) + 12
 
     @property
     def height(self) -> int:
-        """Height of the whole strip."""
-        return SECTION + self.row * -(-len(self.captions) // self.columns)
+        """Height of the strip with its title."""
+        return SECTION + self.row_height * -(-len(self.captions) // self.columns)
 
     @property
     def width(self) -> int:
-        """Width of the whole strip, its title included."""
+        """Width of the strip with its title."""
         words = Canvas.text_width(self.title, 11.0) + Canvas.text_width(self.detail, 8.5) + 40.0
         return max(self.columns * self.cell, min(int(words), WIDTH))
 
@@ -83,18 +83,18 @@ def library_sheet(library: Library) -> Image:
         (height, width, 3) blue, green, red.
     """
     body = Body(library.actor)
-    shelves = _packed(_strips(library, body))
-    heights = [max(strip.height for strip in shelf) + BELOW for shelf in shelves]
-    widest = max(sum(strip.width + BETWEEN for strip in shelf) - BETWEEN for shelf in shelves)
+    rows = _packed_rows(_strips(library, body))
+    heights = [max(strip.height for strip in row) + ROW_GAP for row in rows]
+    widest = max(sum(strip.width + STRIP_GAP for strip in row) - STRIP_GAP for row in rows)
     canvas = Canvas(max(widest, LEAST_WIDTH) + 2 * MARGIN, HEADER + sum(heights))
-    _header(canvas, library)
+    _draw_header(canvas, library)
     figures: list[tuple[int, int, _Strip, int]] = []
     top = HEADER
-    for shelf, height in zip(shelves, heights, strict=True):
+    for row, height in zip(rows, heights, strict=True):
         left = MARGIN
-        for strip in shelf:
-            figures += _lay(canvas, strip, left, top)
-            left += strip.width + BETWEEN
+        for strip in row:
+            figures += _draw_strip(canvas, strip, left, top)
+            left += strip.width + STRIP_GAP
         top += height
     image = canvas.image()
     for left, top, strip, index in figures:
@@ -102,40 +102,42 @@ def library_sheet(library: Library) -> Image:
         ground = posture.translation * [1.0, 1.0, 0.0] @ view_axes(strip.turn_rad, TILT_RAD)[:2].T
         center = (
             0.5 * strip.cell - SCALE * (ground[0] + strip.middle_m),
-            strip.high - FLOOR_ROOM + SCALE * ground[1],
+            strip.figure_height - FLOOR_HEIGHT + SCALE * ground[1],
         )
-        tile = image[top : top + strip.high, left : left + strip.cell]
+        tile = image[top : top + strip.figure_height, left : left + strip.cell]
         tile[:] = draw_mannequin(tile, body, posture, View(strip.turn_rad, TILT_RAD, SCALE, center))
     return image
 
 
-def _lay(canvas: Canvas, strip: _Strip, left: int, top: int) -> list[tuple[int, int, _Strip, int]]:
-    """Draw a strip without its figures; where these go: left, top, strip, and which of its postures."""
-    _section(canvas, strip, left, top)
+def _draw_strip(canvas: Canvas, strip: _Strip, left: int, top: int) -> list[tuple[int, int, _Strip, int]]:
+    """Draw a strip without its figures; returns left, top, strip and posture index of each figure."""
+    _draw_section_title(canvas, strip, left, top)
     figures = []
     for first in range(0, len(strip.captions), strip.columns):
         shown = range(first, min(first + strip.columns, len(strip.captions)))
-        y = top + SECTION + strip.row * (first // strip.columns)
-        floor = stage(strip.high, strip.cell * len(shown), strip.high - FLOOR_ROOM, SCALE)
-        canvas.paste(floor, left, y, floor.shape[1], strip.high)
-        for place, index in enumerate(shown):
-            x = left + place * strip.cell
-            _caption(canvas, strip.captions[index], x, y + strip.high, strip.cell)
+        y = top + SECTION + strip.row_height * (first // strip.columns)
+        floor = backdrop(
+            strip.figure_height, strip.cell * len(shown), strip.figure_height - FLOOR_HEIGHT, SCALE
+        )
+        canvas.paste(floor, left, y, floor.shape[1], strip.figure_height)
+        for column, index in enumerate(shown):
+            x = left + column * strip.cell
+            _draw_caption(canvas, strip.captions[index], x, y + strip.figure_height, strip.cell)
             figures.append((x, y, strip, index))
     return figures
 
 
-def _packed(strips: Sequence[_Strip]) -> list[list[_Strip]]:
-    """Strips side by side as long as they fit, in their order."""
-    shelves: list[list[_Strip]] = []
-    room = 0
+def _packed_rows(strips: Sequence[_Strip]) -> list[list[_Strip]]:
+    """Rows of strips, filled in order as far as they fit."""
+    rows: list[list[_Strip]] = []
+    free_width = 0
     for strip in strips:
-        if not shelves or strip.width + BETWEEN > room:
-            shelves.append([])
-            room = WIDTH + BETWEEN
-        shelves[-1].append(strip)
-        room -= strip.width + BETWEEN
-    return shelves
+        if not rows or strip.width + STRIP_GAP > free_width:
+            rows.append([])
+            free_width = WIDTH + STRIP_GAP
+        rows[-1].append(strip)
+        free_width -= strip.width + STRIP_GAP
+    return rows
 
 
 def _strips(library: Library, body: Body) -> list[_Strip]:
@@ -144,8 +146,8 @@ def _strips(library: Library, body: Body) -> list[_Strip]:
         postures = [library.by_name[step.posture] for step in motion.steps]
         times = [f"{step.time_s:.2f} s" for step in motion.steps]
         strips.append(_strip(body, motion.name, _detail(motion), motion.cyclic, postures, times))
-    placed = {step.posture for motion in library.motions for step in motion.steps}
-    loose = [posture for posture in library.postures if posture.name not in placed]
+    used = {step.posture for motion in library.motions for step in motion.steps}
+    loose = [posture for posture in library.postures if posture.name not in used]
     if loose:
         title = "Postures in no motion" if library.motions else "Postures"
         tags = [", ".join(posture.tags) for posture in loose]
@@ -162,21 +164,32 @@ def _strip(
     below: Sequence[str],
 ) -> _Strip:
     postures = Posture.stack([entry.posture for entry in entries])
-    turn = showing_turn(body, postures)
+    turn = best_view_turn(body, postures)
     flat = postures.translation * [1.0, 1.0, 0.0] @ view_axes(turn, TILT_RAD)[:2].T
-    seen = outermost(body, postures, turn) - flat[:, None]
-    left, right = float(seen[..., 0].min()) - FLESH_M, float(seen[..., 0].max()) + FLESH_M
+    landmarks = projected_landmarks(body, postures, turn) - flat[:, None]
+    left, right = float(landmarks[..., 0].min()) - FLESH_M, float(landmarks[..., 0].max()) + FLESH_M
     cell = int(np.clip(SCALE * (right - left) + 8, NARROWEST, WIDEST))
-    high = int(SCALE * (float(seen[..., 1].max()) + FLESH_M)) + 8 + FLOOR_ROOM
+    figure_height = int(SCALE * (float(landmarks[..., 1].max()) + FLESH_M)) + 8 + FLOOR_HEIGHT
     captions = tuple(
-        (plain(_within(title, entry.name)), plain(words)) for entry, words in zip(entries, below, strict=True)
+        (ascii_text(_without_prefix(title, entry.name)), ascii_text(words))
+        for entry, words in zip(entries, below, strict=True)
     )
     middle = 0.5 * (left + right)
-    return _Strip(plain(title), plain(detail), cyclic, captions, postures, turn, middle, cell, max(high, 60))
+    return _Strip(
+        ascii_text(title),
+        ascii_text(detail),
+        cyclic,
+        captions,
+        postures,
+        turn,
+        middle,
+        cell,
+        max(figure_height, 60),
+    )
 
 
-def _within(title: str, name: str) -> str:
-    """A posture's name in the strip of a motion: without the motion's name before a colon."""
+def _without_prefix(title: str, name: str) -> str:
+    """A posture's name without the motion's name and colon in front, which the strip's title says."""
     before, colon, rest = name.partition(":")
     return rest.strip() if colon and rest.strip() and before.casefold() == title.casefold() else name
 
@@ -193,16 +206,20 @@ def _detail(motion: LibraryMotion) -> str:
     return ", ".join(words)
 
 
-def _header(canvas: Canvas, library: Library) -> None:
-    canvas.text(plain(library.title), MARGIN, 38.0, 17.0, INK)
+def _draw_header(canvas: Canvas, library: Library) -> None:
+    canvas.text(ascii_text(library.title), MARGIN, 38.0, 17.0, INK)
     words = (
         f"{library.identifier}, version {library.version}   "
         f"{library.size}   "
         f"by {library.author}   {library.license}   figure of {library.actor.stature_m:.2f} m"
     )
-    canvas.text(plain(words), MARGIN, 58.0, 8.5, GRAY)
+    canvas.text(ascii_text(words), MARGIN, 58.0, 8.5, GRAY)
     canvas.text(
-        cut(plain(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5), MARGIN, 76.0, 8.5, GRAY
+        truncated(ascii_text(library.description), canvas.width - 2 * MARGIN - 260.0, 8.5),
+        MARGIN,
+        76.0,
+        8.5,
+        GRAY,
     )
     sides: tuple[tuple[str, Color, bool], ...] = (("right, banded", RIGHT, True), ("left", LEFT, False))
     x = float(canvas.width - MARGIN)
@@ -215,18 +232,18 @@ def _header(canvas: Canvas, library: Library) -> None:
         x -= 46.0
 
 
-def _section(canvas: Canvas, strip: _Strip, left: int, top: int) -> None:
+def _draw_section_title(canvas: Canvas, strip: _Strip, left: int, top: int) -> None:
     base = top + SECTION - 11.0
     canvas.text(strip.title, left, base, 11.0, INK)
     x = left + canvas.text_width(strip.title, 11.0) + 14.0
     if strip.cyclic:
-        _loop(canvas, x + 7.0, base - 5.5)
+        _draw_loop_sign(canvas, x + 7.0, base - 5.5)
         x += 22.0
     canvas.text(strip.detail, x, base, 8.5, GRAY)
 
 
-def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
-    """A circle that ends in an arrow: what comes again."""
+def _draw_loop_sign(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
+    """A circle that ends in an arrow, for a cyclic motion."""
     angle = np.linspace(-0.35 * np.pi, 1.35 * np.pi, 24)
     circle = np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], axis=-1)
     canvas.line(circle, GRAY, 1.6)
@@ -236,14 +253,14 @@ def _loop(canvas: Canvas, x: float, y: float, radius: float = 6.0) -> None:
     canvas.polygon([tip + 5.0 * along, tip + 3.6 * across, tip - 3.6 * across], GRAY)
 
 
-def _caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, width: int) -> None:
+def _draw_caption(canvas: Canvas, caption: tuple[str, str], left: int, base: int, width: int) -> None:
     name, below = caption
     middle, y = left + 0.5 * width, base + 13.0
     for line in _name_lines(name, width):
-        canvas.text(line, middle, y, LETTER, INK, "middle")
-        y += LINE
-    canvas.text(cut(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GRAY, "middle")
+        canvas.text(line, middle, y, LETTER_SIZE, INK, "middle")
+        y += LINE_HEIGHT
+    canvas.text(truncated(below, width - 8.0, 7.5), middle, y + 1.0, 7.5, GRAY, "middle")
 
 
 def _name_lines(name: str, width: int) -> Sequence[str]:
-    return wrapped(name, width - 10.0, LETTER, MOST_LINES)
+    return wrapped(name, width - 10.0, LETTER_SIZE, MOST_LINES)

@@ -1,4 +1,4 @@
-"""A posture as a shaded mannequin in parallel projection, edges set off, its shadow on the floor."""
+"""A posture as a shaded mannequin in parallel projection, with depth edges and a shadow on the floor."""
 
 from dataclasses import dataclass
 
@@ -9,52 +9,52 @@ from numpy.typing import NDArray
 from ..arrays import Array, BoolArray, Image, SingleArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from .mannequin_feet import drawn_frames
+from .mannequin_feet import skin_frames
 from .mannequin_shape import mannequin_surface
 
 LIGHT = np.array([-0.5, 0.75, -0.6])
-"""From where the light comes, as the eye sees it: right, up, away."""
+"""Direction to the light in view axes: right, up, away."""
 DARKEST, SHEEN = 0.45, 60.0
 EDGE_COLOR = np.array([62, 54, 50])
 EDGE_M = 0.04
-"""A part that lies so far before what is beside it gets an edge."""
-SHADOW, SOFTNESS_M, SPARSE = 0.32, 0.03, 7
-"""How dark the shadow is, how soft, and that only every seventh point of the skin throws it."""
-STEPS, FAR_M = 65535, 1e3
-"""In how many steps depth is told apart, and what counts as the depth of nothing."""
+"""Depth step from which on an edge is drawn."""
+SHADOW, SOFTNESS_M, SHADOW_STRIDE = 0.32, 0.03, 7
+"""Darkness of the shadow, its blur, and the stride of the skin points that cast it."""
+DEPTH_STEPS, FAR_M = 65535, 1e3
+"""Quantization of depth for sorting, and the depth of empty pixels."""
 HOLE_M = 0.01
-"""A pixel that shows something so much farther than all around is a hole between points of the skin."""
-FINER = 2
+"""A pixel farther than its neighbors by this much is a hole between points of the skin."""
+SUPERSAMPLING = 2
 """The figure is drawn this much larger and reduced at the end."""
 DENSITY = 1.0
-"""Points of the skin a pixel of the larger picture, along a line."""
+"""Points of the skin per pixel of the larger picture, along a line."""
 
 
 @dataclass(frozen=True)
 class View:
-    """From where a figure is seen, and where it lies in the picture."""
+    """Direction of view, scale and origin of a parallel projection."""
 
     turn_rad: float
-    """How far the eye has walked around the world's Z: at 0 it sees who faces -Y from the front, at π/2 from
+    """Turn of the eye around the world's Z: at 0 it sees a performer who faces -Y from the front, at π/2 from
     their left."""
     tilt_rad: float
-    """How far it looks down."""
+    """Downward tilt of the view."""
     scale: float
     """Pixels a meter."""
     center: tuple[float, float]
-    """Where the world's origin lies in the picture: pixels to the right and down."""
+    """The world's origin in the picture: pixels to the right and down."""
 
     @property
     def axes(self) -> Array:
         """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
         return view_axes(self.turn_rad, self.tilt_rad)
 
-    def project(self, places: Array) -> tuple[Array, Array]:
-        """Pixels (..., 2) of world places (..., 3), and how far away these lie (...,) [m]."""
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Pixels (..., 2) and depths (...,) [m] of world points (..., 3)."""
         axes = self.axes
         flat = self.scale * axes[:2] * np.array([[1.0], [-1.0]])
-        pixel = places @ flat.T.astype(places.dtype) + np.array(self.center, dtype=places.dtype)
-        return pixel, places @ axes[2].astype(places.dtype)
+        pixel = points @ flat.T.astype(points.dtype) + np.array(self.center, dtype=points.dtype)
+        return pixel, points @ axes[2].astype(points.dtype)
 
 
 def view_axes(turn_rad: float, tilt_rad: float) -> Array:
@@ -66,36 +66,38 @@ def view_axes(turn_rad: float, tilt_rad: float) -> Array:
 
 
 def _spacing_m(view: View) -> float:
-    """How far points of the skin lie apart, in few steps, so that views of like scale share a skin [m]."""
-    return float(2.0 ** (np.floor(-4.0 * np.log2(DENSITY * FINER * view.scale)) / 4.0))
+    """Distance between points of the skin, in coarse steps, so that similar scales share a skin [m]."""
+    return float(2.0 ** (np.floor(-4.0 * np.log2(DENSITY * SUPERSAMPLING * view.scale)) / 4.0))
 
 
 def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Image:
-    """A picture with a figure drawn onto it.
+    """Draw a figure onto a picture.
 
     Args:
-        image: (height, width, 3) what is behind; left as it is.
+        image: (height, width, 3) background; not changed.
         body: The performer.
         posture: A single posture; the floor is z = 0.
-        view: From where.
+        view: The projection.
 
     Returns:
-        (height, width, 3) the picture with the figure.
+        (height, width, 3) picture with the figure.
     """
     height, width = image.shape[:2]
-    size = (height * FINER, width * FINER)
+    size = (height * SUPERSAMPLING, width * SUPERSAMPLING)
     surface = mannequin_surface(body, _spacing_m(view))
-    rotations, origins = drawn_frames(body, body.pose(posture))
+    rotations, origins = skin_frames(body, body.pose(posture))
     onto = view.axes * np.array([[view.scale], [-view.scale], [1.0]])
     facing, shown, thrown = [], [], []
     for frame, skin in surface.parts:
         turn, origin = rotations[frame], origins[frame]
         towards = surface.normal[skin] @ (turn.T @ view.axes[2]).astype(np.float32) < 0.0
         facing.append(np.flatnonzero(towards) + skin.start)
-        shown.append(_moved(surface.place[facing[-1]], onto @ turn, onto @ origin + [*view.center, 0.0]))
-        thrown.append(_moved(surface.place[skin][::SPARSE], turn, origin))
+        shown.append(
+            _transformed(surface.point[facing[-1]], onto @ turn, onto @ origin + [*view.center, 0.0])
+        )
+        thrown.append(_transformed(surface.point[skin][::SHADOW_STRIDE], turn, origin))
     front = np.concatenate(facing)
-    nearest, depth = _nearest(np.concatenate(shown), size)
+    nearest, depth = _depth_buffer(np.concatenate(shown), size)
     seen = nearest >= 0
     point = front[nearest[seen]]
     shadow = _shadow(view, np.concatenate(thrown), (height, width))
@@ -105,42 +107,42 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     light = (LIGHT / np.linalg.norm(LIGHT) @ view.axes @ rotations).astype(np.float32)  # by frame
     lit = np.sum(surface.normal[point] * light[surface.frame[point]], axis=-1)
     large[seen] = _shaded(surface.color[point], lit)
-    large[_edges(depth)] = EDGE_COLOR
+    large[_depth_edges(depth)] = EDGE_COLOR
     reduced = cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)
     return np.asarray(np.round(np.clip(reduced, 0.0, 255.0)), dtype=np.uint8)
 
 
-def _moved(place: SingleArray, turn: Array, origin: Array) -> SingleArray:
-    return np.asarray(place @ turn.T.astype(np.float32) + origin.astype(np.float32))
+def _transformed(points: SingleArray, turn: Array, origin: Array) -> SingleArray:
+    return np.asarray(points @ turn.T.astype(np.float32) + origin.astype(np.float32))
 
 
-def _pixels(at: SingleArray, size: tuple[int, int]) -> NDArray[np.int32]:
-    """Which pixel each of some points (N, 2) falls into, counted row by row; one more than all: none."""
-    column, row = np.floor(at[:, 0]), np.floor(at[:, 1])
+def _pixel_indices(pixels: SingleArray, size: tuple[int, int]) -> NDArray[np.int32]:
+    """Flat indices of the pixels that hold points (N, 2); the number of pixels for points outside."""
+    column, row = np.floor(pixels[:, 0]), np.floor(pixels[:, 1])
     inside = (column >= 0) & (column < size[1]) & (row >= 0) & (row < size[0])
     return np.where(inside, row * size[1] + column, size[0] * size[1]).astype(np.int32)
 
 
-def _shadow(view: View, place: SingleArray, size: tuple[int, int]) -> SingleArray:
-    """How much of the light from above is missing, 0 to 1, on the floor z = 0."""
+def _shadow(view: View, points: SingleArray, size: tuple[int, int]) -> SingleArray:
+    """Shadow of the skin on the floor z = 0 in light from above, 0 to 1."""
     mask = np.zeros(size[0] * size[1] + 1, dtype=np.float32)
-    at, _ = view.project(place * np.array([1.0, 1.0, 0.0], dtype=np.float32))
-    mask[_pixels(at.astype(np.float32), size)] = 1.0
+    pixels, _ = view.project(points * np.array([1.0, 1.0, 0.0], dtype=np.float32))
+    mask[_pixel_indices(pixels.astype(np.float32), size)] = 1.0
     return np.asarray(cv2.GaussianBlur(mask[:-1].reshape(size), (0, 0), SOFTNESS_M * view.scale))
 
 
-def _nearest(seen: SingleArray, size: tuple[int, int]) -> tuple[NDArray[np.int32], SingleArray]:
-    """Which point is seen in each pixel of the larger picture, -1 where none, and how far away it is [m].
+def _depth_buffer(seen: SingleArray, size: tuple[int, int]) -> tuple[NDArray[np.int32], SingleArray]:
+    """Depth buffer of the larger picture: visible point of each pixel, -1 where none, and depth [m].
 
     Args:
         seen: (N, 3) pixels of the reduced picture to the right and down, and meters away.
         size: Height and width of the larger one.
     """
-    pixel, away = _pixels(seen[:, :2] * np.float32(FINER), size), seen[:, 2]
-    # Of several points in a pixel the last one written stays: the nearest. Whole numbers of two bytes are
-    # sorted many times faster than fractions, and a figure's depth in so many steps is fine enough.
+    pixel, away = _pixel_indices(seen[:, :2] * np.float32(SUPERSAMPLING), size), seen[:, 2]
+    # Of several points in a pixel the last one written stays: the nearest. Integers of two bytes are sorted
+    # many times faster than floats, and the quantization of depth is fine enough.
     first, last = away.min(), away.max()
-    nearness = (last - away) * (np.float32(STEPS) / max(last - first, np.float32(1e-6)))
+    nearness = (last - away) * (np.float32(DEPTH_STEPS) / max(last - first, np.float32(1e-6)))
     order = np.argsort(nearness.astype(np.uint16), kind="stable")
     nearest = np.full(size[0] * size[1] + 1, -1, dtype=np.int32)
     nearest[pixel[order]] = order
@@ -154,12 +156,12 @@ def _nearest(seen: SingleArray, size: tuple[int, int]) -> tuple[NDArray[np.int32
 
 
 def _shaded(color: SingleArray, lit: SingleArray) -> SingleArray:
-    """Colors (N, 3) where so much light (N,) falls, -1 to 1."""
+    """Shaded colors (N, 3) in light (N,), -1 to 1, the cosine of its incidence."""
     brightness = DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit)
     return np.asarray(1.12 * color * brightness[:, None] + SHEEN * np.clip(lit, 0.0, 1.0)[:, None] ** 12)
 
 
-def _edges(depth: SingleArray) -> BoolArray:
-    """Where something much nearer is beside: around the figure, and where a limb passes before another."""
+def _depth_edges(depth: SingleArray) -> BoolArray:
+    """Pixels beside much nearer ones: around the figure, and where a limb passes before another."""
     near = cv2.erode(depth, cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)))
     return np.asarray(depth - near > EDGE_M)

@@ -1,4 +1,4 @@
-"""Feet as pictures show them: turned at the ankle where the skeleton's, rigid with the shin, would dip."""
+"""Feet of the mannequin, turned at the ankle where the skeleton's rigid feet would go below the floor."""
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from ..body.soles import sole_places
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def foot_frame(body: Body, segment: str) -> int:
-    """Where a foot's frame is among those that are drawn: after those of the joints."""
+def foot_frame_index(body: Body, segment: str) -> int:
+    """Index of a foot's frame among the frames of the skin, after those of the joints."""
     return len(body.skeleton.joints) + SIDES.index(segment.rsplit(".", 1)[-1])
 
 
-def drawn_frames(body: Body, pose: Pose) -> tuple[Array, Array]:
+def skin_frames(body: Body, pose: Pose) -> tuple[Array, Array]:
     """The frames that move the skin of a single posture.
 
     Returns:
@@ -27,19 +27,19 @@ def drawn_frames(body: Body, pose: Pose) -> tuple[Array, Array]:
     for side, sole in zip(SIDES, sole_places(body, pose), strict=True):
         foot = next(segment for segment in body.skeleton.segments if segment.name == f"foot.{side}")
         ankle = pose.place(foot.joint, body.local(foot.start))
-        turn = _out_of_the_floor(sole[0] - ankle, sole[1] - ankle, float(ankle[2]))
+        turn = _floor_correction(sole[0] - ankle, sole[1] - ankle, float(ankle[2]))
         turned.append((turn @ pose.rotation[foot.joint])[None])
         origins.append((ankle + turn @ (pose.origin[foot.joint] - ankle))[None])
     return np.concatenate(turned), np.concatenate(origins)
 
 
-def _out_of_the_floor(heel: Array, tip: Array, height_m: float) -> Array:
-    """(3, 3) the least turn about the ankle that brings the sole to the floor, at most to a level foot.
+def _floor_correction(heel: Array, tip: Array, height_m: float) -> Array:
+    """(3, 3) smallest rotation about the ankle that brings the sole to the floor, at most to a level foot.
 
     Args:
-        heel: From the ankle [m].
-        tip: Likewise.
-        height_m: Of the ankle.
+        heel: The heel, from the ankle [m].
+        tip: The foot's tip, from the ankle [m].
+        height_m: Height of the ankle.
     """
     along = tip - heel
     ahead = along * [1.0, 1.0, 0.0]
@@ -49,10 +49,10 @@ def _out_of_the_floor(heel: Array, tip: Array, height_m: float) -> Array:
     ahead /= length
     toes = low == tip[2]
     end = tip if toes else heel
-    # In the plane of the foot the end is at this angle over its direction, and shall be at another.
+    # Angles of the end above the foot's direction, in the foot's plane: the wanted one and the present one.
     lift = np.arcsin(np.clip(-height_m / np.linalg.norm(end), -1.0, 1.0))
     sign = 1.0 if toes else -1.0
-    is_at = np.arctan2(end[2], sign * float(end @ ahead))
+    present = np.arctan2(end[2], sign * float(end @ ahead))
     level = abs(np.arctan2(along[2], length))
-    angle = sign * min(lift - is_at, level)
+    angle = sign * min(lift - present, level)
     return rotations.exponential(angle * np.cross(ahead, UP))

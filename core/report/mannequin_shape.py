@@ -1,7 +1,7 @@
-"""The surface of a mannequin on the body's segments, as points with normals: for pictures, not for measuring.
+"""The surface of a mannequin on the body's segments, as points with normals; for pictures alone.
 
-Limbs are the volumes of `body/body_volume`, a little swollen where muscles are; head, hands and feet are
-shaped so that one sees where a person looks and stands. The feet's undersides are the soles of `body/soles`.
+Limbs are the volumes of `body/shapes`, a little swollen where muscles are; head, hands and feet are shaped so
+that the direction of a person's face and feet shows. The feet's undersides are the soles of `body/soles`.
 """
 
 from collections.abc import Iterator
@@ -16,15 +16,15 @@ from ..body.body_volume import Piece, body_pieces
 from ..body.kinematics import Body
 from ..body.soles import HEEL_BEHIND
 from .canvas import LEFT, RIGHT, Color
-from .mannequin_feet import foot_frame
+from .mannequin_feet import foot_frame_index
 
 TRUNK: Color = (186, 182, 180)
 BAND: Color = (235, 232, 230)
-"""Of the rings around the right limbs: color is not the only thing that tells them from the left ones."""
+"""Color of the rings around the right limbs, which mark them for color-blind eyes too."""
 SHOE = 0.72
 """Brightness of feet beside that of legs."""
 SWELLING = {"upper_arm": 0.10, "forearm": 0.16, "thigh": 0.06, "shin": 0.22}
-"""How much thicker a limb is at a third of its length than a straight taper."""
+"""Excess thickness of a limb at a third of its length over a straight taper."""
 ROUNDING = {"chest": 0.35, "pelvis": 0.6, "hand": 1.0}
 """Length of a rounded end, of its half-width; 0.85 where not named."""
 
@@ -35,8 +35,8 @@ class Surface:
 
     frame: IndexArray
     """(N,) the frame that moves each point: a joint's, or a foot's, of `mannequin_feet`."""
-    place: SingleArray
-    """(N, 3) in that frame [m]."""
+    point: SingleArray
+    """(N, 3) position in that frame [m]."""
     normal: SingleArray
     """(N, 3) unit directions outwards."""
     color: SingleArray
@@ -44,7 +44,7 @@ class Surface:
 
     @cached_property
     def parts(self) -> tuple[tuple[int, slice], ...]:
-        """The stretches of points that one frame moves, in order, and that frame."""
+        """Consecutive points that one frame moves: that frame, and their slice."""
         starts = [0, *np.flatnonzero(np.diff(self.frame)) + 1, len(self.frame)]
         return tuple((int(self.frame[a]), slice(a, b)) for a, b in pairwise(starts))
 
@@ -68,9 +68,9 @@ class _Tube:
 def mannequin_surface(body: Body, spacing_m: float) -> Surface:
     """The skin of a body, its points about `spacing_m` apart."""
     parts = [_points(tube, spacing_m) for tube in _tubes(body, spacing_m)]
-    frame = np.concatenate([np.full(len(place), tube) for tube, place, _, _ in parts])
-    place, normal, color = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in (1, 2, 3))
-    return Surface(frame, place, normal, color)
+    frame = np.concatenate([np.full(len(point), tube) for tube, point, _, _ in parts])
+    point, normal, color = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in (1, 2, 3))
+    return Surface(frame, point, normal, color)
 
 
 def _tubes(body: Body, spacing_m: float) -> Iterator[_Tube]:
@@ -90,11 +90,11 @@ def _limb(piece: Piece, kind: str, spacing_m: float) -> _Tube:
     length = float(np.linalg.norm(axis))
     share, width = [], []
     inner = np.linspace(0.0, 1.0, max(int(length / spacing_m), 2))
-    for way, end in ((-1.0, 0), (1.0, 1)):
+    for sign, end in ((-1.0, 0), (1.0, 1)):
         size = ROUNDING.get(kind, 0.85) * piece.half_widths[end].mean()
         widest = max(size, float(piece.half_widths[end].max()))
         angle = np.linspace(0.0, 0.5 * np.pi, max(int(1.6 * widest / spacing_m), 4))[1:]
-        share.append(end + way * np.sin(angle) * size / length)
+        share.append(end + sign * np.sin(angle) * size / length)
         width.append(np.cos(angle)[:, None] * piece.half_widths[end])
     shares = np.concatenate([share[0][::-1], inner, share[1]])
     shaft = piece.half_widths[0] + inner[:, None] * (piece.half_widths[1] - piece.half_widths[0])
@@ -151,7 +151,7 @@ def _foot(body: Body, piece: Piece, spacing_m: float) -> _Tube:
     center = np.stack([np.full_like(along, ankle[0]), along, low + 0.5 * height], axis=-1)
     across, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     color = np.tile(SHOE * _side_color(piece.segment), (len(along), 1))
-    frame = foot_frame(body, piece.segment)
+    frame = foot_frame_index(body, piece.segment)
     return _Tube(frame, center, half_width[:, None] * across, 0.5 * height[:, None] * up, color)
 
 
@@ -165,14 +165,14 @@ def _points(tube: _Tube, spacing_m: float) -> tuple[int, Array, Array, Array]:
     around = np.linspace(0.0, 2.0 * np.pi, max(int(2.0 * np.pi * widest / spacing_m), 12), endpoint=False)
     cos, sin = np.cos(around)[:, None], np.sin(around)[:, None]
     spoke = cos * tube.lateral[:, None] + sin * tube.sagittal[:, None]  # (R, S, 3)
-    place = tube.center[:, None] + spoke
+    point = tube.center[:, None] + spoke
     turn = cos * tube.sagittal[:, None] - sin * tube.lateral[:, None]
-    normal = np.cross(np.gradient(place, axis=0), turn)
+    normal = np.cross(np.gradient(point, axis=0), turn)
     normal *= np.sign(np.sum(normal * spoke, axis=-1, keepdims=True) + 1e-15)
-    # The poles, where rings are points, look along the line.
+    # At the poles, where rings are points, normals point along the line.
     pole = tube.center - tube.center.mean(axis=0)
     flat = np.linalg.norm(normal, axis=-1, keepdims=True) < 1e-12
     normal = np.where(flat, pole[:, None], normal)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    color = np.broadcast_to(tube.color[:, None], place.shape)
-    return tube.frame, place.reshape(-1, 3), normal.reshape(-1, 3), color.reshape(-1, 3)
+    color = np.broadcast_to(tube.color[:, None], point.shape)
+    return tube.frame, point.reshape(-1, 3), normal.reshape(-1, 3), color.reshape(-1, 3)

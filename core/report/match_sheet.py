@@ -22,18 +22,18 @@ STRIP = 34
 
 
 def shown_keyframes(take: Take, most: int = MOST) -> tuple[Keyframe, ...]:
-    """The keyframes that a sheet shows: all, or evenly chosen ones of many."""
+    """The keyframes that a sheet shows: all, or evenly spaced ones of many."""
     count = len(take.keyframes)
     chosen = np.unique(np.round(np.linspace(0, count - 1, min(most, count))).astype(np.intp))
-    return tuple(take.keyframes[place] for place in chosen)
+    return tuple(take.keyframes[index] for index in chosen)
 
 
 def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
-    """Draw a take's keyframes over its footage, each with what it was matched with and how probable that is.
+    """Draw a take's keyframes over its footage, each with the matched posture's name and its confidence.
 
     Args:
         take: A take with matched keyframes, and maybe posed ones.
-        images: Frames of the clip by position, one for each of `shown_keyframes`.
+        images: Frames of the clip by frame index, one for each of `shown_keyframes`.
 
     Returns:
         (height, width, 3) picture.
@@ -43,7 +43,7 @@ def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
     picture = round(CELL_WIDTH * height / width)
     matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
     libraries = sorted({keyframe.matched.library for keyframe in take.keyframes if keyframe.matched})
-    title = _plain(f"Matched with {', '.join(libraries)}: {matched} of {len(take.keyframes)} keyframes")
+    title = _ascii(f"Matched with {', '.join(libraries)}: {matched} of {len(take.keyframes)} keyframes")
     footer = (
         "Bar: how probably the match is about right. Numbers in the corner: scene frames; key: posed by hand."
     )
@@ -51,7 +51,7 @@ def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
         title, footer, [keyframe.index for keyframe in keyframes], COLUMNS, CELL_WIDTH, picture + STRIP
     )
     figure = posed_figure(take.body, Posture.stack([keyframe.posture for keyframe in keyframes]))
-    for place, (cell, keyframe) in enumerate(zip(cells, keyframes, strict=True)):
+    for index, (cell, keyframe) in enumerate(zip(cells, keyframes, strict=True)):
         tile = Canvas(cell.width, picture)
         tile.paste(paler(images[cell.frame]), 0, 0, cell.width, picture)
 
@@ -59,7 +59,7 @@ def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
             pixels, depth = take.camera.project(points, frame)
             return CELL_WIDTH / width * pixels, depth
 
-        draw_figure(tile, figure, place, project, LIMB_WIDTH, outlined=True)
+        draw_figure(tile, figure, index, project, LIMB_WIDTH, outlined=True)
         canvas.paste(tile.image(), cell.left, cell.top + STRIP, cell.width, picture)
         frame_label(canvas, cell, cell.frame + take.frame_start, keyframe.matched is None)
         _caption(canvas, cell, keyframe.matched)
@@ -74,7 +74,7 @@ def _caption(canvas: Canvas, cell: Cell, matched: Matched | None) -> None:
         canvas.text("posed", cell.left + 7.0, cell.top + 15.0, 9.0, ACCENT)
         return
     percent = f"{'mirrored, ' if matched.mirrored else ''}{100.0 * matched.confidence:.0f}%"
-    name = _plain(matched.posture)
+    name = _ascii(matched.posture)
     room = cell.width - canvas.text_width(percent) - 24.0
     while len(name) > 4 and canvas.text_width(name) > room:
         name = f"{name.rstrip('.')[:-1]}..."
@@ -87,6 +87,6 @@ def _caption(canvas: Canvas, cell: Cell, matched: Matched | None) -> None:
     canvas.box(left, y, left + matched.confidence * (right - left), y + 4.0, color)
 
 
-def _plain(words: str) -> str:
-    """Words in the letters that a canvas has."""
+def _ascii(words: str) -> str:
+    """The text in ASCII, which the canvas can write, with ? for every other character."""
     return words.encode("ascii", "replace").decode()

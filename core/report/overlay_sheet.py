@@ -26,7 +26,7 @@ def overlay_sheet(take: Take, motion: Motion, tracks: RegionTracks, images: Mapp
         take: The take.
         motion: Its motion.
         tracks: The markers' regions.
-        images: Frames of the clip by position, in the order to show them.
+        images: Frames of the clip by frame index, in the order to show them.
 
     Returns:
         (height, width, 3) picture.
@@ -46,7 +46,7 @@ def overlay_sheet(take: Take, motion: Motion, tracks: RegionTracks, images: Mapp
 
 
 def _tile(take: Take, figure: StickFigure, tracks: RegionTracks, image: Image, cell: Cell) -> Image:
-    """One frame; a canvas of its own cuts off what leaves the picture."""
+    """One frame on a canvas of its own, which clips what leaves the picture."""
     tile = Canvas(cell.width, cell.height)
     tile.paste(paler(image), 0, 0, cell.width, cell.height)
     scale = cell.width / take.camera.resolution[0]
@@ -63,7 +63,7 @@ def _tile(take: Take, figure: StickFigure, tracks: RegionTracks, image: Image, c
 
 
 def paler(image: Image) -> Image:
-    """The footage a little paler and grayer, so that what is drawn over it stands out."""
+    """The footage a little paler and grayer, so that drawings over it stand out."""
     gray = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
     mixed = 0.7 * image.astype(np.float64) + 0.12 * gray + 0.18 * 255.0
     return np.asarray(np.clip(mixed, 0.0, 255.0), dtype=np.uint8)

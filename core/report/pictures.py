@@ -12,7 +12,7 @@ from ..footage.region_tracks import RegionTracks
 from ..take.motion import Motion
 from ..take.take import Take
 from .canvas import SCALE, write_jpg, write_png
-from .contact_sheet import chosen_frames
+from .contact_sheet import evenly_spaced_frames
 from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import film_strip
 from .match_sheet import match_sheet, shown_keyframes
@@ -22,40 +22,40 @@ from .view_sheet import view_sheet
 
 VIEWS = ("front", "side", "top")
 STRIP = "strip.jpg"
-"""The one that stands for the take in a list of many."""
+"""The picture that stands for the take in a list."""
 PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRIP)
 """Names of the pictures."""
 MATCHES = "matches.png"
-"""Another, where keyframes were matched with a library."""
+"""One more picture, where keyframes were matched with a library."""
 
 
 def write_pictures(
     folder: Path, take: Take, motion: Motion, tracks: RegionTracks, speed: Array
 ) -> tuple[Path, ...]:
-    """Write all pictures; one more pass over the clip fetches the frames shown.
+    """Write all pictures; the frames that they show are decoded in one more pass over the clip.
 
     Args:
-        folder: Where to; made if missing.
+        folder: Folder for the pictures; made if missing.
         take: The take.
         motion: Its motion, F frames.
         tracks: The markers' regions.
         speed: (F,) V_sum [px/frame].
 
     Returns:
-        The files, in the order of `PICTURES`, and that of the matches where there are some.
+        Paths of the files in the order of `PICTURES`, then of `MATCHES` if it is written.
 
     Raises:
         OSError: A picture cannot be written.
         InputError: The clip can no longer be read.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    frames = chosen_frames(len(motion.time_s))
+    frames = evenly_spaced_frames(len(motion.time_s))
     matched = any(keyframe.matched is not None for keyframe in take.keyframes)
     keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
-    in_strip = chosen_frames(len(motion.time_s), STRIP_FRAMES)
+    in_strip = evenly_spaced_frames(len(motion.time_s), STRIP_FRAMES)
     wanted = sorted({*frames, *in_strip, *keyed})
     source = Clip.open(take.clip, fps=take.fps).source
-    shown = {frame: _as_shown(image) for frame, image in source.at(wanted)}
+    shown = {frame: _reduced(image) for frame, image in source.at(wanted)}
     found = {frame: shown[frame] for frame in frames if frame in shown}
     if not found:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
@@ -74,8 +74,8 @@ def write_pictures(
     return tuple(folder / name for name in (*PICTURES, *matches))
 
 
-def _as_shown(image: Image) -> Image:
-    """A frame no wider than a sheet draws it: dozens of whole ones of an 8K clip would fill the memory."""
+def _reduced(image: Image) -> Image:
+    """The frame, reduced to the width of a cell: dozens of full 8K frames would fill the memory."""
     height, width = image.shape[:2]
     most = CELL_WIDTH * SCALE
     if width <= most:

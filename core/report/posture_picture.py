@@ -1,4 +1,4 @@
-"""A small square picture of a posture, as an asset browser shows it, seen from where its limbs show."""
+"""A small square picture of a posture for an asset browser, from the direction that shows its limbs best."""
 
 import numpy as np
 
@@ -12,21 +12,21 @@ from .mannequin import View, draw_mannequin, view_axes
 SIZE = 256
 EDGE = 8
 TILT_RAD = 0.16
-"""Looking down a little, so that one sees where on the floor the feet are."""
+"""Downward tilt of the view, which shows where on the floor the feet are."""
 WALL = np.array([250.0, 249.0, 248.0])
 FLOOR = np.array([229.0, 225.0, 222.0])
 BEHIND_M = 0.45
-"""The wall stands so far behind the figure."""
+"""Distance of the wall behind the figure."""
 TURNS_RAD = np.radians(np.arange(-80.0, 81.0, 10.0))
-"""Views from the front half: faces are seen."""
-USUAL_RAD, UNUSUAL = np.radians(-50.0), 0.10
-"""People preferably look to the right of the picture: so much is lost for every radian away from there."""
-SHORTEST = 0.15
-"""A limb that looks shorter than this share of its length is as good as hidden."""
-WORST, WORST_COUNTS = 5, 0.3
-"""So many of a posture's limbs, those that look shortest, speak against a view."""
+"""Turns of the candidate views, all from the front, where the face is seen."""
+PREFERRED_TURN_RAD, TURN_PENALTY = np.radians(-50.0), 0.10
+"""Preferred turn, with the face to the right of the picture, and the loss of score per radian from it."""
+LEAST_FORESHORTENING = 0.15
+"""Projected share of a limb's length below which the limb counts as hidden."""
+WORST_LIMBS, WORST_WEIGHT = 5, 0.3
+"""Number of a posture's most foreshortened limbs that count against a view, and their weight."""
 FLESH_M = 0.07
-"""How far skin reaches beyond the joints."""
+"""Reach of the skin beyond the joints."""
 
 
 def posture_picture(body: Body, posture: Posture) -> Image:
@@ -36,8 +36,8 @@ def posture_picture(body: Body, posture: Posture) -> Image:
         (256, 256, 3) blue, green, red.
     """
     batch = Posture.stack([posture])
-    turn = showing_turn(body, batch)
-    seen = outermost(body, batch, turn)[0]
+    turn = best_view_turn(body, batch)
+    seen = projected_landmarks(body, batch, turn)[0]
     floor_y = float(posture.translation * [1.0, 1.0, 0.0] @ view_axes(turn, TILT_RAD)[1])
     low = min(float(seen[:, 1].min()) - FLESH_M, floor_y - 0.1)
     high = float(seen[:, 1].max()) + FLESH_M
@@ -46,16 +46,16 @@ def posture_picture(body: Body, posture: Posture) -> Image:
     scale = min(free / (high - low), free / (right - left), free / (1.08 * body.actor.stature_m))
     center = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE + scale * low)
     view = View(turn, TILT_RAD, scale, center)
-    return draw_mannequin(stage(SIZE, SIZE, center[1] - scale * floor_y, scale), body, posture, view)
+    return draw_mannequin(backdrop(SIZE, SIZE, center[1] - scale * floor_y, scale), body, posture, view)
 
 
-def stage(height: int, width: int, floor: float, scale: float) -> Image:
+def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
     """A floor before a wall.
 
     Args:
-        height: Of the picture.
-        width: Of the picture.
-        floor: Where on it, downwards, the floor under the figure lies.
+        height: Height of the picture.
+        width: Width of the picture.
+        floor: Picture row of the floor under the figure.
         scale: Pixels a meter.
     """
     rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
@@ -66,34 +66,34 @@ def stage(height: int, width: int, floor: float, scale: float) -> Image:
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
 
 
-def showing_turn(body: Body, postures: Posture) -> float:
-    """From where, around the world's Z, limbs show best over a batch of postures (K) [rad]."""
+def best_view_turn(body: Body, postures: Posture) -> float:
+    """Turn of the view around the world's Z that shows limbs best over a batch of postures (K) [rad]."""
     ahead = -postures.rotations[:, 0, :, 1]
     heading = facing_rad(ahead.mean(axis=0))
-    places, limbs = _places(body, postures), _limbs(body, postures)
-    apart = places[:, :, None] - places[:, None]
-    away = np.abs(TURNS_RAD - USUAL_RAD)
-    shown = [_shown(apart, limbs, heading + turn) for turn in TURNS_RAD]
-    return float(heading + TURNS_RAD[np.argmax(np.array(shown) - UNUSUAL * away)])
+    landmarks, limbs = _landmarks(body, postures), _limbs(body, postures)
+    offsets = landmarks[:, :, None] - landmarks[:, None]
+    deviation = np.abs(TURNS_RAD - PREFERRED_TURN_RAD)
+    scores = [_view_score(offsets, limbs, heading + turn) for turn in TURNS_RAD]
+    return float(heading + TURNS_RAD[np.argmax(np.array(scores) - TURN_PENALTY * deviation)])
 
 
-def _shown(apart: Array, limbs: Array, turn_rad: float) -> float:
-    """How well limbs show in a view, over all postures: far apart, and not pointing at the eye.
+def _view_score(offsets: Array, limbs: Array, turn_rad: float) -> float:
+    """Score of a view over all postures: landmarks far apart, and few limbs pointing at the eye.
 
     Args:
-        apart: (K, N, N, 3) from each place to each other one [m].
+        offsets: (K, N, N, 3) from each landmark to each other one [m].
         limbs: (K, S, 3) from each segment's start to its end [m].
-        turn_rad: Of the view.
+        turn_rad: Turn of the view.
     """
     axes = view_axes(turn_rad, TILT_RAD)[:2]
-    aside = _length(apart @ axes.T).mean() / _length(apart).mean()
-    share = np.maximum(_length(limbs @ axes.T) / _length(limbs), SHORTEST)
-    worst = np.sort(np.log(share), axis=1)[:, :WORST].mean()
-    return float(aside + WORST_COUNTS * worst)
+    aside = _length(offsets @ axes.T).mean() / _length(offsets).mean()
+    share = np.maximum(_length(limbs @ axes.T) / _length(limbs), LEAST_FORESHORTENING)
+    worst = np.sort(np.log(share), axis=1)[:, :WORST_LIMBS].mean()
+    return float(aside + WORST_WEIGHT * worst)
 
 
 def _limbs(body: Body, postures: Posture) -> Array:
-    """(K, S, 3) [m]."""
+    """(K, S, 3) vectors from start to end of each segment [m]."""
     pose = body.pose(postures)
     ends = [body.segment_ends(pose, segment.name) for segment in body.skeleton.segments]
     return np.stack([end - start for start, end in ends], axis=1)
@@ -103,13 +103,13 @@ def _length(vector: Array) -> Array:
     return np.asarray(np.linalg.norm(vector, axis=-1))
 
 
-def outermost(body: Body, postures: Posture, turn_rad: float) -> Array:
-    """Joints, crown and tips of a batch (K) of postures in a view, (K, N, 2): meters right and up."""
-    return np.asarray(_places(body, postures) @ view_axes(turn_rad, TILT_RAD)[:2].T)
+def projected_landmarks(body: Body, postures: Posture, turn_rad: float) -> Array:
+    """Joints, crown and tips of a batch (K) of postures in a view, (K, N, 2) to the right and up [m]."""
+    return np.asarray(_landmarks(body, postures) @ view_axes(turn_rad, TILT_RAD)[:2].T)
 
 
-def _places(body: Body, postures: Posture) -> Array:
-    """(K, N, 3) [m]."""
+def _landmarks(body: Body, postures: Posture) -> Array:
+    """(K, N, 3) joints, tips of hands and feet, and crown [m]."""
     pose = body.pose(postures)
     tips = [body.segment_ends(pose, f"{part}.{side}")[1] for part in ("hand", "foot") for side in ("L", "R")]
     neck, head = body.segment_ends(pose, "head")

@@ -17,8 +17,8 @@ def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int
     Args:
         speed: (F,) sum over the markers of their centroids' speeds [px/frame] (paper, eq. 8); NaN breaks
             the curve.
-        keyframe_indices: Positions in the clip that are keyframes.
-        frame_start: Scene frame of position 0.
+        keyframe_indices: Frame indices of the keyframes.
+        frame_start: Scene frame of index 0.
 
     Returns:
         (height, width, 3) picture.
@@ -30,13 +30,13 @@ def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int
     last = frame_start + max(len(speed) - 1, 1)
     axes = Axes(canvas, (frame_start, last), top)
     axes.draw(ticks(frame_start, last, 14), levels)
-    curve = np.array([axes.place(frame_start + index, value) for index, value in enumerate(speed)])
+    curve = np.array([axes.to_canvas(frame_start + index, value) for index, value in enumerate(speed)])
     canvas.line(curve.reshape(-1, 2), LEFT, 1.6)
     for index in sorted(keyframe_indices):
         value = float(speed[index]) if np.isfinite(speed[index]) else 0.0
-        _mark_keyframe(canvas, axes.place(frame_start + index, value), axes.floor)
-    axes.name("Speed of the markers over the clip", "scene frame", "sum of speeds [px/frame]")
-    _explain(canvas, axes.right)
+        _mark_keyframe(canvas, axes.to_canvas(frame_start + index, value), axes.floor)
+    axes.label("Speed of the markers over the clip", "scene frame", "sum of speeds [px/frame]")
+    _draw_legend(canvas, axes.right)
     return canvas.image()
 
 
@@ -47,7 +47,7 @@ def _mark_keyframe(canvas: Canvas, at: tuple[float, float], floor: float) -> Non
     canvas.disc(at, 1.8, LEFT)
 
 
-def _explain(canvas: Canvas, right: float) -> None:
+def _draw_legend(canvas: Canvas, right: float) -> None:
     canvas.text("keyframe", right, 31.0, 9.0, INK, "right")
     at = right - canvas.text_width("keyframe") - 14.0
     canvas.ring([at, 26.5], 6.0, ACCENT, 1.8)

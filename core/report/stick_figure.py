@@ -12,25 +12,25 @@ from ..take.motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
 
 Projection = Callable[[Array], tuple[Array, Array]]
-"""World points (N, 3) to places on the canvas (N, 2) and depths (N,), greater being farther."""
+"""From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
 
 HEAD_RADIUS = 0.055
-"""Of the stature; the head point is the head's center."""
+"""In statures; the head point is the head's center."""
 
 
 @dataclass(frozen=True)
 class Limb:
-    """A line through places of the body, for every frame."""
+    """A line through points of the body, for every frame."""
 
     side: str
     """`L`, `R`, or empty for the trunk."""
-    places: Array
+    points: Array
     """(F, N, 3) [m]."""
 
 
 @dataclass(frozen=True)
 class StickFigure:
-    """What of a motion is drawn."""
+    """The limbs and the head of a motion's performer."""
 
     limbs: tuple[Limb, ...]
     head: Array
@@ -44,25 +44,25 @@ def stick_figure(motion: Motion) -> StickFigure:
 
 
 def posed_figure(body: Body, posture: Posture) -> StickFigure:
-    """The same of a batch of F postures, each of which counts as a frame."""
+    """The lines of a batch of F postures, each of which counts as a frame."""
     pose = body.pose(posture)
     return _figure(body, pose, body.points(pose))
 
 
 def _figure(body: Body, pose: Pose, points: Array) -> StickFigure:
-    place = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
+    by_name = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
     limbs = []
     for side in ("L", "R"):
         for joints, end in ((("shoulder", "elbow", "wrist"), "hand"), (("hip", "knee", "ankle"), "foot")):
-            line = [place[f"{joint}.{side}"] for joint in joints]
+            line = [by_name[f"{joint}.{side}"] for joint in joints]
             limbs.append(Limb(side, np.stack([*line, _tip(body, pose, f"{end}.{side}")], axis=1)))
-    hips = 0.5 * (place["hip.L"] + place["hip.R"])
-    shoulders = 0.5 * (place["shoulder.L"] + place["shoulder.R"])
+    hips = 0.5 * (by_name["hip.L"] + by_name["hip.R"])
+    shoulders = 0.5 * (by_name["shoulder.L"] + by_name["shoulder.R"])
     waist = body.segment_ends(pose, "chest")[0]
-    limbs.append(Limb("", np.stack([hips, waist, shoulders, place["head"]], axis=1)))
-    limbs.append(Limb("", np.stack([place["hip.L"], hips, place["hip.R"]], axis=1)))
-    limbs.append(Limb("", np.stack([place["shoulder.L"], shoulders, place["shoulder.R"]], axis=1)))
-    return StickFigure(tuple(limbs), place["head"], HEAD_RADIUS * body.actor.stature_m)
+    limbs.append(Limb("", np.stack([hips, waist, shoulders, by_name["head"]], axis=1)))
+    limbs.append(Limb("", np.stack([by_name["hip.L"], hips, by_name["hip.R"]], axis=1)))
+    limbs.append(Limb("", np.stack([by_name["shoulder.L"], shoulders, by_name["shoulder.R"]], axis=1)))
+    return StickFigure(tuple(limbs), by_name["head"], HEAD_RADIUS * body.actor.stature_m)
 
 
 def _tip(body: Body, pose: Pose, segment: str) -> Array:
@@ -75,16 +75,16 @@ def draw_figure(
     """Draw the figure of one frame.
 
     Args:
-        canvas: Where to.
+        canvas: The canvas to draw on.
         figure: The figure.
-        frame: Position in the clip.
-        project: Takes world points to the canvas.
-        width: Thickness of a limb in picture units.
-        outlined: Whether a dark edge sets it off from a picture below.
+        frame: Frame index in the clip.
+        project: Projection of world points to the canvas.
+        width: Thickness of a limb [px].
+        outlined: Whether a white edge sets it off from the picture below.
     """
     parts: list[tuple[float, Limb | None]] = []
     for limb in figure.limbs:
-        _, depth = project(limb.places[frame])
+        _, depth = project(limb.points[frame])
         parts.append((float(np.nan_to_num(depth).mean()), limb))
     _, depth = project(figure.head[frame][None])
     parts.append((float(np.nan_to_num(depth)[0]), None))
@@ -92,19 +92,19 @@ def draw_figure(
         if part is None:
             _draw_head(canvas, figure, frame, project, width, outlined)
         else:
-            places, _ = project(part.places[frame])
-            _draw_limb(canvas, places, part.side, width, outlined)
+            points, _ = project(part.points[frame])
+            _draw_limb(canvas, points, part.side, width, outlined)
 
 
-def _draw_limb(canvas: Canvas, places: Array, side: str, width: float, outlined: bool) -> None:
+def _draw_limb(canvas: Canvas, points: Array, side: str, width: float, outlined: bool) -> None:
     color = {"L": LEFT, "R": RIGHT}.get(side, INK)
     thickness = width if side else 0.8 * width
     if outlined:
-        canvas.line(places, WHITE, thickness + 2.0)
-    canvas.line(places, color, thickness)
+        canvas.line(points, WHITE, thickness + 2.0)
+    canvas.line(points, color, thickness)
     if side == "R":
-        canvas.line(places, WHITE, 0.4 * thickness)
-    for joint in places[:-1] if side else ():
+        canvas.line(points, WHITE, 0.4 * thickness)
+    for joint in points[:-1] if side else ():
         canvas.disc(joint, 0.85 * width, color)
         if side == "R":
             canvas.disc(joint, 0.45 * width, WHITE)
@@ -114,7 +114,7 @@ def _draw_head(
     canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, outlined: bool
 ) -> None:
     center = figure.head[frame]
-    # A step in each direction of space, the longest of which is the radius whatever the view.
+    # A step along each axis of space; the longest projection is the radius in any view.
     rim, _ = project(center + figure.head_radius_m * np.vstack([np.eye(3), np.zeros((1, 3))]))
     radius = float(np.linalg.norm(rim[:3] - rim[3], axis=-1).max())
     if not np.isfinite(radius):
@@ -125,7 +125,7 @@ def _draw_head(
 
 
 def legend(canvas: Canvas, right: float, y: float) -> None:
-    """Say which limbs are the performer's left and which the right, ending at `right`."""
+    """Draw the legend of left and right limbs, ending at `right`."""
     words: tuple[tuple[str, str, Color], ...] = (("R", "right", RIGHT), ("L", "left", LEFT))
     for side, word, color in words:
         text = f"performer's {word}"

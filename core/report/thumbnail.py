@@ -1,4 +1,4 @@
-"""A small square picture of a motion: three of its poses side by side, as an asset browser shows it."""
+"""A small square picture of a motion for an asset browser: three of its poses side by side."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ SIZE = 256
 PAPER = (250, 249, 248)
 POSES = 3
 TURN_RAD = 0.5
-"""How far the eye stands to the side of the performer's front: limbs show best from there."""
+"""Turn of the view from the performer's front, from where limbs show best."""
 EDGE = 14
 LIMB_WIDTH = 5.0
 
@@ -28,8 +28,8 @@ def thumbnail(motion: Motion) -> Image:
     frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
     figure = stick_figure(motion)
     axes = _axes(motion)
-    places = np.concatenate([limb.places for limb in figure.limbs], axis=1)[frames]  # (K, N, 3)
-    seen = places @ axes.T
+    points = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames]  # (K, N, 3)
+    seen = points @ axes.T
     middle = 0.5 * (seen[..., 0].max(axis=1) + seen[..., 0].min(axis=1))  # (K,)
     floor, top = seen[..., 1].min(), seen[..., 1].max() + figure.head_radius_m
     wide = float(np.ptp(seen[..., 0], axis=1).max())
@@ -54,6 +54,6 @@ def _axes(motion: Motion) -> Array:
     """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
     names = motion.body.skeleton.point_names
     side = (motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")]).mean(axis=0)
-    angle = float(np.arctan2(side[1], side[0])) + TURN_RAD  # the performer's left is the eye's right
+    angle = float(np.arctan2(side[1], side[0])) + TURN_RAD  # the performer's left is on the right of the view
     right = np.array([np.cos(angle), np.sin(angle), 0.0])
     return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

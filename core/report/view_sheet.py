@@ -1,4 +1,4 @@
-"""The motion from directions the camera did not have: the paper's Figures 10 and 11."""
+"""Contact sheets of the motion from the front, the side and above: the paper's Figures 10 and 11."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ def view_sheet(view: str, motion: Motion, camera: Camera, frames: Sequence[int])
         view: `front`, `side` or `top`.
         motion: The motion.
         camera: The camera, whose direction is the front.
-        frames: Positions in the clip.
+        frames: Frame indices in the clip.
 
     Returns:
         (height, width, 3) picture.
@@ -56,18 +56,18 @@ def view_sheet(view: str, motion: Motion, camera: Camera, frames: Sequence[int])
 
 @dataclass(frozen=True)
 class _Window:
-    """What of the view's plane a cell shows."""
+    """The part of the view's plane that a cell shows."""
 
     scale: float
-    """Picture units a meter."""
+    """Pixels a meter."""
     low_m: float
-    """Height of the cell's lower edge over the origin."""
+    """Height of the cell's lower edge above the origin."""
 
 
 def _axes(view: str, camera: Camera) -> Array:
     """World directions (3, 3) that a view shows to the right, upwards, and away from the eye, as rows."""
-    sight = -camera.matrix_world.reshape(-1, 4, 4)[0, :3, 2]
-    level = sight - (sight @ UP) * UP
+    viewing = -camera.matrix_world.reshape(-1, 4, 4)[0, :3, 2]
+    level = viewing - (viewing @ UP) * UP
     if np.linalg.norm(level) < 0.1:  # looking straight down or up: the picture's upper edge is ahead
         level = camera.matrix_world.reshape(-1, 4, 4)[0, :3, 1] * [1.0, 1.0, 0.0]
     ahead = level / np.linalg.norm(level)
@@ -80,14 +80,14 @@ def _axes(view: str, camera: Camera) -> Array:
 
 
 def _origin(motion: Motion, keep_height: bool) -> Array:
-    """(F, 3) place about which each frame is drawn: the hips' midpoint, or the ground under it."""
+    """(F, 3) origin of the drawing of each frame: the hips' midpoint, or the ground under it [m]."""
     names = motion.body.skeleton.point_names
     hips = motion.points[:, [names.index("hip.L"), names.index("hip.R")]].mean(axis=1)
     return hips * [1.0, 1.0, 0.0] if keep_height else hips
 
 
 def _floor_height(motion: Motion) -> float:
-    """The ground plane where the feet are near it, else the lowest ankle [m]."""
+    """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
     names = motion.body.skeleton.point_names
     lowest = float(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2].min())
     return 0.0 if abs(lowest) < FLOOR_WITHIN_M else lowest
@@ -97,8 +97,8 @@ def _window(
     figure: StickFigure, origin: Array, axes: Array, frames: Sequence[int], floor: float | None
 ) -> _Window:
     chosen = list(frames)
-    places = np.concatenate([limb.places for limb in figure.limbs], axis=1)[chosen] - origin[chosen, None]
-    across, heights = places @ axes[0], places @ axes[1]  # (K, N)
+    points = np.concatenate([limb.points for limb in figure.limbs], axis=1)[chosen] - origin[chosen, None]
+    across, heights = points @ axes[0], points @ axes[1]  # (K, N)
     low = heights.min() if floor is None else min(heights.min(), floor)
     high = heights.max() + figure.head_radius_m
     width, height = 2.0 * (np.abs(across).max() + PADDING_M), high - low + 2.0 * PADDING_M
@@ -126,8 +126,8 @@ def _tile(
 
     def project(points: Array) -> tuple[Array, Array]:
         right, upward, away = axes @ (points - origin).T
-        places = np.stack([middle + scale * right, cell.height - scale * (upward - window.low_m)], axis=-1)
-        return places, away
+        points = np.stack([middle + scale * right, cell.height - scale * (upward - window.low_m)], axis=-1)
+        return points, away
 
     draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=False)
     return tile.image()

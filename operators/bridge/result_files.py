@@ -4,7 +4,6 @@ Both are made from a scene of their own, which exists only meanwhile: what the r
 its undo history and its window are not touched.
 """
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -33,13 +32,14 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
 
     The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
     colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
-    Each file is written beside its place and moved there when complete.
+    A failure may leave half a file at these paths: the caller passes a staging folder and moves the files
+    when both are complete, as `operators/cli/conversion` does.
 
     Args:
         take: Clip, camera, body and markers.
-        motion: What to write.
-        blend_path: The .blend's place; its folder exists.
-        bvh_path: The BVH's place, or None for none.
+        motion: The motion to write.
+        blend_path: Path of the .blend; its folder exists.
+        bvh_path: Path of the BVH; None writes none.
 
     Returns:
         SHA-256 of the Action's curves: files of one motion differ, their curves do not.
@@ -50,11 +50,9 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
     """
     with own_scene(f"{take.name} Motion") as scene:
         armature_object = fill_scene(scene, take, motion)
-        with _moved_into_place(blend_path) as path:
-            write_blend(path, {scene}, path_remap="RELATIVE_ALL", fake_user=False)
+        write_blend(blend_path, {scene}, path_remap="RELATIVE_ALL", fake_user=False)
         if bvh_path is not None:
-            with _moved_into_place(bvh_path) as path:
-                write_bvh(armature_object, path)
+            write_bvh(armature_object, bvh_path)
         return curve_digest(armature_object)
 
 
@@ -112,14 +110,3 @@ def own_scene(name: str) -> Iterator[bpy.types.Scene]:
             if block.as_pointer() not in known
         ]
         bpy.data.batch_remove(made)
-
-
-@contextmanager
-def _moved_into_place(path: Path) -> Iterator[Path]:
-    """A path beside `path`; what is written there is moved to `path` at the end, or removed on failure."""
-    beside = path.with_name(f".{path.stem.lstrip('.')}-{os.getpid()}{path.suffix}")
-    try:
-        yield beside
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)

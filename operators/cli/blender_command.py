@@ -5,22 +5,22 @@ from typing import Any
 import bpy
 
 _registered: list[Any] = []
-"""Blender's handle of the command, which it wants back to take the command away."""
+"""The handle by which Blender unregisters the command."""
 
 
 def run_command(arguments: list[str]) -> int:
-    """Run the command line with what follows the command's name; returns the exit status."""
+    """Run the command line with the arguments after the command's name; returns the exit status."""
     from .main import main
 
     return main(arguments)
 
 
 def register() -> None:
-    """Add the command."""
+    """Register the command."""
     _registered.append(bpy.utils.register_cli_command("keymark", run_command))
 
 
 def unregister() -> None:
-    """Take the command away."""
+    """Unregister the command."""
     while _registered:
         bpy.utils.unregister_cli_command(_registered.pop())

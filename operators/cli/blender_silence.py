@@ -1,4 +1,4 @@
-"""Keeping Blender's own messages out of what a command says."""
+"""Silence for C code, whose messages would mix with a command's output."""
 
 import ctypes
 import os
@@ -11,13 +11,13 @@ from typing import Any
 
 @contextmanager
 def blender_silence(debug: bool) -> Iterator[None]:
-    """Send what C code writes meanwhile on standard output and error to nowhere.
+    """Discard what C code writes on standard output and standard error meanwhile.
 
-    Blender writes past Python, on the file descriptors themselves: to a reader of one JSON object its
-    chatter would be an error.
+    Blender writes past Python, on the file descriptors themselves; its messages would make the one JSON
+    object of `--json` unreadable.
 
     Args:
-        debug: Whether to let the chatter through, on standard error.
+        debug: Whether to let the messages through, on standard error.
     """
     _flush()
     try:
@@ -25,24 +25,24 @@ def blender_silence(debug: bool) -> Iterator[None]:
     except OSError:  # a process without standard streams has nothing to keep clean
         yield
         return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
+    null = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(2 if debug else nowhere, 1)
+        os.dup2(2 if debug else null, 1)
         if not debug:
-            os.dup2(nowhere, 2)
-        with _any_letters():
+            os.dup2(null, 2)
+        with _escaping_output():
             yield
     finally:
         _flush()
         for descriptor, copy in zip((1, 2), kept, strict=True):
             os.dup2(copy, descriptor)
             os.close(copy)
-        os.close(nowhere)
+        os.close(null)
 
 
 @contextmanager
-def _any_letters() -> Iterator[None]:
-    """Let every letter be printed: Blender's exporters print paths, which a pipe on Windows may not take."""
+def _escaping_output() -> Iterator[None]:
+    """Escape what standard output cannot encode, as in paths that Blender's exporters print on Windows."""
     stream = sys.stdout
     if not isinstance(stream, TextIOWrapper):
         yield
@@ -56,7 +56,7 @@ def _any_letters() -> Iterator[None]:
 
 
 def _flush() -> None:
-    """Empty Python's buffers and C's, which would else be written later, elsewhere."""
+    """Flush the buffers of Python and C, which would else be written after the descriptors have changed."""
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             with suppress(OSError, ValueError):
@@ -68,22 +68,22 @@ def _flush() -> None:
 
 @contextmanager
 def codec_silence(debug: bool) -> Iterator[None]:
-    """Send what C code writes meanwhile on standard error to nowhere; Python's own words still come through.
+    """Discard what C code writes on standard error meanwhile; Python's own lines still come through.
 
-    Decoders of images complain of damaged ones there, where our one sentence shall stand.
+    Image decoders write warnings about damaged files there, beside our one sentence.
 
     Args:
-        debug: Whether to let the complaints through.
+        debug: Whether to let the warnings through.
     """
-    if debug or not _is_descriptor(sys.stderr, 2):
+    if debug or not _has_descriptor(sys.stderr, 2):
         yield
         return
     before = sys.stderr
     before.flush()
     with open(os.dup(2), "w", encoding=before.encoding, errors=before.errors, buffering=1) as own:
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, 2)
-        os.close(nowhere)
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 2)
+        os.close(null)
         sys.stderr = own
         try:
             yield
@@ -93,8 +93,8 @@ def codec_silence(debug: bool) -> Iterator[None]:
             os.dup2(own.fileno(), 2)
 
 
-def _is_descriptor(stream: Any, number: int) -> bool:
+def _has_descriptor(stream: Any, number: int) -> bool:
     try:
         return bool(stream.fileno() == number)
-    except (AttributeError, OSError, ValueError):  # a stand-in, or closed
+    except (AttributeError, OSError, ValueError):  # a replacement without a descriptor, or a closed stream
         return False

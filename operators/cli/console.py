@@ -1,4 +1,4 @@
-"""What a command says: text or JSON on standard output, and progress."""
+"""Output of a command: text or JSON on standard output, and progress."""
 
 import argparse
 import json
@@ -10,18 +10,18 @@ from typing import Any
 
 from ...core.errors import ConversionError
 from ...core.progress import Progress
-from .line_parser import complain
-from .line_wrapping import broken, terminal_columns
-from .openjd_progress import FarmProgress, is_wanted
+from .line_wrapping import terminal_columns, wrapped
+from .openjd_progress import OpenjdProgress, is_wanted
+from .usage import print_error
 
 JOB_SHARE = 0.9
-"""What the job is of all a command does; the rest is writing files."""
+"""Share of a command's progress that the job has; the rest is writing files."""
 
 
 class Console:
-    """Progress, text and results of one command, as its options ask for; also its stopwatch.
+    """Progress, text and results of one command, as its options ask for; also times its stages.
 
-    On a terminal progress is a bar on standard error, where tqdm is at hand; else a line of text for each
+    On a terminal progress is a bar on standard error, where tqdm is installed; else a line of text for each
     stage, or the lines that a render farm asks for. With `--json` standard output gets one object and nothing
     else, with `--quiet` nothing at all.
     """
@@ -35,7 +35,7 @@ class Console:
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
         if is_wanted() and not quiet and not as_json:
-            self._bar = FarmProgress(self._write)
+            self._bar = OpenjdProgress(self._write)
 
     def __enter__(self) -> "Console":
         """Start the command."""
@@ -47,18 +47,18 @@ class Console:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Take the bar away, whatever happened."""
+        """Close the bar, also after an error."""
         self._close_bar()
 
     def progress(self, progress: Progress) -> None:
-        """Take note of how far the job is."""
+        """Show the progress of the job."""
         if progress.stage != self._stage and progress.fraction < 1.0:
             self.stage(progress.stage)
         if self._bar is not None:
             self._bar.update(max(0.0, 100.0 * JOB_SHARE * progress.fraction - self._bar.n))
 
     def stage(self, name: str) -> None:
-        """Begin a stage; the time until the next one counts as its own."""
+        """Begin a stage; the time until the next one is pluralize as its time."""
         if name == self._stage:
             return
         self._stop()
@@ -69,27 +69,27 @@ class Console:
             self._write(f"{name} ...")
 
     def overall(self, fraction: float, name: str) -> None:
-        """Show how far many jobs are together, 0 to 1, and in a few words what they are doing."""
+        """Show the progress of many jobs together, 0 to 1, with a few words on their state."""
         if self._bar is not None:
             self._bar.set_description(name, refresh=name != self._overall)
             self._overall = name
             self._bar.update(max(0.0, 100.0 * fraction - self._bar.n))
 
-    def take(self, text: str, error: str | None) -> None:
-        """Say in a line what became of one of many takes; with `--quiet` only if that is an error."""
+    def take_line(self, text: str, error: str | None) -> None:
+        """Write a line on the outcome of one of many takes; with `--quiet` only an error."""
         if self.as_json or (self.quiet and error is None):
             return
         if self.quiet:
-            complain(error or "")
+            print_error(error or "")
             return
         if self._bar is not None:
             self._bar.clear()
-        self._write("\n".join(broken(" ".join(text.split("\n")), 0, terminal_columns())))
+        self._write("\n".join(wrapped(" ".join(text.split("\n")), 0, terminal_columns())))
         if self._bar is not None:
             self._bar.refresh()
 
     def finish(self, result: dict[str, Any], text: str) -> None:
-        """Say the result: the object with `--json`, else the text."""
+        """Write the result: the object with `--json`, else the text."""
         self._stop()
         self._close_bar()
         if self.as_json:
@@ -111,9 +111,9 @@ class Console:
             self._bar = None
 
     def _write(self, text: str) -> None:
-        """Write a line; where that fails, nothing more is written, and the work goes on.
+        """Write a line; where that fails, write nothing more and go on with the work.
 
-        The reader has had enough, the disk of a log is full, or the terminal is gone.
+        It fails where the reader has closed the pipe, the disk of a log is full, or the terminal is gone.
         """
         encoding = sys.stdout.encoding or "utf-8"
         try:
@@ -128,7 +128,7 @@ class Console:
 
 
 def arguments_console(arguments: argparse.Namespace) -> Console:
-    """The console that a command line asks for."""
+    """The console that the options of a command ask for."""
     return Console(quiet=arguments.quiet, as_json=arguments.json, started=arguments.started)
 
 

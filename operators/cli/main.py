@@ -15,12 +15,12 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
-from .arguments import build_parser
 from .blender_silence import codec_silence
-from .line_parser import UsageError, complain
+from .parser import build_parser
+from .usage import UsageError, print_error
 
-AS_IN_BLENDER = ["--command", "keymark"]
-"""What Blender needs in front of a command may stand here as well, so that farms call both programs alike."""
+BLENDER_PREFIX = ["--command", "keymark"]
+"""What Blender needs before a command; accepted here too, so that farms call both programs alike."""
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
@@ -30,45 +30,47 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command.
 
     Args:
-        argv: The words after the program's name; by default the process' own.
+        argv: The arguments after the program's name; by default those of the process.
 
     Returns:
         The exit status.
     """
     _open_standard_streams()
     words = list(sys.argv[1:] if argv is None else argv)
-    if words[: len(AS_IN_BLENDER)] == AS_IN_BLENDER:
-        words = words[len(AS_IN_BLENDER) :]
+    if words[: len(BLENDER_PREFIX)] == BLENDER_PREFIX:
+        words = words[len(BLENDER_PREFIX) :]
     debug = "--debug" in words
-    if "numpy" not in sys.modules:  # which reads these once, when it is loaded
+    if "numpy" not in sys.modules:  # numpy reads these when it is loaded
         for variable in ONE_THREAD:
             os.environ.setdefault(variable, "1")
     started = time.perf_counter()
     try:
         arguments = build_parser().parse_args(words)
         arguments.started = started
-        with _terminable(), codec_silence(debug):
+        with _sigterm_as_interrupt(), codec_silence(debug):
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE
     except KeyboardInterrupt as stop:
-        return _say(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
+        return _fail(str(stop) or "interrupted; nothing was written", INTERRUPTED, debug)
     except (UsageError, InputError) as error:
-        return _say(str(error), UNUSABLE, debug)
+        return _fail(str(error), UNUSABLE, debug)
     except KeymarkError as error:
-        return _say(str(error), FAILED, debug)
+        return _fail(str(error), FAILED, debug)
     except ImportError as error:
         lacking = f"the Python module {error.name}" if error.name else "a Python module"
-        return _say(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
+        return _fail(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
     except Exception as error:
-        return _say(f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where", FAILED, debug)
+        return _fail(
+            f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where", FAILED, debug
+        )
 
 
 def _open_standard_streams() -> None:
-    """Let nobody hear what a process says that was started with closed streams.
+    """Open the null device for standard streams that were closed when the process started.
 
-    Else the next files to be opened got their numbers, and what Blender says would be written into these.
+    Else the next files to be opened got their descriptors, and Blender's messages were written into these.
     """
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         try:
@@ -79,17 +81,17 @@ def _open_standard_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))
 
 
-def _say(sentence: str, status: int, debug: bool) -> int:
-    """Write one line on standard error."""
+def _fail(sentence: str, status: int, debug: bool) -> int:
+    """Write one line on standard error; returns the exit status."""
     if debug:
         traceback.print_exc()
-    complain(sentence)
+    print_error(sentence)
     return status
 
 
 @contextmanager
-def _terminable() -> Iterator[None]:
-    """Let a polite request to end, as render farms send it, clean up as Ctrl-C does."""
+def _sigterm_as_interrupt() -> Iterator[None]:
+    """Treat SIGTERM, which render farms send, as Ctrl-C, so that the command cleans up."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,14 +1,14 @@
-"""Progress for render farms that read it from what a task writes: Open Job Description's lines."""
+"""Progress as lines of Open Job Description, which render farms read from a task's output."""
 
 import os
 from collections.abc import Callable
 
 VARIABLE, OPENJD = "KEYMARK_PROGRESS", "openjd"
-"""Environment variable that asks for it, and what it must be."""
+"""Environment variable that asks for these lines, and the value that does."""
 
 
-class FarmProgress:
-    """Takes the place of a bar: a line for each percent, and one for what is being done."""
+class OpenjdProgress:
+    """A line for each percent and one for each stage, with the interface of a tqdm bar."""
 
     def __init__(self, write: Callable[[str], object]) -> None:
         self.n = 0.0
@@ -17,13 +17,13 @@ class FarmProgress:
         self._text, self._percent = "", -1
 
     def set_description(self, text: str, refresh: bool = True) -> None:
-        """Say what is being done."""
+        """Write the status line of a new stage."""
         if text != self._text:
             self._text = text
             self._write(f"openjd_status: {text}")
 
     def update(self, more: float) -> None:
-        """Say how far it is, so many percent farther."""
+        """Add to the percentage and write a line for each whole percent."""
         self.n += more
         percent = min(int(self.n), 100)
         if percent > self._percent:
@@ -31,13 +31,13 @@ class FarmProgress:
             self._write(f"openjd_progress: {percent}")
 
     def clear(self) -> None:
-        """Lines need not make room for others."""
+        """Do nothing: lines need not make room for others."""
 
     def refresh(self) -> None:
-        """Lines stay."""
+        """Do nothing: lines stay."""
 
     def close(self) -> None:
-        """Nothing is left behind."""
+        """Do nothing: there is nothing to take away."""
 
 
 def is_wanted() -> bool:

@@ -1,4 +1,4 @@
-"""Which Keymark this is, as its manifest alone says."""
+"""Keymark's version and root folder."""
 
 import tomllib
 from pathlib import Path
@@ -7,6 +7,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def version() -> str:
-    """The version, which stands in the extension's manifest alone."""
+    """The version; the extension's manifest is its only source."""
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     return str(manifest["version"])

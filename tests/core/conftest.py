@@ -3,17 +3,17 @@
 from pathlib import Path
 
 import pytest
-from keymark.operators.cli.conversion import convert_take
+from keymark.operators.cli.conversion import blender_files, convert_take
 
 
 @pytest.fixture
 def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two files with no content in place of what Blender writes; tests/blender has the real ones."""
 
-    def write(_take: object, _motion: object, place: Path, _output: Path, _debug: bool) -> str:
-        for name in (convert_take.BLEND, convert_take.BVH):
-            (place / name).touch()
+    def write(_take: object, _motion: object, staging_folder: Path, _output: Path, _debug: bool) -> str:
+        for name in (blender_files.BLEND, blender_files.BVH):
+            (staging_folder / name).touch()
         return "0" * 64
 
-    monkeypatch.setattr(convert_take, "require_blender", lambda what: None)
-    monkeypatch.setattr(convert_take, "_write_scene", write)
+    monkeypatch.setattr(convert_take, "require_blender", lambda needing: None)
+    monkeypatch.setattr(convert_take, "write_blender_files", write)

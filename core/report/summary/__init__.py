@@ -1,1 +1,1 @@
-"""The page of a batch: a row a take, those first that need a person first."""
+"""The HTML page of a batch: a row a take, the takes that need work first."""

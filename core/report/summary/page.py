@@ -1,7 +1,7 @@
-"""The page that a supervisor opens in the morning: what converted, what failed and why, what needs a hand.
+"""The HTML page of a batch for its supervisor: which takes converted, which failed and why, which need work.
 
-It is one file with no other needed but the pictures it shows, which lie beside it. It says everything
-without its script, which only searches and sorts.
+The page is one file and needs no other but its pictures, which lie beside it. It is complete without its
+script, which only searches and sorts.
 """
 
 import base64
@@ -11,15 +11,14 @@ from pathlib import Path
 
 from ...shoot.outcomes.outcome import Outcome, Status
 from ...text import pluralize
-from .head import counts, first_things
+from .head import counts, urgent_items
 from .html_text import escaped, isolated, percent
-from .row import COLUMNS, SIGNS, kind, row
-from .script import SCRIPT
-from .style import STYLE
+from .row import COLUMNS, SIGNS, css_class, row
+from .style_and_script import SCRIPT, STYLE
 from .verdict import FAIR, GOOD, GOOD_WEAKEST, Verdict, sections
 
 MOST_ROWS = 5000
-"""A browser takes long to lay out more."""
+"""Largest number of takes on the page; browsers are slow to lay out more."""
 HEADINGS = {
     Verdict.FAILED: ("Failed", "The sentence says what would be valid."),
     Verdict.POOR: ("Poor", "Pose the frames that are named and convert again."),
@@ -34,24 +33,24 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
     """A batch as one HTML page.
 
     Args:
-        title: What people call the shoot.
-        outcomes: What became of each take.
-        output: Where the page will lie; links are relative to it.
+        title: Name of the shoot.
+        outcomes: The outcome of each take.
+        output: Folder of the page; links are relative to it.
     """
     named = sorted(outcomes, key=lambda outcome: outcome.take)
-    number = {outcome.take: place for place, outcome in enumerate(named, 1)}
+    number = {outcome.take: position for position, outcome in enumerate(named, 1)}
     found = sections(outcomes)
-    bodies, room = [], MOST_ROWS
+    bodies, free_rows = [], MOST_ROWS
     for verdict, those in found.items():
-        bodies.append(_section(verdict, those[:room], len(those), output, number))
-        room -= min(room, len(those))
+        bodies.append(_section(verdict, those[:free_rows], len(those), output, number))
+        free_rows -= min(free_rows, len(those))
     heads = "".join(f'<th role="columnheader" scope="col">{name}</th>' for name in COLUMNS)
     parts = (
         f"<header><h1>{isolated(title)}</h1>",
         counts(outcomes),
-        first_things(found, number),
+        urgent_items(found, number),
         "</header>",
-        _tools(found),
+        _navigation(found),
         '<main><table role="table"><caption>Takes, those that need a person first</caption>',
         f'<thead role="rowgroup"><tr role="row">{heads}</tr></thead>',
         *bodies,
@@ -78,7 +77,7 @@ def _document(title: str, body: str) -> str:
 
 
 def _source(text: str) -> str:
-    """What lets a browser take this very style or script, and no other."""
+    """The hash by which the Content Security Policy allows this style or script, and no other."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
@@ -90,17 +89,17 @@ def _section(
         advice += f" {count - len(outcomes)} of them are in summary.jsonl alone."
     rows = "\n".join(row(outcome, output, number[outcome.take]) for outcome in outcomes)
     return (
-        f'<tbody role="rowgroup" id="{kind(verdict)}"><tr role="row" class="section">'
-        f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind(verdict)}">'
+        f'<tbody role="rowgroup" id="{css_class(verdict)}"><tr role="row" class="section">'
+        f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{css_class(verdict)}">'
         f'<span aria-hidden="true">{SIGNS[verdict]}</span> {word} <span class="count">{count}</span>'
         f"</h2> <small>{advice}</small></th></tr>\n{rows}</tbody>"
     )
 
 
-def _tools(found: dict[Verdict, list[Outcome]]) -> str:
-    """Ways into the table: links that always work, and a search that the script brings to life."""
+def _navigation(found: dict[Verdict, list[Outcome]]) -> str:
+    """Links to the sections, and the search that the script brings to life."""
     links = "".join(
-        f'<a class="{kind(verdict)}" href="#{kind(verdict)}">'
+        f'<a class="{css_class(verdict)}" href="#{css_class(verdict)}">'
         f'<span aria-hidden="true">{SIGNS[verdict]}</span> {len(those)} {verdict.value}</a>'
         for verdict, those in found.items()
     )

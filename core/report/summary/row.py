@@ -1,4 +1,4 @@
-"""One take of a batch as a row of the page that a supervisor reads."""
+"""The row of one take on the page of a batch."""
 
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
@@ -9,12 +9,12 @@ from ...text import pluralize
 from ..film_strip import PICTURES as STRIP_FRAMES
 from ..film_strip import SIZE as STRIP_SIZE
 from ..pictures import STRIP
-from .html_text import address, duration, escaped, isolated, percent, way_to
-from .verdict import Verdict, result, verdict
+from .html_text import address, duration, escaped, isolated, percent, relative_path
+from .verdict import Verdict, current_record, verdict
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
-"""Weak frames and notes that are shown; `conversion.json` has all."""
+"""Weak frames and notes shown; `conversion.json` has all."""
 SIGNS = {
     Verdict.FAILED: "✕",
     Verdict.POOR: "○",
@@ -23,51 +23,51 @@ SIGNS = {
     Verdict.UNJUDGED: "–",
     Verdict.WAITING: "…",
 }
-"""Beside the word and the color."""
+"""Signs of the verdicts, beside their words and colors."""
 REPORT = "report/"
-LARGER = f"{REPORT}overlay.png"
-WANTED = (".blend", ".bvh", ".json")
-"""Files that people open, the likeliest first."""
+LARGE_PICTURE = f"{REPORT}overlay.png"
+FILE_ORDER = (".blend", ".bvh", ".json")
+"""Suffixes of the files that people open, the most common first."""
 
 
 def row(outcome: Outcome, output: Path, number: int) -> str:
     """The row of one take.
 
     Args:
-        outcome: What became of it.
-        output: Where the page lies.
-        number: The take's place in the order of names, which its anchor is made of.
+        outcome: The take's outcome.
+        output: Folder of the page.
+        number: The take's number in the order of names, for its anchor.
     """
-    way, record = way_to(outcome.folder, output), result(outcome)
+    path, record = relative_path(outcome.folder, output), current_record(outcome)
     if record is None:
         cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{_no_result(outcome)}</td>'
     else:
         found = verdict(outcome)
-        shown = (_footage(way, record), _confidence(record, found), _to_do(record), _files(way, record))
+        shown = (_footage(path, record), _confidence(record, found), _to_do(record), _files(path, record))
         cells = "".join(f'<td role="cell">{cell}</td>' for cell in shown)
-    believed = "" if record is None or record.confidence is None else f"{record.confidence:.4f}"
+    confidence = "" if record is None or record.confidence is None else f"{record.confidence:.4f}"
     return (
-        f'<tr role="row" id="take-{number}" data-order="{number}" data-confidence="{believed}">'
-        f'<th role="rowheader" scope="row">{_name(outcome, way)}</th>{cells}</tr>'
+        f'<tr role="row" id="take-{number}" data-order="{number}" data-confidence="{confidence}">'
+        f'<th role="rowheader" scope="row">{_name(outcome, path)}</th>{cells}</tr>'
     )
 
 
-def kind(found: Verdict) -> str:
-    """A verdict as a name for anchors and styles."""
+def css_class(found: Verdict) -> str:
+    """The verdict's name in anchors and style classes."""
     return found.value.replace(" ", "-")
 
 
-def _name(outcome: Outcome, way: str) -> str:
+def _name(outcome: Outcome, path: str) -> str:
     before, slash, last = outcome.take.rpartition("/")
     folder = f'<span class="folder">{escaped(before)}/</span><wbr>' if slash else ""
     name = f"<bdi>{folder}<span>{escaped(last)}</span></bdi>"
     if outcome.record is not None:
-        name = f'<a href="{address(way, "")}">{name}</a>'
+        name = f'<a href="{address(path, "")}">{name}</a>'
     worked = "" if outcome.seconds is None else f" in {duration(outcome.seconds)}"
     return name + _small(outcome.status.value + (worked if outcome.status is Status.CONVERTED else ""))
 
 
-def _footage(way: str, record: ConversionRecord) -> str:
+def _footage(path: str, record: ConversionRecord) -> str:
     length = f"{pluralize(record.frames, 'frame')}, {duration(record.frames / record.fps)}"
     words = f"<small>{length} at {record.fps:g} frames a second; {_made_from(record)}</small>"
     name = f"{REPORT}{STRIP}"
@@ -76,11 +76,11 @@ def _footage(way: str, record: ConversionRecord) -> str:
     shown = pluralize(min(STRIP_FRAMES, record.frames), "frame")
     width, height = (pixels // 2 for pixels in STRIP_SIZE)
     picture = (
-        f'<img src="{address(way, name)}" width="{width}" height="{height}" loading="lazy" decoding="async" '
+        f'<img src="{address(path, name)}" width="{width}" height="{height}" loading="lazy" decoding="async" '
         f'alt="{shown} of the footage with the skeleton over them">'
     )
-    if LARGER in record.files:
-        picture = f'<a class="strip" href="{address(way, LARGER)}">{picture}</a>'
+    if LARGE_PICTURE in record.files:
+        picture = f'<a class="strip" href="{address(path, LARGE_PICTURE)}">{picture}</a>'
     return picture + words
 
 
@@ -94,7 +94,7 @@ def _made_from(record: ConversionRecord) -> str:
 
 
 def _confidence(record: ConversionRecord, found: Verdict) -> str:
-    word = f'<b class="{kind(found)}"><span aria-hidden="true">{SIGNS[found]}</span> {found.value}</b>'
+    word = f'<b class="{css_class(found)}"><span aria-hidden="true">{SIGNS[found]}</span> {found.value}</b>'
     if record.confidence is None:
         return word
     marks = (
@@ -106,26 +106,26 @@ def _confidence(record: ConversionRecord, found: Verdict) -> str:
         marks += f'<rect class="tick" x="{99 * record.weakest:.0f}" width="1" height="6"/>'
         weakest = _small(f"weakest twentieth {percent(record.weakest)}")
     return (
-        f'<span class="share">{percent(record.confidence)}</span> {word}<svg class="{kind(found)}" '
+        f'<span class="share">{percent(record.confidence)}</span> {word}<svg class="{css_class(found)}" '
         f'viewBox="0 0 100 6" preserveAspectRatio="none" aria-hidden="true">{marks}</svg>{weakest}'
     )
 
 
 def _no_result(outcome: Outcome) -> str:
-    said = ""
+    text = ""
     if outcome.status is Status.FAILED:
-        said = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
+        text = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
     if outcome.record is not None:
-        said += "<p><small>An earlier result is still in its folder.</small></p>"
-    return said
+        text += "<p><small>An earlier result is still in its folder.</small></p>"
+    return text
 
 
 def _to_do(record: ConversionRecord) -> str:
-    said = f"<p>Worth a keyframe: {_frames(record.weak_frames)}</p>" if record.weak_frames else ""
+    frames = f"<p>Worth a keyframe: {_frames(record.weak_frames)}</p>" if record.weak_frames else ""
     notes = [f"<li>{isolated(note)}</li>" for note in record.notes[:MOST_NAMED]]
     if len(record.notes) > MOST_NAMED:
         notes.append(f"<li>{len(record.notes) - MOST_NAMED} more in conversion.json</li>")
-    return said + (f"<ul>{''.join(notes)}</ul>" if notes else "")
+    return frames + (f"<ul>{''.join(notes)}</ul>" if notes else "")
 
 
 def _frames(weak: Sequence[int]) -> str:
@@ -134,21 +134,21 @@ def _frames(weak: Sequence[int]) -> str:
     return f"frame <b>{first}</b>{then}" + (" and more" if len(weak) > MOST_NAMED else "")
 
 
-def _files(way: str, record: ConversionRecord) -> str:
+def _files(path: str, record: ConversionRecord) -> str:
     results = [name for name in record.files if not name.startswith(REPORT)]
     pictures = [name for name in record.files if name.startswith(REPORT) and name != f"{REPORT}{STRIP}"]
-    lines = [", ".join(_link(way, name, name) for name in sorted(results, key=_likelihood))]
-    lines.append(", ".join(_link(way, name, PurePosixPath(name).stem) for name in pictures))
+    lines = [", ".join(_link(path, name, name) for name in sorted(results, key=_file_order))]
+    lines.append(", ".join(_link(path, name, PurePosixPath(name).stem) for name in pictures))
     return "<br>".join(line for line in lines if line)
 
 
-def _link(way: str, name: str, words: str) -> str:
-    return f'<a href="{address(way, name)}">{isolated(words)}</a>'
+def _link(path: str, name: str, words: str) -> str:
+    return f'<a href="{address(path, name)}">{isolated(words)}</a>'
 
 
-def _likelihood(name: str) -> tuple[int, str]:
-    ending = PurePosixPath(name).suffix
-    return (WANTED.index(ending) if ending in WANTED else len(WANTED), name)
+def _file_order(name: str) -> tuple[int, str]:
+    suffix = PurePosixPath(name).suffix
+    return (FILE_ORDER.index(suffix) if suffix in FILE_ORDER else len(FILE_ORDER), name)
 
 
 def _small(text: str) -> str:

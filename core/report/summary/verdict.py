@@ -1,4 +1,4 @@
-"""What a person has to do about a take of a batch, and in which order takes ask for it."""
+"""Verdicts on the takes of a batch: how much work each needs, and the order of urgency."""
 
 from collections.abc import Sequence
 from enum import StrEnum
@@ -8,35 +8,35 @@ from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 
 GOOD = WEAK_CONFIDENCE
-"""Mean confidence from which a take is good: frames believed as far need no keyframe."""
+"""Mean confidence from which a take is good: frames of this confidence need no keyframe."""
 FAIR = 0.5
-"""Mean confidence from which a take is fair: below, most joints are rather not in place."""
+"""Mean confidence from which a take is fair: below, most joints are likely off."""
 GOOD_WEAKEST = FAIR
-"""What the weakest twentieth of a good take's frames is believed at least."""
+"""Least confidence of the weakest twentieth of a good take's frames."""
 
 
 class Verdict(StrEnum):
-    """How a take stands, those first that need a person first."""
+    """State of a take, the most urgent first."""
 
     FAILED = "failed"
     POOR = "poor"
     FAIR = "fair"
     UNJUDGED = "not judged"
-    """Converted by a method that does not know how sure it is."""
+    """Converted by a method without a confidence."""
     GOOD = "good"
     WAITING = "waiting"
 
 
-def result(outcome: Outcome) -> ConversionRecord | None:
-    """What is recorded of a take's result; None where there is none, or only one of an earlier input."""
+def current_record(outcome: Outcome) -> ConversionRecord | None:
+    """The record of a take's result; None without a result of the present input."""
     return outcome.record if outcome.status in (Status.CONVERTED, Status.UNCHANGED) else None
 
 
 def verdict(outcome: Outcome) -> Verdict:
-    """How a take stands: if it has a result, by the confidence of its frames and of the weakest twentieth."""
+    """The verdict on a take; of a result by its mean confidence and that of its weakest twentieth."""
     if outcome.status is Status.FAILED:
         return Verdict.FAILED
-    record = result(outcome)
+    record = current_record(outcome)
     if record is None:
         return Verdict.WAITING
     if record.confidence is None:
@@ -47,7 +47,7 @@ def verdict(outcome: Outcome) -> Verdict:
 
 
 def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
-    """All takes by verdict, verdicts without any left out; those of least confidence first, then by name."""
+    """Takes by verdict, without empty verdicts; sorted by confidence, the least first, then by name."""
     found: dict[Verdict, list[Outcome]] = {kind: [] for kind in Verdict}
     for outcome in sorted(outcomes, key=_urgency):
         found[verdict(outcome)].append(outcome)
@@ -55,5 +55,5 @@ def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
 
 
 def _urgency(outcome: Outcome) -> tuple[float, str]:
-    record = result(outcome)
+    record = current_record(outcome)
     return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)

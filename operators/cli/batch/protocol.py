@@ -1,4 +1,4 @@
-"""What a batch and its workers tell each other: JSON Lines, jobs one way and answers the other."""
+"""The protocol between a batch and its workers: JSON Lines, jobs one way and messages the other."""
 
 import json
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from ....core.shoot.shoot import ShootTake
 from ....core.take.conversion_settings import ConversionSettings
 
 LONGEST_BYTES = 2**22
-"""Of a line: a list may say a megabyte of one take."""
+"""Of a line: a list of takes may hold a megabyte on one of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,20 +19,20 @@ class Job:
 
     take: ShootTake
     folder: Path
-    """For its results."""
-    farther: ConversionSettings
-    """What counts where the take and its shoots say nothing."""
+    """Folder for the results."""
+    defaults: ConversionSettings
+    """Settings where the take and its shoots give none."""
     again: bool = False
-    """Whether to convert it even where the results are there already."""
+    """Whether to convert the take even where its results are there already."""
     debug: bool = False
 
     def to_line(self) -> bytes:
-        """The job as a line."""
-        take, farther = self.take, self.farther
+        """Encode the job as a line."""
+        take, defaults = self.take, self.defaults
         value = {
             "take": [take.name, str(take.path), take.overrides, take.overrides_location],
             "folder": str(self.folder),
-            "farther": {**vars(farther), "keyframes": farther.keyframes and str(farther.keyframes)},
+            "defaults": {**vars(defaults), "keyframes": defaults.keyframes and str(defaults.keyframes)},
             "again": self.again,
             "debug": self.debug,
         }
@@ -40,15 +40,20 @@ class Job:
 
     @classmethod
     def from_line(cls, line: bytes) -> "Job":
-        """The job of a line."""
+        """Decode a job.
+
+        Raises:
+            ValueError: The line is no JSON.
+            KeyError: A field is missing.
+        """
         value = json.loads(line)
-        name, path, overrides, location = value["take"]
-        farther = value["farther"]
-        keyframes = farther["keyframes"] and Path(farther["keyframes"])
+        name, place, nearest, said_in = value["take"]
+        defaults = value["defaults"]
+        keyframes = defaults["keyframes"] and Path(defaults["keyframes"])
         return cls(
-            ShootTake(name, Path(path), overrides, location),
+            ShootTake(name, Path(place), nearest, said_in),
             Path(value["folder"]),
-            ConversionSettings(**{**farther, "keyframes": keyframes}),
+            ConversionSettings(**{**defaults, "keyframes": keyframes}),
             value["again"],
             value["debug"],
         )
@@ -56,7 +61,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Ready:
-    """A worker has started and waits for jobs."""
+    """A worker has started and accepts jobs."""
 
     keymark: str
     """Its version."""
@@ -64,45 +69,46 @@ class Ready:
 
 @dataclass(frozen=True)
 class Step:
-    """How far a worker is with its job."""
+    """The progress of a job; also the heartbeat by which a worker shows that it is alive."""
 
     stage: str
     fraction: float
+    """From 0 to 1."""
 
 
 @dataclass(frozen=True)
 class Done:
-    """A worker has come to the end of its job."""
+    """A job has ended."""
 
     result: str
-    """`converted`, `unchanged`, `failed`, or `busy` where another process is at work on the take."""
+    """`converted`, `unchanged`, `failed`, or `busy` where another process holds the lock of the results."""
     seconds: float = 0.0
     error: str | None = None
-    """Why it failed, in a sentence."""
+    """Why the job failed, in a sentence."""
     kind: str | None = None
-    """Of failure, see `core/shoot/outcomes/failures`."""
+    """Kind of failure, see `core/shoot/outcomes/failures`."""
     memory_bytes: int | None = None
-    """What the worker holds now; None where the system does not tell."""
+    """Resident memory of the worker after the job; None where the system does not tell."""
 
 
 CONVERTED, UNCHANGED, FAILED, BUSY = "converted", "unchanged", "failed", "busy"
-Answer = Ready | Step | Done
-KINDS: Mapping[str, type[Ready] | type[Step] | type[Done]] = {
+Message = Ready | Step | Done
+MESSAGES: Mapping[str, type[Ready] | type[Step] | type[Done]] = {
     kind.__name__.lower(): kind for kind in (Ready, Step, Done)
 }
 
 
-def answer_line(answer: Answer) -> bytes:
-    """An answer as a line."""
-    return _line({type(answer).__name__.lower(): asdict(answer)})
+def message_line(message: Message) -> bytes:
+    """Encode a message as a line."""
+    return _line({type(message).__name__.lower(): asdict(message)})
 
 
-def read_answer(line: bytes) -> Answer | None:
-    """The answer of a line; None where it is none, as what a Blender says while it starts."""
+def read_message(line: bytes) -> Message | None:
+    """Decode a message; None for any other line, as those that Blender prints while it starts."""
     try:
         value = json.loads(line)
         ((name, said),) = value.items()
-        kind = KINDS[name]
+        kind = MESSAGES[name]
         return kind(**{field.name: said[field.name] for field in fields(kind)})
     except (ValueError, AttributeError, KeyError, TypeError):
         return None

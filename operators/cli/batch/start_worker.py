@@ -1,4 +1,4 @@
-"""Starts a worker in an ordinary Python, from this very tree, whatever its folder is called."""
+"""Script that runs a worker in plain Python; loads the package from this tree under the name `keymark`."""
 
 import importlib.util
 import sys

@@ -1,4 +1,4 @@
-"""The process that converts takes for a batch, one after the other, until nobody tells it any more."""
+"""The worker process of a batch: converts jobs from standard input until end of file."""
 
 import os
 import signal
@@ -15,43 +15,44 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion.convert_take import convert, convert_if_changed
-from ..line_parser import UsageError
+from ..conversion.convert_take import convert_take
+from ..conversion.skip_unchanged import convert_if_changed
+from ..usage import UsageError
 from ..version import version
-from .memory import resident_bytes
-from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Answer, Done, Job, Ready, Step, answer_line
+from .machine_resources import resident_bytes
+from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
 
-BETWEEN_STEPS_S = 0.5
-"""A batch is told no more often how far a job is."""
+SHORTEST_STEP_S = 0.5
+"""Shortest time between two messages on the progress of a job."""
 
 
-def worker_command() -> None:
-    """Convert the takes told on standard input, a job a line, and answer on standard output."""
-    ending = _Ending()
-    signal.signal(signal.SIGTERM, ending.asked)
+def run_worker() -> None:
+    """Convert the jobs on standard input, one a line, and write messages on standard output."""
+    interruption = _Interruption()
+    signal.signal(signal.SIGTERM, interruption.handle)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the batch, which ends its workers
-    say = _speaker(_own_output(), ending)
-    cv2.setNumThreads(1)  # the processors are shared by workers; one each does the most
+    send = _sender(_message_stream(), interruption)
+    cv2.setNumThreads(1)  # the workers share the processors; one thread each is fastest
     with blender_silence(debug=False):
-        from ...bridge import result_files  # noqa: F401  Blender starts now, not in the first take's time
-    say(Ready(version()))
+        from ...bridge import result_files  # noqa: F401  starts Blender before the first take is timed
+    send(Ready(version()))
     for line in sys.stdin.buffer:
-        say(work(Job.from_line(line), say))
+        send(run_job(Job.from_line(line), send))
 
 
-def work(job: Job, say: Callable[[Answer], None]) -> Done:
-    """Convert one take, whatever happens.
+def run_job(job: Job, send: Callable[[Message], None]) -> Done:
+    """Convert one take; an error becomes part of the message.
 
     Args:
-        job: The take and how.
-        say: Learns of the progress.
+        job: The take and its settings.
+        send: Sends messages on the progress.
     """
     started = time.perf_counter()
     try:
         description = job.take.describe()
-        settings = job.take.settings(description, job.farther)
-        unit = convert if job.again else convert_if_changed
-        made = unit(description, job.folder, _Steps(say), settings, job.debug)
+        settings = job.take.settings(description, job.defaults)
+        convert = convert_take if job.again else convert_if_changed
+        made = convert(description, job.folder, _JobConsole(send), settings, job.debug)
         result, error, kind = UNCHANGED if made is None else CONVERTED, None, None
     except BusyError as busy:
         result, error, kind = BUSY, str(busy), None
@@ -68,58 +69,58 @@ def work(job: Job, say: Callable[[Answer], None]) -> Done:
     return Done(result, time.perf_counter() - started, error, kind, resident_bytes())
 
 
-class _Steps(Console):
-    """Tells the batch how far a job is."""
+class _JobConsole(Console):
+    """Sends the progress of a job to the batch."""
 
-    def __init__(self, say: Callable[[Answer], None]) -> None:
+    def __init__(self, send: Callable[[Message], None]) -> None:
         super().__init__(quiet=True, as_json=False)
-        self._say = say
+        self._send = send
         self._fraction = 0.0
-        self._said = -BETWEEN_STEPS_S
+        self._sent = -SHORTEST_STEP_S
 
     def progress(self, progress: Progress) -> None:
         super().progress(progress)
         self._fraction = JOB_SHARE * progress.fraction
         now = time.monotonic()
-        if now >= self._said + BETWEEN_STEPS_S:
-            self._said = now
-            self._say(Step(progress.stage, self._fraction))
+        if now >= self._sent + SHORTEST_STEP_S:
+            self._sent = now
+            self._send(Step(progress.stage, self._fraction))
 
     def stage(self, name: str) -> None:
         super().stage(name)
-        self._say(Step(name, self._fraction))
+        self._send(Step(name, self._fraction))
 
 
-def _own_output() -> BinaryIO:
-    """Standard output for answers alone: whatever else is written there from now on goes nowhere."""
+def _message_stream() -> BinaryIO:
+    """Standard output for messages alone: everything else written there from now on is discarded."""
     sys.stdout.flush()
-    own = os.fdopen(os.dup(1), "wb", buffering=0)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.close(nowhere)
-    return own
+    stream = os.fdopen(os.dup(1), "wb", buffering=0)
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 1)
+    os.close(null)
+    return stream
 
 
-def _speaker(output: BinaryIO, ending: "_Ending") -> Callable[[Answer], None]:
-    def say(answer: Answer) -> None:
-        if ending.due:
+def _sender(stream: BinaryIO, interruption: "_Interruption") -> Callable[[Message], None]:
+    def send(message: Message) -> None:
+        if interruption.due:
             raise KeyboardInterrupt
         try:
-            output.write(answer_line(answer))
-        except OSError:  # the batch is gone: nobody waits for this take
+            stream.write(message_line(message))
+        except OSError:  # the batch is gone, and with it the reader of this message
             raise KeyboardInterrupt from None
 
-    return say
+    return send
 
 
-class _Ending:
-    """Whether the process has been asked to end: what it is in the middle of may swallow the interruption.
+class _Interruption:
+    """Remembers that SIGTERM has arrived, for the code that it interrupts may swallow the exception.
 
-    Blender makes an error of its own of one that arrives while it runs an exporter.
+    Blender turns a KeyboardInterrupt that arrives while it runs an exporter into an error of its own.
     """
 
     due = False
 
-    def asked(self, _signal: int, _frame: FrameType | None) -> None:
+    def handle(self, _signal: int, _frame: FrameType | None) -> None:
         self.due = True
         raise KeyboardInterrupt

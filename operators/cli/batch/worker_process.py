@@ -1,4 +1,4 @@
-"""One worker as its batch sees it: a process that is told jobs and answers, or is lost."""
+"""A worker as its batch sees it: a child process that answers jobs with messages, or is lost."""
 
 import asyncio
 import signal
@@ -8,53 +8,54 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ..line_parser import program_name
-from .protocol import LONGEST_BYTES, Answer, Done, Job, Ready, Step, read_answer
+from ..usage import program_name
+from .protocol import LONGEST_BYTES, Done, Job, Message, Ready, Step, read_message
 
-START = Path(__file__).with_name("start_worker.py")
-LONGEST_START_S = 300.0
-LONGEST_SILENCE_S = 1800.0
-"""A worker that tells of no progress for so long will never end: its decoder or its disk hangs."""
-GRACE_S = 10.0
-"""What a worker that is asked to end gets to clean up."""
-LAST_WORDS_BYTES = 2000
+SCRIPT = Path(__file__).with_name("start_worker.py")
+START_TIMEOUT_S = 300.0
+HEARTBEAT_TIMEOUT_S = 1800.0
+"""A worker that sends no message for so long will never end: its decoder or its disk hangs."""
+TERMINATION_GRACE_S = 10.0
+"""Time that a worker has to clean up after SIGTERM."""
+STDERR_TAIL_BYTES = 2000
+"""Kept of what a worker writes on standard error, to say why it ended."""
 
 
 class WorkerLostError(Exception):
-    """A worker came to an end by itself, or had to be ended; the text says how, as part of a sentence."""
+    """A worker has crashed, does not start or has stalled; the text says how, as part of a sentence."""
 
 
-def worker_words() -> list[str]:
-    """The command that starts a worker in the same kind of process as this one."""
+def worker_command_line() -> list[str]:
+    """The command that starts a worker in the same kind of process as this one: Python or Blender."""
     blender = sys.modules.get("bpy")
     program = blender.app.binary_path if blender is not None else ""
     if not program:
-        return [sys.executable, "-P", str(START)]
+        return [sys.executable, "-P", str(SCRIPT)]
     words = sys.argv[1:]
-    at = next((place for place, word in enumerate(words) if word in ("--command", "-c")), len(words))
-    return [program, *words[:at], "--command", "keymark", "worker"]
+    own = next((index for index, word in enumerate(words) if word in ("--command", "-c")), len(words))
+    return [program, *words[:own], "--command", "keymark", "worker"]
 
 
 class WorkerProcess:
-    """A worker that has started and waits for jobs."""
+    """A running worker."""
 
-    def __init__(self, process: Process, silence_s: float) -> None:
+    def __init__(self, process: Process, heartbeat_timeout_s: float) -> None:
         self._process = process
-        self._silence_s = silence_s
-        self._last_words = b""
-        self._listening = None if process.stderr is None else asyncio.create_task(self._listen())
+        self._heartbeat_timeout_s = heartbeat_timeout_s
+        self._stderr_tail = b""
+        self._draining = None if process.stderr is None else asyncio.create_task(self._drain_stderr())
 
     @classmethod
-    async def started(cls, words: Sequence[str], debug: bool, silence_s: float) -> "WorkerProcess":
+    async def start(cls, words: Sequence[str], debug: bool, heartbeat_timeout_s: float) -> "WorkerProcess":
         """Start a worker and wait until it is ready.
 
         Args:
             words: The command.
-            debug: Whether what it says on standard error is shown.
-            silence_s: How long it may tell of no progress [s].
+            debug: Whether its standard error is shown.
+            heartbeat_timeout_s: Longest time between two messages [s].
 
         Raises:
-            WorkerLostError: It does not start.
+            WorkerLostError: The worker does not start.
         """
         try:
             process = await asyncio.create_subprocess_exec(
@@ -62,106 +63,106 @@ class WorkerProcess:
             )
         except OSError as error:
             raise WorkerLostError(f"{words[0]}: cannot be run ({error.strerror or error})") from error
-        worker = cls(process, silence_s)
+        worker = cls(process, heartbeat_timeout_s)
         try:
-            while not isinstance(await worker._answer(LONGEST_START_S), Ready):
+            while not isinstance(await worker._message(START_TIMEOUT_S), Ready):
                 pass
         except WorkerLostError as lost:
-            await worker.end()
+            await worker.terminate()
             raise WorkerLostError(worker._last_line or str(lost)) from lost
         except asyncio.CancelledError:
-            await worker.end()
+            await worker.terminate()
             raise
         return worker
 
     async def convert(self, job: Job, step: Callable[[Step], None]) -> Done:
-        """Let it convert a take.
+        """Let the worker run a job.
 
         Args:
-            job: The take and how.
-            step: Learns of the progress.
+            job: The take and its settings.
+            step: Receives the progress.
 
         Raises:
-            WorkerLostError: It ends before it is done, or has nothing to tell for too long.
+            WorkerLostError: The worker ends before the job does, or sends nothing until the timeout.
         """
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(job.to_line())
             await self._process.stdin.drain()
         except OSError as error:
-            raise WorkerLostError(await self._end_of()) from error
+            raise WorkerLostError(await self._exit_description()) from error
         while True:
-            answer = await self._answer(self._silence_s)
-            if isinstance(answer, Done):
-                return answer
-            if isinstance(answer, Step):
-                step(answer)
+            message = await self._message(self._heartbeat_timeout_s)
+            if isinstance(message, Done):
+                return message
+            if isinstance(message, Step):
+                step(message)
 
     async def retire(self) -> None:
-        """End it when it has nothing to do."""
+        """Close the input of an idle worker, at whose end it exits."""
         assert self._process.stdin is not None
         self._process.stdin.close()
-        await self._gone(GRACE_S)
-        await self.end()
+        await self._exited_within(TERMINATION_GRACE_S)
+        await self.terminate()
 
-    async def end(self) -> None:
-        """End it, whatever it is doing: it is asked first, so that it can clean up."""
+    async def terminate(self) -> None:
+        """End the worker: with SIGTERM, on which it cleans up, and after a grace period with SIGKILL."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         with suppress(ProcessLookupError):
             self._process.terminate()
-        if not await self._gone(GRACE_S):
+        if not await self._exited_within(TERMINATION_GRACE_S):
             self.kill()
             await self._process.wait()
-        if self._listening is not None:
-            await self._listening
+        if self._draining is not None:
+            await self._draining
 
     def kill(self) -> None:
-        """End it at once."""
+        """End the worker at once, without a clean-up."""
         with suppress(ProcessLookupError):
             self._process.kill()
 
-    async def _answer(self, longest_s: float) -> Answer | None:
+    async def _message(self, timeout_s: float) -> Message | None:
         assert self._process.stdout is not None
         try:
-            async with asyncio.timeout(longest_s):  # wait_for of Python 3.11 may swallow a cancellation
+            async with asyncio.timeout(timeout_s):  # wait_for of Python 3.11 may swallow a cancellation
                 line = await self._process.stdout.readline()
         except TimeoutError as error:
-            raise WorkerLostError(f"told of no progress for {longest_s / 60.0:.3g} minutes") from error
+            raise WorkerLostError(f"told of no progress for {timeout_s / 60.0:.3g} minutes") from error
         except ValueError as error:  # no end of a line within the limit
             raise WorkerLostError("answered what is no answer") from error
         if not line:
-            raise WorkerLostError(await self._end_of())
-        return read_answer(line)
+            raise WorkerLostError(await self._exit_description())
+        return read_message(line)
 
-    async def _end_of(self) -> str:
-        """How it ended."""
-        if not await self._gone(GRACE_S):
+    async def _exit_description(self) -> str:
+        """How the worker ended, as part of a sentence."""
+        if not await self._exited_within(TERMINATION_GRACE_S):
             return "fell silent"
-        if self._listening is not None:
-            await asyncio.wait([self._listening], timeout=GRACE_S)
+        if self._draining is not None:
+            await asyncio.wait([self._draining], timeout=TERMINATION_GRACE_S)
         status = self._process.returncode or 0
         if status >= 0:
-            said = f" ({self._last_line})" if self._last_line else ""
-            return f"ended with exit status {status}{said}"
+            reason = f" ({self._last_line})" if self._last_line else ""
+            return f"ended with exit status {status}{reason}"
         with suppress(ValueError):
             return f"was killed by {signal.Signals(-status).name}"
         return f"was killed by signal {-status}"
 
     @property
     def _last_line(self) -> str:
-        """The last it said on standard error."""
-        lines = self._last_words.decode("utf-8", "replace").strip().splitlines()
+        """The last line on standard error, without the program's name."""
+        lines = self._stderr_tail.decode("utf-8", "replace").strip().splitlines()
         return lines[-1].removeprefix(f"{program_name()}: ") if lines else ""
 
-    async def _gone(self, within_s: float) -> bool:
+    async def _exited_within(self, timeout_s: float) -> bool:
         with suppress(TimeoutError):
-            async with asyncio.timeout(within_s):
+            async with asyncio.timeout(timeout_s):
                 await self._process.wait()
         return self._process.returncode is not None
 
-    async def _listen(self) -> None:
-        """Take what it says on standard error, so that it never waits; the last of it is kept."""
+    async def _drain_stderr(self) -> None:
+        """Read standard error, so that the worker never blocks on a full pipe; keep its end."""
         assert self._process.stderr is not None
-        while said := await self._process.stderr.read(LAST_WORDS_BYTES):
-            self._last_words = (self._last_words + said)[-LAST_WORDS_BYTES:]
+        while chunk := await self._process.stderr.read(STDERR_TAIL_BYTES):
+            self._stderr_tail = (self._stderr_tail + chunk)[-STDERR_TAIL_BYTES:]

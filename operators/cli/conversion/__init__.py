@@ -1,1 +1,1 @@
-"""One take in, one complete folder of results out: what is made of it, kept of it, and said of it."""
+"""Conversion of one take into one complete folder of results."""

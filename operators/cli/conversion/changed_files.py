@@ -1,4 +1,4 @@
-"""Files of an earlier result that somebody has changed since; they are kept, not replaced."""
+"""Files of an earlier result that a person has changed since; they are kept under another name."""
 
 from collections.abc import Collection, Iterable
 from pathlib import Path
@@ -10,59 +10,54 @@ from ....core.files.json_file import read_json, write_json
 from ....core.take.conversion_record import RECORD_FILE, read_record
 
 AS_MADE = ".as_made.json"
-"""SHA-256 of files as they were made, beside the results; for those that differ from run to run, though
-what they hold does not, so that the record itself is always the same."""
-MOST_BYTES = 2**16
+"""File with the SHA-256 of files as they were made, beside the results. It has those whose bytes differ from
+run to run though their content does not, so that the record itself is always the same."""
+LARGEST_BYTES = 2**16
 
 
 def changed_files(
-    output: Path, place: Path, names: Iterable[str], worked_in: Collection[str]
+    output: Path, staging_folder: Path, names: Iterable[str], editable: Collection[str]
 ) -> dict[str, str]:
-    """Which files of a folder of results are no longer as they were made, though new ones replace them.
+    """Files of a result that are no longer as they were made, though new ones are about to replace them.
 
     Args:
-        output: The folder; its record says what was made.
-        place: Where the new results lie.
-        names: Files that new results replace or remove, as paths in the folder. Of those in `worked_in`
-            only ones that are made anew.
-        worked_in: Files that are somebody's where no record says that a conversion has made them.
+        output: Folder of the result; its record says what was made.
+        staging_folder: Folder of the new files.
+        names: Files that the new result replaces or removes, as paths in the folder. Of those in `editable`
+            only the ones that are made anew are replaced.
+        editable: Files that belong to a person where no record says that a conversion has made them.
 
     Returns:
-        By their names the names under which they are to be kept.
+        The names under which these files are to be kept, by their present names.
 
     Raises:
         InputError: A file cannot be read.
     """
     try:
-        made = {**read_record(output).files, **read_json(output / AS_MADE, MOST_BYTES)}
+        made = {**read_record(output).files, **read_json(output / AS_MADE, LARGEST_BYTES)}
     except InputError:
         made = {}
     kept = {}
     for name in names:
-        there, new = output / name, place / name
-        replaced = new.is_file() or (name in made and name not in worked_in)
-        if (
-            name == RECORD_FILE
-            or not replaced
-            or not there.is_file()
-            or not (name in made or name in worked_in)
-        ):
+        old, new = output / name, staging_folder / name
+        replaced = new.is_file() or (name in made and name not in editable)
+        if name == RECORD_FILE or not replaced or not old.is_file() or not (name in made or name in editable):
             continue
-        digest = content_digest(there)
+        digest = content_digest(old)
         if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
-            kept[name] = backup_name(there).relative_to(output).as_posix()
+            kept[name] = backup_name(old).relative_to(output).as_posix()
     return kept
 
 
-def note_as_made(place: Path, name: str) -> None:
-    """Write down what a file is like as long as nobody has worked in it.
+def write_made_digest(staging_folder: Path, name: str) -> None:
+    """Record the digest of a file as it was made, by which a later conversion notices changes.
 
     Raises:
-        ConversionError: It cannot be written.
+        ConversionError: The record cannot be written.
     """
-    write_json(place / AS_MADE, {name: content_digest(place / name)})
+    write_json(staging_folder / AS_MADE, {name: content_digest(staging_folder / name)})
 
 
 def kept_note(name: str, other: str) -> str:
-    """The sentence for the person whose work it may be."""
+    """The note on a file that is kept under another name."""
     return f"{name} was changed after Keymark had made it and is kept as {other}"

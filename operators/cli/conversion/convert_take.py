@@ -1,13 +1,12 @@
-"""The unit of work: one take in, one complete folder of results out. Running it again changes nothing."""
+"""Conversion of one take into one complete folder of results; running it again gives the same result."""
 
-import importlib.util
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ....core.errors import ConversionError, InputError
+from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
@@ -17,33 +16,58 @@ from ....core.progress import run
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE as RECORD
-from ....core.take.conversion_record import is_up_to_date, write_record
+from ....core.take.conversion_record import write_record
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.keyframe_file import write_keyframes
 from ....core.take.methods import METHODS
-from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ..blender_silence import blender_silence
 from ..console import Console
+from ..library_search_path import requested_libraries
+from ..require_blender import require_blender
 from ..version import version
-from .changed_files import AS_MADE, changed_files, kept_note, note_as_made
-from .matched_keyframes import chosen_libraries, solve
+from .blender_files import BLEND, BVH, write_blender_files
+from .changed_files import AS_MADE, changed_files, kept_note, write_made_digest
+from .matched_keyframes import reconstruct_or_match
 from .result import Conversion, conversion_record
-from .unsupported_paths import check_places
+from .unsupported_paths import refuse_unsupported_paths
 
-MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
-KEYFRAMES = "keyframes.json"
-BELONGINGS = (RECORD, MOTION, BLEND, BVH, *(f"{REPORT}/{name}" for name in PICTURES), f"{REPORT}/{MATCHES}")
-"""Every file that a conversion may make, but for the keyframes: these a person may have corrected meanwhile,
-and only a conversion that makes them anew may replace them."""
-WORKED_IN = (BLEND, KEYFRAMES)
-"""What people go on working in; one that no record vouches for is taken to be theirs."""
+MOTION, REPORT, KEYFRAMES = "motion.json", "report", "keyframes.json"
+RESULT_FILES = (
+    RECORD,
+    MOTION,
+    BLEND,
+    BVH,
+    *(f"{REPORT}/{name}" for name in PICTURES),
+    f"{REPORT}/{MATCHES}",
+)
+"""Every file that a conversion may make, but for the keyframes: a person may have corrected these meanwhile,
+so that only a conversion that makes them anew may replace them."""
+EDITABLE_FILES = (BLEND, KEYFRAMES)
+"""Files that people go on working in; one that no record vouches for is taken to be theirs."""
 
 
-def convert(
+@dataclass(frozen=True, eq=False)
+class PreparedConversion:
+    """One conversion before it runs: its whole input, and the output folder, which is locked meanwhile."""
+
+    description: Description
+    settings: ConversionSettings
+    libraries: tuple[Library, ...]
+    digest: str
+    """Of all that the result depends on."""
+    output: Path
+    """Folder of the result."""
+    staging_folder: Path
+    """Folder in which the result is made; its files move into `output` when all are complete."""
+    kept_names: dict[str, str]
+    """Files in `output` that a person has changed, with the names under which they are kept; filled once the
+    new files are made."""
+
+
+def convert_take(
     description: Description,
     output: Path,
     console: Console,
@@ -53,96 +77,78 @@ def convert(
     """Convert a take.
 
     Args:
-        description: The take's.
+        description: The take's description.
         output: Folder for the results; it changes only when all of them are complete.
-        console: Learns of the progress.
+        console: Shows the progress.
         settings: How; with a library only the keyframes that are named here count, else the take's own.
         debug: Whether to let Blender's messages through.
 
     Raises:
         InputError: The take or the output folder is unusable.
-        ConversionError: No motion could be computed or written, no library fits a take that is not posed, or
-            there is no Blender to write with.
+        ConversionError: No motion could be computed or written, no library fits a take without posed
+            keyframes, or there is no Blender to write with.
     """
-    with _work(description, output, console, settings) as work:
-        return _convert(work, console, debug)
-
-
-def convert_if_changed(
-    description: Description,
-    output: Path,
-    console: Console,
-    settings: ConversionSettings,
-    debug: bool = False,
-) -> Conversion | None:
-    """Convert a take as `convert` does, but where the whole result of the very same input is there already.
-
-    Returns:
-        What was made; None where it was there.
-    """
-    with _work(description, output, console, settings) as work:
-        return None if is_up_to_date(output, work.digest) else _convert(work, console, debug)
-
-
-@dataclass(frozen=True, eq=False)
-class _Work:
-    """One conversion: all that it follows from, and where it goes."""
-
-    description: Description
-    settings: ConversionSettings
-    libraries: tuple[Library, ...]
-    digest: str
-    output: Path
-    """Where the results will be."""
-    place: Path
-    """Where they are made."""
-    aside: dict[str, str]
-    """Files that a person has changed, and where each is kept."""
+    with prepared_conversion(description, output, console, settings) as prepared:
+        return convert_prepared(prepared, console, debug)
 
 
 @contextmanager
-def _work(
+def prepared_conversion(
     description: Description, output: Path, console: Console, settings: ConversionSettings
-) -> Iterator[_Work]:
-    """The folder for a conversion while it is held, and what the take, its settings and libraries come to."""
+) -> Iterator[PreparedConversion]:
+    """Lock the output folder and gather the input; what is staged is committed when the block ends well."""
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
-    check_places(description, output)
-    aside: dict[str, str] = {}
-    with output_folder(output, (*BELONGINGS, AS_MADE), RECORD, aside) as place:
-        libraries = () if settings.library is None else chosen_libraries(settings.library)
+    refuse_unsupported_paths(description, output)
+    kept_names: dict[str, str] = {}
+    with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD, kept_names) as staging_folder:
+        libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
         digest = conversion_digest(description, settings, digests, output, version())
-        yield _Work(description, settings, libraries, digest, output, place, aside)
+        yield PreparedConversion(description, settings, libraries, digest, output, staging_folder, kept_names)
 
 
-def _convert(work: _Work, console: Console, debug: bool) -> Conversion:
-    description, settings, output, place = work.description, work.settings, work.output, work.place
-    take = _take(description, settings, output)
-    solving = solve(take, work.libraries, settings.method or METHODS[0], settings.floor_m)
-    solved = run(solving, console.progress)
-    take, result = solved.take, solved.reconstruction
+def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool) -> Conversion:
+    """Make every file of the result in the staging folder; the record comes last."""
+    settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
+    take = _read_take(prepared.description, settings, output)
+    method = settings.method or METHODS[0]
+    job = reconstruct_or_match(take, prepared.libraries, method, settings.floor_m)
+    matched = run(job, console.progress)
+    take, result = matched.take, matched.reconstruction
     console.stage("Writing the motion")
-    write_motion(result.motion, place / MOTION)
-    if solved.choice is not None:
-        write_keyframes(place / KEYFRAMES, take.keyframes, take.body, take.frame_start)
+    write_motion(result.motion, staging_folder / MOTION)
+    if matched.choice is not None:
+        write_keyframes(staging_folder / KEYFRAMES, take.keyframes, take.body, take.frame_start)
     console.stage("Writing Blender's files")
-    curves = _write_scene(take, result.motion, place, real_path(output), debug)
-    note_as_made(place, BLEND)
+    curves = write_blender_files(take, result.motion, staging_folder, real_path(output), debug)
+    write_made_digest(staging_folder, BLEND)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
-        write_pictures(place / REPORT, take, result.motion, result.tracks, result.speed)
-    made = [name for name in (*BELONGINGS, KEYFRAMES) if (place / name).exists()]
-    files = tuple(output / name for name in (*made, RECORD))
-    work.aside.update(changed_files(output, place, (*BELONGINGS, KEYFRAMES), WORKED_IN))
-    kept = (kept_note(*names) for names in work.aside.items())
-    left_aside = (*_left_aside(description, settings), *solved.unfit, *kept)
-    conversion = Conversion(take, result, files, solved.choice, left_aside)
-    write_record(place, conversion_record(conversion, work.digest, place, made, {BLEND: curves}))
+        write_pictures(staging_folder / REPORT, take, result.motion, result.tracks, result.speed)
+    made = [name for name in (*RESULT_FILES, KEYFRAMES) if (staging_folder / name).exists()]
+    prepared.kept_names.update(
+        changed_files(output, staging_folder, (*RESULT_FILES, KEYFRAMES), EDITABLE_FILES)
+    )
+    conversion = Conversion(
+        take,
+        result,
+        files=tuple(output / name for name in (*made, RECORD)),
+        choice=matched.choice,
+        conversion_notes=(
+            *_unused_keyframes_note(prepared.description, settings),
+            *matched.mismatch_notes,
+            *(kept_note(*names) for names in prepared.kept_names.items()),
+        ),
+    )
+    write_record(
+        staging_folder,
+        conversion_record(conversion, prepared.digest, staging_folder, made, {BLEND: curves}),
+    )
     return conversion
 
 
-def _take(description: Description, settings: ConversionSettings, output: Path) -> Take:
+def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:
     if settings.library is None:
         return read_described(description, settings.keyframes)
     if os.path.realpath(description.folder) == os.path.realpath(output):
@@ -153,43 +159,9 @@ def _take(description: Description, settings: ConversionSettings, output: Path) 
     return take_to_match(description, settings.keyframes)
 
 
-def _left_aside(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
+def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
     """A sentence where a take has keyframes that a conversion with a library does not use."""
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
     return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
-
-
-def require_blender(what: str) -> None:
-    """Say so at once, not after minutes of work, where a .blend cannot be written or read.
-
-    Raises:
-        ConversionError: There is no Blender; the sentence begins with `what`.
-    """
-    if importlib.util.find_spec("bpy") is None:
-        raise ConversionError(
-            f"{what} Blender: install its Python module (pip install 'keymark[blender]') "
-            "or run blender --command keymark in a Blender that has Keymark"
-        )
-
-
-def _write_scene(take: Take, motion: Motion, place: Path, output: Path, debug: bool) -> str:
-    """Let Blender write into `place`; returns the digest of the curves in the .blend.
-
-    Blender stores the clip's path relative to where it writes, which must therefore lie as deep as `output`:
-    where `place` does not, the files are written into `output` under hidden names first.
-    """
-    level = place if place.parent == output.parent else output
-    hidden = {name: level / f"{place.name}-{name}" for name in (BLEND, BVH)}
-    try:
-        with blender_silence(debug):
-            from ...bridge.result_files import write_scene
-
-            curves = write_scene(take, motion, hidden[BLEND], hidden[BVH])
-        for name, file in hidden.items():
-            os.replace(file, place / name)
-        return curves
-    finally:
-        for file in hidden.values():
-            file.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Converting a take with a keyframe library in place of posed keyframes, or beside them."""
+"""Reconstruction of a take whose keyframes are posed, matched with a keyframe library, or both."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,79 +7,70 @@ from typing import Any
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import Reconstruction, reconstruct
 from ....core.library.library import Library
-from ....core.library.registry import find_library, registered_libraries
-from ....core.library.texts import EVERY_LIBRARY
 from ....core.matching.match_take import LibraryChoice, match_take, with_matches
 from ....core.progress import Job, stretch
 from ....core.take.keyframe_file import FEWEST_KEYFRAMES
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
-from ..library.folders import library_folders
 
-NAMED = 3
-"""So many libraries are named where none fits."""
-SHARES_WITH_ONE, SHARES_WITH_MORE = (0.3, 0.5), (0.1, 0.8)
-"""How far the whole job is when the footage is read, and when it is matched with one library or several."""
+MOST_NAMED = 3
+"""Libraries named in the sentence that none fits."""
+PROGRESS_WITH_ONE, PROGRESS_WITH_SEVERAL = (0.3, 0.5), (0.1, 0.8)
+"""Fractions of the whole job after reading the footage and after matching it, by the number of libraries."""
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
-    """A motion and what it was reconstructed from."""
+class MatchedReconstruction:
+    """A motion, and the keyframes it was reconstructed from."""
 
     take: Take
-    """With its matched keyframes, where there are some."""
+    """With its matched keyframes, if any."""
     reconstruction: Reconstruction
     choice: LibraryChoice | None = None
-    """Which library was matched; None where none was asked for, or none fits."""
-    unfit: tuple[str, ...] = ()
-    """A sentence where no library fits and the posed keyframes count alone."""
+    """The library that was matched; None where none was asked for, or none fits."""
+    mismatch_notes: tuple[str, ...] = ()
+    """A sentence where no library fits and only the posed keyframes count."""
 
 
-def chosen_libraries(wanted: str) -> tuple[Library, ...]:
-    """The libraries that `--library` means: one by name or file, or all there are.
-
-    Raises:
-        InputError: There is no such library, or none at all, or a file is unusable.
-    """
-    folders = library_folders()
-    if wanted != EVERY_LIBRARY:
-        return (find_library(wanted, folders),)
-    return tuple(found.library for found in registered_libraries(folders) if found.library is not None)
-
-
-def solve(take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None) -> Job[Solved]:
-    """Reconstruct a motion, after matching its footage where there are libraries; the footage is read once.
+def reconstruct_or_match(
+    take: Take, libraries: Sequence[Library], method: str, floor_m: float | None = None
+) -> Job[MatchedReconstruction]:
+    """Reconstruct a motion, after matching the footage where libraries are given; the footage is read once.
 
     Args:
         take: The take, with posed keyframes or, where it is matched, without.
-        libraries: None; or one, which is taken however badly it fits; or several to choose from.
+        libraries: None; or one, which is used however badly it fits; or several to choose from.
         method: As for `reconstruct`.
         floor_m: Height of the floor where it is known [m].
 
     Raises:
         InputError: The clip cannot be used.
-        ConversionError: No library fits the footage of a take that is not posed, or no motion could be
+        ConversionError: No library fits the footage of a take without posed keyframes, or no motion could be
             computed.
     """
     if not libraries:
-        return Solved(take, (yield from reconstruct(take, method)))
-    read, matched = SHARES_WITH_ONE if len(libraries) == 1 else SHARES_WITH_MORE
+        return MatchedReconstruction(take, (yield from reconstruct(take, method)))
+    read, matched = PROGRESS_WITH_ONE if len(libraries) == 1 else PROGRESS_WITH_SEVERAL
     reading = yield from stretch(read_footage(take), 0.0, read)
     choice = yield from stretch(match_take(take, reading, libraries, floor_m), read, matched)
     if choice.match is None:
         if len(take.keyframes) < FEWEST_KEYFRAMES:
-            likely = ", ".join(f"{library.title} {share:.0%}" for library, share in choice.ranking[:NAMED])
-            said = f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written"
-            raise ConversionError(said)
+            likely = ", ".join(
+                f"{library.title} {share:.0%}" for library, share in choice.ranking[:MOST_NAMED]
+            )
+            sentence = f"{take.clip}: {choice.reason}; likeliest are {likely}; nothing was written"
+            raise ConversionError(sentence)
         result = yield from stretch(reconstruct(take, method, reading), matched, 1.0)
-        return Solved(take, result, unfit=(f"{choice.reason}; only the posed keyframes count",))
+        return MatchedReconstruction(
+            take, result, mismatch_notes=(f"{choice.reason}; only the posed keyframes count",)
+        )
     take = with_matches(take, choice.match)
-    solving = reconstruct(take, method, choice.reading or reading)
-    return Solved(take, (yield from stretch(solving, matched, 1.0)), choice)
+    job = reconstruct(take, method, choice.reading or reading)
+    return MatchedReconstruction(take, (yield from stretch(job, matched, 1.0)), choice)
 
 
 def match_summary(take: Take, choice: LibraryChoice) -> dict[str, Any]:
-    """What was matched, for `--json`."""
+    """The match as an object for `--json`."""
     assert choice.match is not None
     probability = {library.identifier: value for library, value in choice.ranking}
     identifier = choice.match.library.identifier

@@ -1,4 +1,4 @@
-"""What a conversion made, and what is recorded of it."""
+"""The result of a conversion, and the record of it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,46 +15,46 @@ from ....core.take.conversion_record import ConversionRecord
 from ....core.take.take import Take
 from ..version import version
 
-WEAKEST = 5.0
-"""Percent of the frames that are less certain than what is recorded as the weakest."""
+WEAKEST_PERCENTILE = 5.0
+"""Percentile of the frames' confidence that is recorded as the weakest."""
 
 
 @dataclass(frozen=True, eq=False)
 class Conversion:
-    """What a conversion made."""
+    """The result of a conversion."""
 
     take: Take
     reconstruction: Reconstruction
     files: tuple[Path, ...]
-    """In the order of `BELONGINGS`, keyframes last."""
+    """In the order of `RESULT_FILES`, then keyframes and record."""
     choice: LibraryChoice | None = None
-    """Which library was matched, and how well, where one was."""
-    left_aside: tuple[str, ...] = ()
-    """A sentence about what of the take was not used."""
+    """The library that was matched, if any, and how well it fits."""
+    conversion_notes: tuple[str, ...] = ()
+    """Sentences on unused keyframes, on libraries that do not fit and on files that are kept."""
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a person should know of the result, one sentence each."""
+        """Everything a person should know of the result, one sentence each."""
         reason = () if self.choice is None else (self.choice.reason.rstrip("."),)
-        return (*self.left_aside, *reason, *self.reconstruction.notes)
+        return (*self.conversion_notes, *reason, *self.reconstruction.notes)
 
 
 def conversion_record(
-    conversion: Conversion, digest: str, place: Path, names: Sequence[str], same: Mapping[str, str]
+    conversion: Conversion, digest: str, folder: Path, names: Sequence[str], stable_digests: Mapping[str, str]
 ) -> ConversionRecord:
-    """What is recorded of a conversion.
+    """The record of a conversion.
 
     Args:
-        conversion: What was made.
-        digest: Of what it was made from.
-        place: Where its files lie.
-        names: Their paths from there.
-        same: Digests of files that differ from run to run, of that in them which does not.
+        conversion: The result.
+        digest: Digest of the input.
+        folder: Folder of the result's files.
+        names: The files, as paths in the folder.
+        stable_digests: Digests of what stays the same in files whose bytes differ from run to run.
     """
     take, motion = conversion.take, conversion.reconstruction.motion
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
-    judged = run(review(take, conversion.reconstruction, frames))
-    believed = judged.confidence[np.isfinite(judged.confidence)]
+    reviewed = run(review(take, conversion.reconstruction, frames))
+    confidence = reviewed.confidence[np.isfinite(reviewed.confidence)]
     match = None if conversion.choice is None else conversion.choice.match
     matched = {keyframe.index for keyframe in take.keyframes if keyframe.matched is not None}
     return ConversionRecord(
@@ -68,9 +68,9 @@ def conversion_record(
         fps=motion.fps,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
         matched=tuple(i + motion.frame_start for i in motion.keyframe_indices if i in matched),
-        confidence=round(float(believed.mean()), 4) if len(believed) else None,
-        weakest=round(float(np.percentile(believed, WEAKEST)), 4) if len(believed) else None,
-        weak_frames=tuple(frame.index + motion.frame_start for frame in judged.weak_frames),
+        confidence=round(float(confidence.mean()), 4) if len(confidence) else None,
+        weakest=round(float(np.percentile(confidence, WEAKEST_PERCENTILE)), 4) if len(confidence) else None,
+        weak_frames=tuple(frame.index + motion.frame_start for frame in reviewed.weak_frames),
         notes=conversion.notes,
-        files={name: same.get(name) or content_digest(place / name) for name in names},
+        files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
     )

@@ -1,4 +1,4 @@
-"""Batches with real workers: several processes, failures, kills and interruptions, the very same results."""
+"""Batches with real workers: failures, kills and interruptions lead to the same results, byte for byte."""
 
 import json
 import os
@@ -14,8 +14,8 @@ import bpy
 import pytest
 from _shoot import write_shoot
 from keymark.core.take.conversion_record import read_record
-from keymark.operators.cli.batch import command
 from keymark.operators.cli.main import main
+from keymark.operators.cli.use_cases import batch as command
 
 TESTS = Path(__file__).resolve().parents[2]
 GOOD = ("day1/take01", "day1/take02", "day1/take03")
@@ -46,14 +46,14 @@ def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(shoot: Path) -> Path:
-    """The shoot's results, by one worker."""
+    """The shoot's results from a single worker."""
     out = shoot.parent / "one"
     assert main(["batch", str(shoot), "--output", str(out), "--jobs", "1", "--quiet"]) == 1
     return out
 
 
 def tree(folder: Path) -> dict[str, Any]:
-    """Every file below a folder but for what tells of the run, and .blend files, which name their folder."""
+    """Every file below a folder but .blend files and those on the run, which differ from run to run."""
     found: dict[str, Any] = {}
     for file in sorted(folder.rglob("*")):
         if file.is_file() and file.suffix != ".blend" and not file.name.startswith(("summary.", ".as_made")):
@@ -65,12 +65,12 @@ def tree(folder: Path) -> dict[str, Any]:
 
 
 def leftovers(folder: Path) -> list[Path]:
-    """What a process that was killed has left half-done."""
+    """Unfinished files that a killed process has left."""
     return [path for path in folder.rglob(".*") if path.name not in (".keymark", ".as_made.json")]
 
 
 def batch(shoot: Path, out: Path, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, Any]:
-    """Run `keymark batch --json`; returns status and what it says."""
+    """Run `keymark batch --json`; returns the exit status and the object."""
     status = main(["batch", str(shoot), "--output", str(out), "--json", *more])
     return status, json.loads(capsys.readouterr().out)
 
@@ -81,7 +81,7 @@ def statuses(said: Any) -> dict[str, str]:
 
 
 def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
-    """Every good take has its files as recorded; the bad ones have nothing, and a sentence in the summary."""
+    """Every good take has the files of its record; a bad one has none, and a sentence in the summary."""
     for name in GOOD:
         record = read_record(results / name)
         assert all((results / name / file).stat().st_size > 0 for file in record.files)
@@ -97,7 +97,7 @@ def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
 def test_two_workers_give_the_same_bytes_as_one(
     shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Motions, records and failures, whoever made them and in whatever order."""
+    """Motions, records and failures, by any worker and in any order."""
     out = shoot.parent / "two"
     status, said = batch(shoot, out, capsys, "--jobs", "2")
     assert status == 1 and said["counts"] == {"converted": 3, "unchanged": 0, "failed": 2, "waiting": 0}
@@ -107,7 +107,7 @@ def test_two_workers_give_the_same_bytes_as_one(
 def test_what_is_converted_is_skipped_until_its_input_changes(
     shoot: Path, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A run on a copy leaves every file alone; other keyframes or a lost file are reason to convert."""
+    """A run on a copy changes no file; changed keyframes or a lost file cause a conversion."""
     own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
     shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
     (own / "day1" / "text.mp4").unlink()
@@ -136,11 +136,11 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Killed once a take converts all the same, to the same bytes; killed twice it alone fails."""
+    """A take whose worker is killed once converts to the same bytes; killed twice, it alone fails."""
     for death in ("take01-1", "take02-1", "take02-2"):
         (tmp_path / death).touch()
     words = [sys.executable, str(TESTS / "_dying_worker.py"), str(tmp_path)]
-    monkeypatch.setattr(command, "worker_words", lambda: words)
+    monkeypatch.setattr(command, "worker_command_line", lambda: words)
     out = shoot.parent / "killed"
     chosen = [word for name in GOOD for word in ("--take", name)]
     status, said = batch(shoot, out, capsys, "--jobs", "2", *chosen)
@@ -160,7 +160,7 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
 def test_an_interrupted_batch_is_whole_and_goes_on(
     shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By Ctrl-C, and again when it is asked to end; the same command then does the rest."""
+    """By Ctrl-C and by SIGTERM; the same command then converts the rest."""
     out = shoot.parent / "interrupted"
     interrupt(shoot, out, os.killpg, signal.SIGINT)
     interrupt(shoot, out, os.kill, signal.SIGTERM)
@@ -192,8 +192,8 @@ def interrupt(shoot: Path, out: Path, send: Callable[[int, int], None], how: int
 
 
 def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
-    """A worker whose batch is gone stops at the next thing it would have told, and cleans up."""
-    words = [*command.worker_words()]
+    """A worker whose batch is gone stops at its next message, and cleans up."""
+    words = [*command.worker_command_line()]
     worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert worker.stdin is not None and worker.stdout is not None
     assert b"ready" in worker.stdout.readline()

@@ -1,4 +1,4 @@
-"""The command line with Blender in the process: all files, and no chatter on standard output."""
+"""The command line with Blender in the process: all files, and standard output free of Blender's messages."""
 
 import json
 import os
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bpy
 import pytest
+from _command_line import tree
 from _synthetic_take import write_synthetic_take
 from keymark.operators.cli.main import main
 
@@ -38,7 +39,7 @@ def test_converting_writes_a_scene_that_opens_and_finds_its_clip(take: Path, tmp
 def test_a_folder_filled_from_within_finds_its_clip_as_well(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the work cannot lie beside the output, the clip's relative path is right all the same."""
+    """Where staging beside the output is impossible, the clip's relative path is right as well."""
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
     from keymark.core.files import output_folder
@@ -72,7 +73,7 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     reason="a Blender program's own Python has no bpy; tests/real_blender converts in it",
 )
 def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: Path) -> None:
-    """In a process of its own, Blender's chatter reaches neither standard output nor standard error."""
+    """In a process of its own, Blender's messages reach neither standard output nor standard error."""
     links = tmp_path / "links"
     links.mkdir()
     (links / "keymark").symlink_to(repository, target_is_directory=True)
@@ -107,3 +108,43 @@ def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
     assert said.out == "" and "the exporter failed" in said.err and len(said.err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["takes"]
+
+
+@pytest.mark.parametrize("within", [False, True], ids=["staged beside", "staged within"])
+@pytest.mark.parametrize("writer", ["write_blend", "write_bvh"])
+def test_a_failure_leaves_the_old_files_and_nothing_else(
+    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, within: bool
+) -> None:
+    """Half a file never replaces a whole one, with staging beside the output and within it."""
+    from keymark.core.errors import ConversionError
+    from keymark.core.files import output_folder
+    from keymark.operators.bridge import result_files
+
+    out = tmp_path / "results" / "out"
+    words = [
+        "convert",
+        str(take),
+        "--output",
+        str(out),
+        "--method",
+        "interpolation",
+        "--quiet",
+        "--no-report",
+    ]
+    assert main(words) == 0
+    before = tree(out.parent)
+    if within:
+        monkeypatch.setattr(output_folder.os, "access", lambda path, mode: Path(path) == out)
+    written: list[Path] = []
+
+    def fail(first: object, second: object, **_options: object) -> None:
+        path = first if isinstance(first, Path) else second
+        assert isinstance(path, Path)
+        path.write_bytes(b"half")
+        written.append(path)
+        raise ConversionError("the disk is full")
+
+    monkeypatch.setattr(result_files, writer, fail)
+    assert main(words) == 1
+    assert len(written) == 1 and (written[0].parent == out) == within
+    assert tree(out.parent) == before

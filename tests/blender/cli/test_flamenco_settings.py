@@ -52,7 +52,7 @@ def group(settings: list[dict[str, Any]]) -> Iterator[Any]:
 
 
 def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]]) -> None:
-    """With its kind, limits, choices and default."""
+    """The property has the setting's type, limits, choices and default."""
     for setting in settings:
         assert getattr(group, setting["key"]) == setting.get("default", "")
     group.tasks = -5
@@ -63,7 +63,7 @@ def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]])
 
 
 def test_people_can_read_what_they_are_asked(settings: list[dict[str, Any]]) -> None:
-    """What is shown has a label and a tooltip, without the full stop that Blender adds."""
+    """A visible setting has a label and a tooltip, without the full stop that Blender adds."""
     shown = [one for one in settings if one.get("visible") != "web"]
     assert len(shown) == 10
     assert all(one["label"] and one["description"][-1] not in ".!" for one in shown)

@@ -1,4 +1,4 @@
-"""Disks that fill up, that cannot be written, that are another than expected: real ones, in memory."""
+"""Disks that fill up, are read-only or mounted at the output: real file systems, in memory."""
 
 import json
 import os
@@ -35,28 +35,28 @@ def convert(take: Path, out: Path, words: tuple[str, ...]) -> int:
 
 
 @contextmanager
-def mounted(place: Path, *words: str) -> Iterator[None]:
-    """A file system of its own at a folder, where this machine lets us."""
-    place.mkdir(parents=True, exist_ok=True)
+def mounted(folder: Path, *words: str) -> Iterator[None]:
+    """Mount a file system at a folder, or skip the test where that is not permitted."""
+    folder.mkdir(parents=True, exist_ok=True)
     if sys.platform != "linux" or os.geteuid() != 0 or shutil.which("mount") is None:
         pytest.skip("only root may mount")
-    done = subprocess.run(["mount", *words, str(place)], capture_output=True, text=True)
+    done = subprocess.run(["mount", *words, str(folder)], capture_output=True, text=True)
     if done.returncode != 0:
         pytest.skip(f"this machine mounts nothing: {done.stderr.strip()}")
     try:
         yield
     finally:
-        subprocess.run(["umount", "--lazy", str(place)], check=True)
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
-def remount(place: Path, options: str) -> None:
+def remount(folder: Path, options: str) -> None:
     """Change a mounted file system."""
-    subprocess.run(["mount", "-o", f"remount,{options}", str(place)], check=True)
+    subprocess.run(["mount", "-o", f"remount,{options}", str(folder)], check=True)
 
 
 @pytest.fixture(scope="module")
 def wanted(take: Path) -> dict[str, bytes | None]:
-    """What a conversion leaves that has room."""
+    """The result of a conversion on a disk with room."""
     out = take.parent / "disk" / "results" / "out"
     assert convert(take, out, NEWER) == 0
     results = same_in_every_run(out)
@@ -67,7 +67,7 @@ def wanted(take: Path) -> dict[str, bytes | None]:
 def test_a_disk_that_fills_up_keeps_the_older_results(
     take: Path, wanted: dict[str, bytes | None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Wherever it is full, one sentence says so and all is as before; with room it goes on."""
+    """Wherever the disk becomes full, one sentence says so and no file has changed; with room it converts."""
     disk = take.parent / "disk"
     out = disk / "results" / "out"
     with mounted(disk, "-t", "tmpfs", "-o", "size=16m", "none"):
@@ -99,7 +99,7 @@ def test_a_disk_that_fills_up_keeps_the_older_results(
 def test_files_that_may_not_grow_further_are_noticed(
     take: Path, wanted: dict[str, bytes | None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Whichever program writes them: Python, OpenCV, Blender or its exporters."""
+    """With each writer: Python, OpenCV, Blender and its exporters."""
     import resource
 
     out = take.parent / "disk" / "results" / "out"
@@ -127,7 +127,7 @@ def test_files_that_may_not_grow_further_are_noticed(
 def test_what_is_read_may_lie_on_a_disk_that_cannot_be_written(
     take: Path, wanted: dict[str, bytes | None], tmp_path: Path
 ) -> None:
-    """Nothing is ever written beside what is read."""
+    """No file is written beside the input."""
     disk = take.parent / "disk"
     before = tree(take)
     with mounted(take, "--bind", str(take)):
@@ -141,7 +141,7 @@ def test_what_is_read_may_lie_on_a_disk_that_cannot_be_written(
 def test_results_on_a_disk_that_cannot_be_written_are_refused(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """At once, in a sentence that names the folder."""
+    """At once, with a sentence that names the folder."""
     disk = tmp_path / "disk"
     with mounted(disk, "-t", "tmpfs", "-o", "size=4m", "none"):
         (disk / "old").mkdir()
@@ -153,7 +153,7 @@ def test_results_on_a_disk_that_cannot_be_written_are_refused(
 
 
 def test_a_folder_that_is_a_disk_of_its_own_is_filled_from_within(take: Path, tmp_path: Path) -> None:
-    """What a killed process has left in it is cleared away there."""
+    """Unfinished files of a killed process are removed from within it, too."""
     out = tmp_path / "results" / "out"
     with mounted(out, "-t", "tmpfs", "-o", "size=16m", "none"):
         assert convert(take, out, OLDER) == 0
@@ -169,8 +169,8 @@ def test_a_folder_that_is_a_disk_of_its_own_is_filled_from_within(take: Path, tm
     assert os.listdir(out.parent) == ["out"]
 
 
-def odd_places(folder: Path) -> dict[str, Path]:
-    """Places that mean something to Blender, or are hard on programs."""
+def odd_paths(folder: Path) -> dict[str, Path]:
+    """Paths that have a meaning to Blender, or are hard on programs."""
     return {
         "hashes, which Blender turns into frame numbers": folder / "####" / "take #1 %04d",
         "two slashes, which Blender takes for the open file's folder": Path("/" + str(folder / "twice")),
@@ -182,13 +182,13 @@ def odd_places(folder: Path) -> dict[str, Path]:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows forbids such names")
-@pytest.mark.parametrize("what", sorted(odd_places(Path("/"))))
-def test_odd_places_are_read_and_written(what: str, take: Path, tmp_path: Path) -> None:
-    """The take as well as its results lie there, and Blender finds both."""
-    place = odd_places(tmp_path)[what]
-    own, out = place / "take", place / "results"
+@pytest.mark.parametrize("what", sorted(odd_paths(Path("/"))))
+def test_odd_paths_are_read_and_written(what: str, take: Path, tmp_path: Path) -> None:
+    """Both the take and its results have such paths, and Blender finds both."""
+    folder = odd_paths(tmp_path)[what]
+    own, out = folder / "take", folder / "results"
     if what == "as long as a name may be":
-        own, out = place, tmp_path / ("o" * 255)
+        own, out = folder, tmp_path / ("o" * 255)
     shutil.copytree(take, own)
     assert convert(own, out, NEWER) == 0
     assert is_whole(out) and blend_is_of(out)
@@ -200,7 +200,7 @@ def test_odd_places_are_read_and_written(what: str, take: Path, tmp_path: Path) 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has other limits")
 @pytest.mark.parametrize(
-    ("place", "sentence"),
+    ("path_below", "sentence"),
     [
         (lambda folder: folder.joinpath(*["n" * 200] * 5), "Blender can work with"),
         (lambda folder: folder.joinpath(*["n" * 200] * 25), "too long|Blender can work with"),
@@ -208,16 +208,16 @@ def test_odd_places_are_read_and_written(what: str, take: Path, tmp_path: Path) 
     ],
 )
 @pytest.mark.parametrize("of", ["take", "results"])
-def test_places_that_blender_cannot_reach_are_one_sentence(
+def test_paths_that_blender_cannot_reach_are_one_sentence(
     of: str,
-    place: Callable[[Path], Path],
+    path_below: Callable[[Path], Path],
     sentence: str,
     take: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Before any work is done, and with nothing made."""
-    far = place(tmp_path)
+    """Before any work, and without a new file."""
+    far = path_below(tmp_path)
     own, out = (far, tmp_path / "out") if of == "take" else (take, far)
     if of == "take":
         try:
@@ -232,7 +232,7 @@ def test_places_that_blender_cannot_reach_are_one_sentence(
 
 
 def test_what_somebody_has_changed_is_kept_beside(take: Path, tmp_path: Path) -> None:
-    """A .blend that was worked in, also one that no record vouches for; the notes say so."""
+    """A .blend that a person has changed is kept, also one without a record; the notes say so."""
     out = tmp_path / "out"
     assert convert(take, out, OLDER) == 0
     (out / "motion.blend").write_bytes(b"worked in")

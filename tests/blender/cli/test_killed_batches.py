@@ -1,4 +1,4 @@
-"""Batches that are killed, or lose a worker, or have company; a later run makes good for it."""
+"""Batches that are killed, lose a worker or run twice at once; a later run completes them."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
+from _results import blend_is_of, hidden, is_whole, same_in_every_run
 from _shoot import write_shoot
 
 pytestmark = [
@@ -25,7 +25,7 @@ pytestmark = [
 TAKES = 4
 DEATHS = 18
 TO_ITS_END = 3
-"""Every so many deaths, a batch is let live."""
+"""Number of kills after which a batch runs to its end."""
 SEED = 22
 
 
@@ -37,7 +37,7 @@ def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @contextmanager
 def batch(shoot: Path, out: Path, *words: str) -> "Iterator[subprocess.Popen[str]]":
-    """A batch in a process group of its own; what is left of it at the end is killed."""
+    """A batch in a process group of its own, which is killed at the end."""
     script = Path(__file__).resolve().parents[2] / "_dying.py"
     process = subprocess.Popen(
         [sys.executable, str(script), "never", "-", "batch", str(shoot), "--output", str(out), *words],
@@ -57,7 +57,7 @@ def batch(shoot: Path, out: Path, *words: str) -> "Iterator[subprocess.Popen[str
 
 
 def to_the_end(shoot: Path, out: Path, *words: str) -> dict[str, bytes | None]:
-    """A batch that lives; returns all that is the same in every run."""
+    """Run a batch to its end; returns everything that is the same in every run."""
     with batch(shoot, out, *words) as process:
         said, _ = process.communicate()
         assert process.returncode == 0, said
@@ -65,8 +65,8 @@ def to_the_end(shoot: Path, out: Path, *words: str) -> dict[str, bytes | None]:
 
 
 def results(out: Path) -> dict[str, bytes | None]:
-    """What the takes' folders hold; the summary tells how long each took."""
-    assert not hidden_files(out)
+    """The files of the takes' folders; the summary is left out, for it has times."""
+    assert not hidden(out)
     for record in out.rglob("conversion.json"):
         assert is_whole(record.parent) and blend_is_of(record.parent)
     lines = (out / "summary.jsonl").read_text(encoding="utf-8").splitlines()
@@ -122,7 +122,7 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
 
 
 def test_two_batches_on_one_folder_end_well(shoot: Path) -> None:
-    """Each take is converted by one of them, the other waits for it or finds it done."""
+    """Each take is converted by one batch; the other waits for it or skips it."""
     out = shoot.parent / "alone"
     undisturbed = to_the_end(shoot, out, "--jobs", "2")
     shutil.rmtree(out)

@@ -22,7 +22,7 @@ pytestmark = [
 SEEDS = (20, 21)
 KILLS = 50
 TO_ITS_END = 5
-"""Every so many deaths, a run is let live."""
+"""Number of kills after which a run goes to its end."""
 RUNS = {
     "older": ("--method", "interpolation", "--no-report"),
     "newer": ("--method", "interpolation"),
@@ -32,7 +32,7 @@ RUNS = {
 
 @dataclass(frozen=True)
 class Undisturbed:
-    """What a run leaves that nothing disturbs, and what it takes."""
+    """The result of an undisturbed run, and its effort."""
 
     results: dict[str, bytes | None]
     operations: int
@@ -55,7 +55,7 @@ def run(take: Path, out: Path, kind: str, when: str) -> "subprocess.CompletedPro
 
 
 def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
-    """A run that lives."""
+    """Run a conversion to its end."""
     done = run(take, out, kind, "never")
     assert done.returncode == 0, done.stderr
     took = json.loads(done.stdout.splitlines()[-1])
@@ -65,7 +65,7 @@ def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
 
 @pytest.fixture(scope="module")
 def undisturbed(take: Path) -> dict[str, Undisturbed]:
-    """Of every kind of run."""
+    """An undisturbed run of every kind."""
     found = {}
     for kind in RUNS:
         out = take.parent / "results" / "out"  # of equal depth everywhere: a .blend holds the way to its clip
@@ -75,7 +75,7 @@ def undisturbed(take: Path) -> dict[str, Undisturbed]:
 
 
 def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]) -> None:
-    """Every file but the .blend byte for byte, and of that the curves."""
+    """Every file is the same byte for byte; of the .blend, the curves."""
     out = take.parent / "results" / "out"
     assert to_the_end(take, out, "newer").results == undisturbed["newer"].results
     assert blend_is_of(out)
@@ -84,7 +84,7 @@ def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undisturbed], seed: int) -> None:
-    """At random moments and random files; what is there is whole or not taken for it, the end is right.
+    """Kills at random times and file accesses: a result is whole or not taken for one, and the last is right.
 
     Two kinds of run follow each other in one folder, so that the results of one are replaced by the other's.
     """

@@ -36,7 +36,7 @@ def test_a_library_survives_its_way_through_a_blend(
 def test_nothing_is_replaced_unless_told(
     library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A .blend that is there stays; what is no .blend is refused in one line."""
+    """An existing .blend is kept; a file that is no .blend is refused in one line."""
     folder = tmp_path / "assets"
     folder.mkdir()
     (folder / "small_steps.blend").write_text("mine", encoding="utf-8")

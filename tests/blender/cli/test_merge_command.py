@@ -1,4 +1,4 @@
-"""`keymark merge`: motions of a batch as an asset library: complete, named, replaced when merged again."""
+"""`keymark merge`: the asset library of a batch is complete, named, and replaced by the next merge."""
 
 import json
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def results(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def add_result(results: Path, wave_motion: Motion) -> AddResult:
-    """A function that writes a take's result, whose motion is long enough to tell, below the folder."""
+    """A function that writes a take's result below the folder, with a distinct motion."""
 
     def add(name: str) -> Path:
         folder = results / name
@@ -81,7 +81,7 @@ def catalogs(folder: Path) -> dict[str, str]:
 
 
 def values(action: bpy.types.Action, frame: float) -> dict[tuple[str, int], float]:
-    """What all curves of an Action say at a frame."""
+    """Values of all curves of an Action at a frame."""
     (slot,) = action.slots
     curves = action.layers[0].strips[0].channelbag(slot).fcurves
     return {(curve.data_path, curve.array_index): curve.evaluate(frame) for curve in curves}
@@ -136,7 +136,7 @@ def test_an_actor_given_the_action_moves_as_the_motion_says(
 def test_blender_itself_finds_the_slot(
     add_result: AddResult, results: Path, tmp_path: Path, body: Body
 ) -> None:
-    """Whoever only chooses the Action for an actor of the usual name, as animators do, has it moving."""
+    """Choosing the Action for an actor of the usual name, as animators do, animates it."""
     add_result("clip")
     assert merge(results, tmp_path / "library.blend") == 0
     (action,) = loaded(tmp_path / "library.blend")
@@ -192,7 +192,7 @@ def test_an_actor_that_is_dragged_into_a_scene_moves(
 def test_merging_again_replaces_the_motions_and_keeps_the_catalogs(
     add_result: AddResult, results: Path, tmp_path: Path
 ) -> None:
-    """A take that is gone is gone from the library; a catalog that somebody has added stays."""
+    """A deleted take leaves the library; a catalog that a person has added stays."""
     for name in ("day1/a", "day2/b"):
         add_result(name)
     output = tmp_path / "library.blend"
@@ -210,7 +210,7 @@ def test_merging_again_replaces_the_motions_and_keeps_the_catalogs(
 
 
 def test_the_open_file_stays_as_it_was(add_result: AddResult, results: Path, tmp_path: Path) -> None:
-    """Nothing is added to it."""
+    """The open file gets no data-block."""
     add_result("clip")
     before = {block.name for block in bpy.data.user_map()}
     assert merge(results, tmp_path / "library.blend") == 0
@@ -220,7 +220,7 @@ def test_the_open_file_stays_as_it_was(add_result: AddResult, results: Path, tmp
 def test_damaged_results_are_named_and_the_others_merged(
     add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A changed motion, a cut off record and one without its motion: exit 1, and what is sound is there."""
+    """A changed motion, a cut off record and a record without its motion: exit 1, with all sound takes."""
     add_result("a")
     changed, cut, without = (add_result(name) for name in ("changed", "cut", "without"))
     motion = (changed / "motion.json").read_text(encoding="utf-8")
@@ -241,7 +241,7 @@ def test_damaged_results_are_named_and_the_others_merged(
 def test_takes_that_have_failed_are_named(
     add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As a batch has kept them, so that nobody takes the library for complete."""
+    """With the batch's sentences, so that the library is not taken for complete."""
     add_result("a")
     for number in range(7):
         write_failure(results, Failure(f"bad{number}", f"clip {number} is cut off", "input"))
@@ -264,7 +264,7 @@ def test_where_nothing_is_sound_nothing_is_written(
 
 
 @pytest.mark.parametrize(
-    ("place", "sentence"),
+    ("output", "sentence"),
     [
         ("library.txt", "must end in .blend"),
         ("results/clip/library.blend", "lies in the results of the take clip"),
@@ -276,18 +276,18 @@ def test_unusable_places_are_refused(
     results: Path,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
-    place: str,
+    output: str,
     sentence: str,
 ) -> None:
-    """With a sentence, before anything is read."""
+    """With a sentence, before any result is read."""
     add_result("clip")
     (tmp_path / "folder.blend").mkdir()
-    assert merge(results, tmp_path / place) == 2
+    assert merge(results, tmp_path / output) == 2
     assert sentence in capsys.readouterr().err
 
 
 def test_folders_without_results_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Empty ones, and those that are not there."""
+    """Empty folders and missing ones."""
     assert merge(tmp_path / "nowhere", tmp_path / "library.blend") == 2
     assert "no such folder" in capsys.readouterr().err
     assert merge(tmp_path, tmp_path / "library.blend") == 2

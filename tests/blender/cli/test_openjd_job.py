@@ -69,7 +69,7 @@ def parameters(keymark: Path, shoot: Path, output: Path, tasks: int = TAKES, **m
 
 
 def test_the_template_is_valid_without_extensions(template: Path) -> None:
-    """Of its kind, and with a task for each share."""
+    """The template is valid and has a task for each share."""
     done = openjd("check", template, "--extensions", "")
     assert done.returncode == 0, done.stdout + done.stderr
     words = ("-p", "Shoot=/shoot", "-p", "Output=/out", "-p", "Tasks=12", "--output", "json")
@@ -125,7 +125,7 @@ def test_a_task_converts_its_share_and_nothing_else(
 def test_a_failed_take_stops_the_others_only_if_that_is_wanted(
     template: Path, keymark: Path, tmp_path: Path
 ) -> None:
-    """Else it is merged what there is, and the job fails at its end with the take's name."""
+    """Then the others are merged, and the job fails at its end with the name of the take."""
     shoot = write_shoot(tmp_path / "shoot", 2)
     (shoot / "day1" / "take02.mp4").write_bytes(b"no video")
     output = tmp_path / "out"

@@ -1,4 +1,4 @@
-"""A batch with workers that only pretend: queueing, retries, what is said, exit status, interruption."""
+"""A batch with stand-in workers: job queue, retries, output, exit status, interruption."""
 
 import json
 import os
@@ -9,22 +9,23 @@ from typing import Any
 
 import pytest
 from keymark.core.shoot.outcomes.failures import read_failure
-from keymark.operators.cli.batch import command, supervisor
-from keymark.operators.cli.batch.batch_progress import Share
-from keymark.operators.cli.line_parser import program_name
+from keymark.operators.cli.batch import worker_pool
+from keymark.operators.cli.batch.batch_progress import BatchProgress
 from keymark.operators.cli.main import main
+from keymark.operators.cli.usage import program_name
+from keymark.operators.cli.use_cases import batch as command
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 
 
 class Studio:
-    """A shoot of empty takes, and workers that pretend."""
+    """A shoot of empty takes with stand-in workers."""
 
     def __init__(self, folder: Path) -> None:
         self.shoot, self.out, self.log = folder / "shoot", folder / "out", folder / "worker.log"
 
     def takes(self, *names: str) -> None:
-        """Put takes into the shoot."""
+        """Add takes to the shoot."""
         for name in names:
             (self.shoot / name).mkdir(parents=True)
             (self.shoot / name / "take.json").write_text("{}", encoding="utf-8")
@@ -34,8 +35,8 @@ class Studio:
         return main(["batch", str(self.shoot), "--output", str(self.out), "--jobs", str(jobs), *words])
 
     @property
-    def told(self) -> list[dict[str, Any]]:
-        """What the workers were told, in order."""
+    def received_jobs(self) -> list[dict[str, Any]]:
+        """The jobs that the workers received, in order."""
         if not self.log.exists():
             return []
         return [json.loads(line) for line in self.log.read_text(encoding="utf-8").splitlines()]
@@ -49,26 +50,26 @@ class Studio:
 
 @pytest.fixture
 def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
-    """A studio with nothing in it yet."""
+    """A studio without takes."""
     made = Studio(tmp_path)
-    monkeypatch.setattr(command, "require_blender", lambda what: None)
+    monkeypatch.setattr(command, "require_blender", lambda needing: None)
     monkeypatch.setattr(
-        command, "worker_words", lambda: [sys.executable, "-I", "-S", str(STAND_IN), str(made.log)]
+        command, "worker_command_line", lambda: [sys.executable, "-I", "-S", str(STAND_IN), str(made.log)]
     )
-    monkeypatch.setattr(supervisor, "SHORTEST_WAIT_S", 0.001)
+    monkeypatch.setattr(worker_pool, "SHORTEST_BACKOFF_S", 0.001)
     return made
 
 
 def test_every_take_is_converted_once_and_workers_are_kept(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Two workers do all takes; a line a take says so, with how many are done, and the last how many."""
+    """Two workers convert all takes; a line a take counts those done, and the last line gives the total."""
     names = [f"day{day}/take{take}" for day in (1, 2) for take in range(4)]
     studio.takes(*names)
     assert studio.batch() == 0
     said = capsys.readouterr()
-    assert sorted(job["take"] for job in studio.told) == names
-    assert len({job["process"] for job in studio.told}) <= 2
+    assert sorted(job["take"] for job in studio.received_jobs) == names
+    assert len({job["process"] for job in studio.received_jobs}) <= 2
     assert said.err == "" and "8 takes: 8 converted." in said.out
     assert [line.split("]")[0] for line in said.out.splitlines()[:8]] == [f"[{n}/8" for n in range(1, 9)]
     assert {row["status"] for row in studio.summary.values()} == {"converted"}
@@ -77,7 +78,7 @@ def test_every_take_is_converted_once_and_workers_are_kept(
 def test_failures_stop_nothing_and_are_said_kept_and_forgotten(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 1, the others converted; the sentence stands in the text, the summary and the folder."""
+    """Status 1, the others converted; the sentence is in the output, the summary and the folder."""
     studio.takes("a", "wrong", "z")
     assert studio.batch() == 1
     said = capsys.readouterr()
@@ -100,7 +101,7 @@ def test_failures_stop_nothing_and_are_said_kept_and_forgotten(
 
 
 def test_quiet_is_errors_alone(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    """Nothing on standard output; on the other a line a failure and the last one."""
+    """Standard output is empty; standard error has a line for each failure and the final one."""
     studio.takes("a", "wrong")
     assert studio.batch("--quiet") == 1
     said = capsys.readouterr()
@@ -109,11 +110,11 @@ def test_quiet_is_errors_alone(studio: Studio, capsys: pytest.CaptureFixture[str
 
 
 def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    """The one that dies once converts on the second try; those that always die fail, each after two."""
+    """A take whose worker dies once converts on the retry; one whose worker always dies fails after two."""
     studio.takes("a", "crash", "stumble", "z", *(["killed"] if os.name == "posix" else []))
     assert studio.batch() == 1
     said = capsys.readouterr().out
-    tries = Counter(job["take"] for job in studio.told)
+    tries = Counter(job["take"] for job in studio.received_jobs)
     assert tries["a"] == tries["z"] == 1 and tries["crash"] == tries["stumble"] == 2
     assert "stumble  converted" in said and "the process that converted it ended with exit status 9" in said
     failure = read_failure(studio.out, "crash")
@@ -121,7 +122,7 @@ def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.C
     if os.name == "posix":
         assert tries["killed"] == 2 and "was killed by SIGKILL" in said
     by_take = {}
-    for job in studio.told:
+    for job in studio.received_jobs:
         by_take.setdefault(job["take"], []).append(job["process"])
     assert len(set(by_take["crash"])) == 2  # another process each time
 
@@ -129,44 +130,44 @@ def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.C
 def test_a_worker_that_says_nothing_is_given_up(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After its time it is ended; its take is tried once more, and the others go on."""
+    """It is ended at the heartbeat timeout; its take is retried once, and the others go on."""
     studio.takes("a", "hang")
-    monkeypatch.setattr(command, "LONGEST_SILENCE_S", 0.3)
+    monkeypatch.setattr(command, "HEARTBEAT_TIMEOUT_S", 0.3)
     assert studio.batch(jobs=1) == 1
     assert "hang: the process that converted it told of no progress for" in capsys.readouterr().out
-    assert [job["take"] for job in studio.told] == ["a", "hang", "hang"]
+    assert [job["take"] for job in studio.received_jobs] == ["a", "hang", "hang"]
 
 
 def test_a_worker_that_has_grown_is_replaced(studio: Studio) -> None:
-    """The take counts as it is; the next goes to a new process."""
+    """The result of the take counts; the next take goes to a new process."""
     studio.takes("grown-1", "grown-2", "z")
     assert studio.batch(jobs=1) == 0
-    first, second, last = [job["process"] for job in studio.told]
+    first, second, last = [job["process"] for job in studio.received_jobs]
     assert first != second != last
 
 
 def test_a_busy_take_comes_last_and_is_taken_as_it_is(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What another process is at work on waits until it is done; it is not converted again then."""
+    """A take that another process converts is retried until that is done, and not converted again."""
     studio.takes("busy", "m", "z")
     assert studio.batch("--again", jobs=1) == 0
-    assert [job["take"] for job in studio.told] == ["busy", "m", "z", "busy", "busy"]
-    assert [job["again"] for job in studio.told] == [True, True, True, False, False]
+    assert [job["take"] for job in studio.received_jobs] == ["busy", "m", "z", "busy", "busy"]
+    assert [job["again"] for job in studio.received_jobs] == [True, True, True, False, False]
     assert "3 takes: 2 converted, 1 unchanged." in capsys.readouterr().out
 
 
 def test_no_worker_no_batch(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where none starts, the batch ends with what it said last; no take has failed for it."""
+    """The batch ends with the worker's last line on standard error; no take counts as failed."""
     studio.takes("a", "b")
     broken = [sys.executable, "-I", "-S", str(STAND_IN), str(studio.log.with_name("broken.log"))]
-    monkeypatch.setattr(command, "worker_words", lambda: broken)
+    monkeypatch.setattr(command, "worker_command_line", lambda: broken)
     assert studio.batch() == 1
     assert "no worker process starts: the module cv9 is missing" in capsys.readouterr().err
     assert studio.summary["a"]["status"] == "waiting" and read_failure(studio.out, "a") is None
-    monkeypatch.setattr(command, "worker_words", lambda: [str(studio.shoot / "no_such_program")])
+    monkeypatch.setattr(command, "worker_command_line", lambda: [str(studio.shoot / "no_such_program")])
     assert studio.batch() == 1
     assert "no_such_program: cannot be run" in capsys.readouterr().err
 
@@ -175,7 +176,7 @@ def test_no_worker_no_batch(
 def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 130; what was done stands in the summary, the rest waits, and no process is left."""
+    """Status 130; finished takes are in the summary, the others wait, and no process is left."""
     studio.takes("a", "interrupt", "z")
     assert studio.batch(jobs=1) == 130
     said = capsys.readouterr()
@@ -184,7 +185,7 @@ def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
     )
     statuses = {name: row["status"] for name, row in studio.summary.items()}
     assert statuses == {"a": "converted", "interrupt": "waiting", "z": "waiting"}
-    for job in studio.told:
+    for job in studio.received_jobs:
         with pytest.raises(ProcessLookupError):
             os.kill(job["process"], 0)
 
@@ -197,7 +198,7 @@ def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
     def interrupted(self: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command.Tally, "finish", interrupted)
+    monkeypatch.setattr(command.BatchOutcomes, "finish", interrupted)
     studio.takes("a", "b")
     assert studio.batch() == 130
     assert "2 of 2 takes are converted" in capsys.readouterr().err
@@ -207,7 +208,7 @@ def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
 def test_a_log_that_cannot_grow_stops_nothing(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All takes are converted; only a program that waits for the result learns that it gets none."""
+    """All takes are converted; only with --json, whose result is lost, is that an error."""
     studio.takes("a", "b")
     for more, status in (((), 0), (("--again", "--json"), 1)):
         with monkeypatch.context() as patched, open("/dev/full", "w", encoding="utf-8") as full:
@@ -218,23 +219,23 @@ def test_a_log_that_cannot_grow_stops_nothing(
 
 
 def test_parts_share_the_takes(studio: Studio) -> None:
-    """Three machines convert every take once between them, and the last's summary has all."""
+    """Three machines convert every take once between them, and the last summary has all takes."""
     names = [f"take{number}" for number in range(5)]
     studio.takes(*names)
     for part in (1, 2, 3):
         assert studio.batch("--part", f"{part}/3") == 0
-    assert sorted(job["take"] for job in studio.told) == names
+    assert sorted(job["take"] for job in studio.received_jobs) == names
     assert list(studio.summary) == names
 
 
 def test_a_list_says_which_takes_and_how(studio: Studio) -> None:
-    """Only the takes of the list are converted, each with what its line says."""
+    """Only the takes of the list are converted, each with the fields of its line."""
     studio.takes("a", "b", "c")
     listed = studio.shoot / "night.jsonl"
     listed.write_text('{"take": "c"}\n\n{"take": "a", "method": "ekf", "// why": "try"}\n', encoding="utf-8")
     assert main(["batch", str(listed), "--output", str(studio.out), "--jobs", "1"]) == 0
-    assert [job["take"] for job in studio.told] == ["a", "c"]
-    assert studio.told[0]["nearest"]["method"] == "ekf"
+    assert [job["take"] for job in studio.received_jobs] == ["a", "c"]
+    assert studio.received_jobs[0]["nearest"]["method"] == "ekf"
 
 
 @pytest.mark.parametrize(
@@ -256,7 +257,7 @@ def test_an_unusable_command_line_writes_nothing(
     studio.takes("take1")
     assert main(["batch", str(studio.shoot), "--output", str(studio.out), *words]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert sentence in line and not studio.out.exists() and studio.told == []
+    assert sentence in line and not studio.out.exists() and studio.received_jobs == []
 
 
 def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
@@ -269,18 +270,18 @@ def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.Capture
     studio.takes("a")
     assert main(["batch", str(studio.shoot), "--output", str(studio.shoot)]) == 2
     assert "is the shoot's own folder" in capsys.readouterr().err
-    assert not studio.out.exists() and studio.told == []
+    assert not studio.out.exists() and studio.received_jobs == []
 
 
 def test_the_share_of_all_work_counts_frames_where_they_are_known() -> None:
-    """A take of unknown length counts as the usual one; what is learned of it counts from then on."""
-    share = Share([300, None, 100])
-    assert share.value == 0.0
-    share.come(0, 1.0)
-    assert share.value == pytest.approx(300 / 600)
-    share.come(1, 0.5)
-    assert share.value == pytest.approx((300 + 100) / 600)
-    share.come(1, 1.0, 50)
-    assert share.value == pytest.approx(350 / 450)
-    share.come(2, 1.0, 100)
-    assert share.value == pytest.approx(1.0) and Share([]).value == 1.0
+    """A take of unknown length counts as the mean one, until its length becomes known."""
+    progress = BatchProgress([300, None, 100])
+    assert progress.fraction == 0.0
+    progress.update(0, 1.0)
+    assert progress.fraction == pytest.approx(300 / 600)
+    progress.update(1, 0.5)
+    assert progress.fraction == pytest.approx((300 + 100) / 600)
+    progress.update(1, 1.0, 50)
+    assert progress.fraction == pytest.approx(350 / 450)
+    progress.update(2, 1.0, 100)
+    assert progress.fraction == pytest.approx(1.0) and BatchProgress([]).fraction == 1.0

@@ -1,4 +1,4 @@
-"""`keymark check`: it finds what would stop a take or spoil it, says so, and writes nothing."""
+"""`keymark check`: finds problems and likely problems of takes, reports them, and writes nothing."""
 
 import json
 import shutil
@@ -12,10 +12,10 @@ from _shoot import write_frames, write_shoot
 from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures
 from keymark.core.shoot.check.take_check import TakeCheck
 from keymark.core.shoot.shoot import Shoot, ShootTake
-from keymark.operators.cli import check as command
-from keymark.operators.cli.check_text import check_text
-from keymark.operators.cli.line_parser import program_name
 from keymark.operators.cli.main import main
+from keymark.operators.cli.usage import program_name
+from keymark.operators.cli.use_cases import check as command
+from keymark.operators.cli.use_cases.check_text import check_text
 
 FRAMES = 10
 TAKE = "day1/take01"
@@ -30,19 +30,19 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def one_take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of one take, quickly looked at."""
+    """A shoot of one take, quick to check."""
     return write_shoot(tmp_path_factory.mktemp("one") / "shoot", 1, FRAMES)
 
 
 @pytest.fixture
 def shoot(one_take: Path, tmp_path: Path) -> Path:
-    """One of the test's own, to spoil."""
+    """A copy of the shoot that the test may damage."""
     return Path(shutil.copytree(one_take, tmp_path / "shoot"))
 
 
 @pytest.fixture
 def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[str, Any]]]:
-    """Run `keymark check --json`: the exit status and what it says."""
+    """Run `keymark check --json`; returns the exit status and the object."""
 
     def run(*words: object) -> tuple[int, dict[str, Any]]:
         status = main(["check", *map(str, words), "--json"])
@@ -52,7 +52,7 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
 
 
 def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
-    """Change a JSON file, which may be new."""
+    """Change a JSON file, or make it."""
     path = shoot / name
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     change(value)
@@ -62,7 +62,7 @@ def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
 def test_a_sound_shoot_is_ready_and_stays_as_it_is(
     pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 0, every marker seen; no file is written or touched; several at a time find the same."""
+    """Status 0, every marker seen; no file is written or touched; several jobs give the same result."""
     before = {path: path.stat().st_mtime_ns for path in pristine.rglob("*")}
     status, said = check(pristine)
     assert status == 0 and said["counts"] == {"ready": 3, "look": 0, "fails": 0}
@@ -81,17 +81,17 @@ def test_a_sound_shoot_is_ready_and_stays_as_it_is(
 
 
 def no_video(shoot: Path) -> None:
-    """A text that is called a video."""
+    """A text file with a video's suffix."""
     (shoot / f"{TAKE}.mp4").write_text("no video", encoding="utf-8")
 
 
 def no_keyframes(shoot: Path) -> None:
-    """Neither keyframes nor a library."""
+    """No keyframes and no library."""
     (shoot / f"{TAKE}.keyframes.json").unlink()
 
 
 def cut_keyframes(shoot: Path) -> None:
-    """Keyframes that end in the middle."""
+    """A keyframe file that is cut off."""
     path = shoot / f"{TAKE}.keyframes.json"
     path.write_bytes(path.read_bytes()[:500])
 
@@ -138,14 +138,14 @@ def test_what_would_stop_a_take_is_said(
 
 
 def swapped(shoot: Path) -> None:
-    """Left arm for right."""
+    """Left and right arm exchanged."""
     colors = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
     markers = {"forearm.L": colors["forearm.R"], "forearm.R": colors["forearm.L"]}
     said_of_take(markers=markers)(shoot)
 
 
 def few(shoot: Path) -> None:
-    """Two keyframes, with seconds between them."""
+    """Two keyframes that are seconds apart."""
     edit(shoot, f"{TAKE}.keyframes.json", lambda value: value.update(keyframes=value["keyframes"][::3]))
     said_of_take(fps=5)(shoot)
 
@@ -177,7 +177,7 @@ def half_dark(shoot: Path) -> None:
 def test_what_is_likely_to_go_wrong_is_said(
     shoot: Path, check: Callable[..., Any], spoil: Callable[[Path], None], sentence: str
 ) -> None:
-    """Status 0, for it would convert; the take is one to look at."""
+    """Status 0, as the take would convert; its status is `look`."""
     spoil(shoot)
     status, said = check(shoot)
     first = said["takes"][0]
@@ -188,7 +188,7 @@ def test_what_is_likely_to_go_wrong_is_said(
 def test_a_mistake_of_all_is_said_once(
     pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Below the table; what is one take's own stands with it, marked where it stops the take."""
+    """Below the table; a sentence on one take alone is below its row, marked where it stops the take."""
     shoot = Path(shutil.copytree(pristine, tmp_path / "shoot"))
     edit(shoot, "shoot.json", lambda value: value["actor"].update(height_m=None))
     no_video(shoot)
@@ -202,7 +202,7 @@ def test_a_mistake_of_all_is_said_once(
 
 
 def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[..., Any]) -> None:
-    """With a library named nothing needs to be posed."""
+    """With a library no keyframes are required."""
     no_keyframes(shoot)
     assert check(shoot)[0] == 1
     status, said = check(shoot, "--library", "waving")
@@ -213,7 +213,7 @@ def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[
 def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     pristine: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, jobs: str
 ) -> None:
-    """The first is said of the take, without a traceback; the second is status 130."""
+    """The error is a problem of the take, without a traceback; the interruption is status 130."""
     raised: list[BaseException] = [ZeroDivisionError("two\nlines")]
 
     def fail(take: ShootTake, *_more: object) -> TakeCheck:
@@ -224,7 +224,7 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     monkeypatch.setattr(command, "check_take", fail)
     assert main(["check", str(pristine), "--jobs", jobs]) == 1
     said = capsys.readouterr()
-    assert "take01.mp4: looking at it failed unexpectedly (ZeroDivisionError: two lines)" in said.out
+    assert "take01.mp4: the check failed unexpectedly (ZeroDivisionError: two lines)" in said.out
     assert (
         said.out.count("\nready") == 2 and said.err == f"{program_name()}: 1 of 3 takes would not convert\n"
     )
@@ -234,7 +234,7 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
 
 
 def test_sentences_are_broken_to_the_terminal() -> None:
-    """Below their first word; what is no terminal gets whole lines."""
+    """Continuation lines are indented; where there is no terminal, lines stay whole."""
     shoot = Shoot(Path("shoot"), ())
     check = TakeCheck("one", ("a word " * 30,), ())
     whole, broken = check_text(shoot, [check]).splitlines(), check_text(shoot, [check], 70).splitlines()
@@ -243,7 +243,7 @@ def test_sentences_are_broken_to_the_terminal() -> None:
 
 
 def test_the_table_fits_the_terminal() -> None:
-    """A long name stands above its figures, which stay in their columns; elsewhere all is one line."""
+    """A long name gets a line of its own above its figures, which keep their columns."""
     shoot = Shoot(Path("shoot"), ())
     checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", LONG)]
     lines = check_text(shoot, checks, 60).splitlines()
@@ -254,7 +254,7 @@ def test_the_table_fits_the_terminal() -> None:
 
 
 def test_what_three_takes_share_is_said_once() -> None:
-    """However many others there are."""
+    """Regardless of the number of other sentences."""
     shoot = Shoot(Path("shoot"), ())
     checks = [TakeCheck(f"take{number}", ("no camera",) if number < 3 else (), ()) for number in range(9)]
     said = check_text(shoot, checks)
@@ -264,7 +264,7 @@ def test_what_three_takes_share_is_said_once() -> None:
 def test_an_unusable_shoot_is_one_line_and_status_two(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Nothing there, no take in it, a list that is none, takes of one name, or a wrong number of jobs."""
+    """A missing folder, one without takes, an invalid list, takes of one name, an invalid number of jobs."""
     (tmp_path / "empty").mkdir()
     (tmp_path / "bad.jsonl").write_text("[]", encoding="utf-8")
     shutil.copy(shoot / f"{TAKE}.mp4", shoot / "day1" / "take01.mkv")

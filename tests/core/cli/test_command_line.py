@@ -1,4 +1,4 @@
-"""The command line: exit status, what is said where, and that a failing run leaves nothing behind."""
+"""The command line: exit status, output, and no traces of a failing run."""
 
 import json
 import os
@@ -18,7 +18,9 @@ from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli import arguments
+from keymark.operators.cli import require_blender
+from keymark.operators.cli.commands import COMMANDS
+from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
@@ -40,7 +42,7 @@ def take(pristine: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
-    """An output folder that holds an earlier result and somebody's file."""
+    """An output folder with an earlier result and a file of the user's."""
     folder = tmp_path / "results" / "out"
     folder.mkdir(parents=True)
     (folder / "motion.json").write_text("earlier", encoding="utf-8")
@@ -74,7 +76,7 @@ def test_an_unusable_command_line_is_one_line_and_status_two(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The line names what is wrong; nothing is made."""
+    """The line names the mistake; no file is made."""
     monkeypatch.chdir(tmp_path)
     assert main([*words, "--quiet"] if words[:1] == ["convert"] else words) == 2
     said = capsys.readouterr()
@@ -93,20 +95,32 @@ def test_help_has_examples_and_version_is_the_manifests(
     assert capsys.readouterr().out == f"keymark {manifest['version']}\n"
 
 
+def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
+    files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
+    assert files - {"__init__", "shoot_options"} == {command.name for command in COMMANDS}
+    shown = [command.name for command in COMMANDS if not getattr(command, "hidden", False)]
+    assert main(["--help"]) == 0
+    helped = capsys.readouterr().out
+    assert all(f"\n    {name} " in helped for name in shown) and "\n    worker " not in helped
+    assert main([]) == 2
+    assert f"{', '.join(shown[:-1])} and {shown[-1]} are valid" in one_line(capsys.readouterr().err)
+
+
 def test_the_methods_offered_are_the_methods_there_are() -> None:
     """The parser, which must not load the estimators, lists exactly theirs."""
-    assert set(arguments.METHODS) == set(METHODS)
+    assert set(convert_arguments.METHODS) == set(METHODS)
 
 
 @pytest.mark.usefixtures("no_blender")
 def test_a_conversion_writes_its_files_and_says_so(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 0; the files named on standard output are there, and the motion has every frame."""
+    """Status 0; the files named on standard output exist, and the motion has every frame."""
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
-    for name in set(convert_take.BELONGINGS) - {f"report/{MATCHES}"}:
+    for name in set(convert_take.RESULT_FILES) - {f"report/{MATCHES}"}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"
@@ -118,7 +132,7 @@ def test_a_conversion_writes_its_files_and_says_so(
 def test_json_is_one_object_and_quiet_is_silence(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --json standard output is an object with files, frames, notes and seconds; with --quiet none."""
+    """With --json standard output is an object with files, frames, notes and seconds; with --quiet empty."""
     assert convert(take, out, *FAST, "--json") == 0
     said = json.loads(capsys.readouterr().out)
     assert said["frames"] == FRAMES and said["keyframes"][0] == 1 and said["notes"] == []
@@ -130,7 +144,7 @@ def test_json_is_one_object_and_quiet_is_silence(
 
 @pytest.mark.usefixtures("no_blender")
 def test_a_second_run_without_pictures_leaves_no_old_pictures(take: Path, out: Path) -> None:
-    """A folder of results is always of one run; doing the same again gives the same motion."""
+    """A folder holds the result of one run only; the same conversion gives the same motion."""
     assert convert(take, out, "--method", "interpolation", "--quiet") == 0
     first = (out / "motion.json").read_bytes()
     assert convert(take, out, *FAST, "--quiet") == 0
@@ -179,7 +193,7 @@ def no_marker(take: Path) -> None:
 
 
 def turn_camera_away(value: dict[str, Any]) -> None:
-    """Half a turn about the camera's own vertical: it films what is behind it."""
+    """Half a turn about the camera's own vertical, away from the performer."""
     for row in value["camera"]["matrix_world"]:
         row[0], row[2] = -row[0], -row[2]
 
@@ -243,14 +257,14 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Whatever goes wrong after the motion is written, the output folder is as before."""
+    """Any error after the motion is written leaves the output folder as it was."""
 
-    def fail(_take: object, _motion: object, place: Path, *_rest: object) -> None:
-        assert (place / "motion.json").is_file()
-        (place / "motion.blend").write_bytes(b"half a file")
+    def fail(_take: object, _motion: object, staging_folder: Path, *_rest: object) -> None:
+        assert (staging_folder / "motion.json").is_file()
+        (staging_folder / "motion.blend").write_bytes(b"half a file")
         raise problem
 
-    monkeypatch.setattr(convert_take, "_write_scene", fail)
+    monkeypatch.setattr(convert_take, "write_blender_files", fail)
     before = tree(out.parent)
     assert convert(take, out, *FAST, "--quiet") == status
     assert sentence in one_line(capsys.readouterr().err)
@@ -266,7 +280,7 @@ def test_debug_shows_where(
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
-    monkeypatch.setattr(convert_take, "_write_scene", fail)
+    monkeypatch.setattr(convert_take, "write_blender_files", fail)
     assert convert(take, out, *FAST, "--quiet", "--debug") == 1
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("Traceback") and "something odd" in lines[-1]
@@ -276,7 +290,7 @@ def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before any work, and with the output folder as it was."""
-    monkeypatch.setattr(convert_take.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(require_blender.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
     assert "pip install 'keymark[blender]'" in one_line(capsys.readouterr().err)
@@ -294,7 +308,7 @@ def test_odd_names_do_not_break_the_line(tmp_path: Path, capsys: pytest.CaptureF
 def test_proposed_frames_lie_in_the_clip(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As many frames as asked for, the first and last among them; no keyframes are needed for it."""
+    """As many frames as requested, with the first and the last; no keyframes are required."""
     (take / "keyframes.json").unlink()
     assert (
         main(["propose", str(take), "--count", "4", "--json", "--picture", str(tmp_path / "speed.png")]) == 0

@@ -1,4 +1,4 @@
-"""`keymark demo`: converts the take that comes along and scores it, here with a small take in its place."""
+"""`keymark demo`: converts and scores the demonstration take, here a small one in its place."""
 
 import json
 import shutil
@@ -9,15 +9,15 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take.motion_file import read_motion
 from keymark.core.take.take_file import read_take
-from keymark.operators.cli import demo
 from keymark.operators.cli.main import main
+from keymark.operators.cli.use_cases import demo
 
 FRAMES = 16
 
 
 @pytest.fixture
 def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A small take in the demonstration's place, and two empty files in place of Blender's."""
+    """A small take instead of the demonstration's, and two empty files instead of Blender's."""
     folder = write_synthetic_take(tmp_path / "demo", FRAMES)
     shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
 
@@ -29,7 +29,7 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
 def test_it_scores_every_method_by_the_motion_it_wrote(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The score of `map` is that of motion.json against truth.json; the others stand beside it."""
+    """The score of `map` is that of motion.json against truth.json; the other methods have theirs."""
     assert main(["demo", "--output", str(tmp_path / "out"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     motion = read_motion(tmp_path / "out" / "motion.json")
@@ -56,14 +56,14 @@ def test_it_says_where_to_look(take: Path, tmp_path: Path, capsys: pytest.Captur
     }
     for method in ("interpolation", "ekf", "map"):
         assert len([float(value) for value in rows[method]]) == len(demo.COLUMNS)
-    for place in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report"):
-        assert str(place) in said and place.exists()
+    for path in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report"):
+        assert str(path) in said and path.exists()
 
 
 def test_an_installation_without_it_is_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Where the demonstration is missing, status is 2 and nothing is made."""
+    """Without the demonstration take the status is 2 and nothing is made."""
     monkeypatch.setattr(demo, "DEMO", tmp_path / "nowhere")
     assert main(["demo", "--output", str(tmp_path / "out")]) == 2
     assert "demonstration take is missing" in capsys.readouterr().err

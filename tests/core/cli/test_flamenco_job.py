@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from keymark.core.shoot.discovery.find_takes import VIDEOS, find_takes
-from keymark.operators.cli.arguments import build_parser
+from keymark.operators.cli.parser import build_parser
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="there is no Node, in which the job type is compiled")
@@ -30,7 +30,7 @@ def script(repository: Path) -> Path:
 
 
 def compiled(script: Path, settings: dict[str, Any], name: str = "A job") -> dict[str, Any]:
-    """What a Manager makes of a job.
+    """The tasks that a Manager makes of a job.
 
     Raises:
         ValueError: It does not take the job; the text says why.
@@ -50,21 +50,21 @@ def compiled(script: Path, settings: dict[str, Any], name: str = "A job") -> dic
 
 
 def words(task: dict[str, Any]) -> list[str]:
-    """What a task calls its program with."""
+    """The arguments that a task passes to its program."""
     (command,) = task["commands"]
     assert command["name"] == "exec" and command["parameters"]["exe"]
     return list(command["parameters"]["args"])
 
 
 def options(task: dict[str, Any]) -> dict[str, Any]:
-    """The same as Keymark itself understands it."""
+    """A task's arguments, parsed by Keymark."""
     found = words(task)
     assert found[:2] == ["--command", "keymark"]
     return vars(build_parser().parse_args(found[2:]))
 
 
 def test_every_task_has_its_share_and_the_merge_waits_for_all(script: Path) -> None:
-    """All words are such as Keymark's command line knows."""
+    """Keymark's command line accepts all arguments."""
     tasks = compiled(script, SETTINGS)["tasks"]
     *converting, merging = tasks
     assert [task["name"] for task in converting] == [f"convert-{part:02d}" for part in range(1, 13)]
@@ -83,7 +83,7 @@ def test_every_task_has_its_share_and_the_merge_waits_for_all(script: Path) -> N
 
 
 def test_choices_reach_the_command_line(script: Path) -> None:
-    """Method, library, program and what becomes of failed takes; without a merge there is no such task."""
+    """Method, library, program and the option on failed takes; without a merge there is no merge task."""
     chosen = {**SETTINGS, "tasks": 1, "method": "ekf", "library": "walking", "merge": False, "go_on": False}
     (task,) = compiled(script, {**chosen, "program": "/opt/keymark"})["tasks"]
     share = options(task)
@@ -96,7 +96,7 @@ def test_choices_reach_the_command_line(script: Path) -> None:
 
 
 def test_paths_count_as_blender_has_resolved_them(script: Path) -> None:
-    """Those relative to a .blend mean nothing to workers."""
+    """Paths relative to a .blend have no meaning for workers."""
     resolved = {"shoot": "//clips", "output": "//out", "shoot_path": r"F:\clips", "output_path": r"F:\out"}
     tasks = compiled(script, {**SETTINGS, **resolved})["tasks"]
     assert words(tasks[0])[2:6] == ["batch", r"F:\clips", "--output", r"F:\out"]
@@ -194,7 +194,7 @@ def test_the_libraries_to_choose_from_are_those_that_come_with_keymark(
 def test_the_stand_in_refuses_what_flamenco_would(
     script: Path, tmp_path: Path, old: str, new: str, sentence: str
 ) -> None:
-    """Else passing it would mean nothing."""
+    """Otherwise passing the test would prove nothing."""
     source = script.read_text(encoding="utf-8")
     assert old in source
     wrong = tmp_path / "wrong.js"

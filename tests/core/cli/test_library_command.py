@@ -1,4 +1,4 @@
-"""`keymark library`: what is listed, said and made, and that mistakes are one line with status 2."""
+"""`keymark library`: its output and files; mistakes are one line with status 2."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from _synthetic_take import BODY, true_postures
 from keymark.core.library.library_file import read_library, write_library
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import write_motion
-from keymark.operators.cli.library import folders
+from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 
 FRAMES = 40
@@ -23,19 +23,19 @@ FRAMES = 40
 
 @pytest.fixture(autouse=True)
 def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with one library and one broken file; nothing else is on the shelf."""
+    """A search path of one folder, with a library and a broken file."""
     folder = tmp_path / "shelf"
     folder.mkdir()
     write_library(folder / "any name.json", small_library())
     (folder / "broken.json").write_text("{", encoding="utf-8")
-    monkeypatch.setenv(folders.VARIABLE, str(folder))
-    monkeypatch.setattr(folders, "SHIPPED", tmp_path / "nothing")
+    monkeypatch.setenv(library_search_path.VARIABLE, str(folder))
+    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "nothing")
     return folder
 
 
 @pytest.fixture
 def motion(tmp_path: Path) -> Path:
-    """A motion that does not come again."""
+    """A motion that is not cyclic."""
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
@@ -50,7 +50,7 @@ def run(*words: object) -> int:
 
 
 def test_the_list_says_what_cannot_be_used(capsys: pytest.CaptureFixture[str]) -> None:
-    """Status 0: other libraries can be used all the same."""
+    """Status 0: the other libraries remain usable."""
     assert run("list") == 0
     lines = capsys.readouterr().out.splitlines()
     assert any(
@@ -83,7 +83,7 @@ def test_a_library_is_shown_by_name_and_by_file(
 def test_checking_names_every_broken_file(
     shelf: Path, motion: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 2 and one line with all of them, and 0 where all are well."""
+    """Status 2 and one line with all problems; 0 where every file is valid."""
     assert run("check", shelf / "any name.json") == 0
     assert "Small steps" in capsys.readouterr().out
     assert run("check", shelf / "any name.json", shelf / "broken.json", motion) == 2
@@ -95,7 +95,7 @@ def test_checking_names_every_broken_file(
 def test_a_motion_is_learned_and_nothing_replaced(
     motion: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The file is a library of as many postures as wanted; a second run needs --replace."""
+    """The library has as many postures as requested; a second run needs --replace."""
     output = tmp_path / "learned.json"
     words: tuple[object, ...] = ("learn", motion, "--title", "Anna Sways", "--output", output)
     assert run(*words, "--count", "12", "--author", "Anna", "--license", "CC0-1.0", "--json") == 0
@@ -127,7 +127,7 @@ def test_what_is_made_of_libraries_is_one(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The file written can be read, and the ones it was made of stay as they were."""
+    """The file written can be read, and the source files are unchanged."""
     before = (shelf / "any name.json").read_bytes()
     assert run(*words(shelf, tmp_path), "--json") == 0
     assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "out.json")]
@@ -138,7 +138,7 @@ def test_what_is_made_of_libraries_is_one(
 def test_two_versions_are_merged_only_as_told(
     shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What has changed is named and nothing written, until somebody says which of them counts."""
+    """The differences are named and nothing is written, until --conflicts says which version counts."""
     mine = small_library()
     first, *others = mine.postures
     moved = replace(first, posture=others[0].posture)
@@ -156,7 +156,7 @@ def test_two_versions_are_merged_only_as_told(
 def test_different_libraries_become_a_new_one(
     shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With everything of both, and an identifier of its own."""
+    """With the content of both, and a new identifier."""
     write_library(tmp_path / "other.json", replace(small_library(), identifier="other", title="Other"))
     words = ("merge", "small_steps", tmp_path / "other.json", "--output", tmp_path / "out.json")
     assert run(*words, "--title", "Both of Them", "--quiet") == 0
@@ -165,7 +165,7 @@ def test_different_libraries_become_a_new_one(
 
 
 def test_both_sides_fit_in_one_library(tmp_path: Path) -> None:
-    """With --both the postures that a mirror shows are added."""
+    """With --both the mirrored postures are added."""
     assert run("mirror", "small_steps", "--both", "--output", tmp_path / "out.json", "--quiet") == 0
     assert len(read_library(tmp_path / "out.json").postures) == 6
 

@@ -1,4 +1,4 @@
-"""`keymark convert --library`: nothing posed, what is written then, and what is refused."""
+"""`keymark convert --library`: takes without posed keyframes, their results, and refusals."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from _synthetic_take import BODY, true_postures, write_json, write_synthetic_tak
 from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import write_library
 from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli.library import folders
+from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 
 FRAMES = 24
@@ -29,7 +29,7 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own, in which nothing is posed."""
+    """A take of the test's own, without keyframes."""
     folder = Path(shutil.copytree(pristine, tmp_path / "take"))
     (folder / "keyframes.json").rename(tmp_path / "posed.json")
     return folder
@@ -37,7 +37,7 @@ def take(pristine: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A library of just what the performer does."""
+    """A library of exactly the performer's motion."""
     posture = true_postures(FRAMES)
     learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, LibraryMetadata("Swaying", "Nobody"))
     write_library(tmp_path / "swaying.json", learned)
@@ -45,7 +45,7 @@ def library(tmp_path: Path) -> Path:
 
 
 def convert(take: Path, out: Path, *more: object) -> int:
-    """Run `keymark convert` the quick way."""
+    """Run `keymark convert` with quick options."""
     return main(["convert", str(take), "--output", str(out), "--method", "interpolation", *map(str, more)])
 
 
@@ -57,7 +57,7 @@ def said_as_json(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
 def test_a_take_without_keyframes_is_matched(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A motion, the matched keyframes and their picture; the summary says what was matched and how surely."""
+    """Motion, matched keyframes and their picture are written; the summary has match and confidence."""
     out = tmp_path / "out"
     assert convert(take, out, "--library", library, "--json") == 0
     said = said_as_json(capsys)
@@ -78,7 +78,7 @@ def test_a_take_without_keyframes_is_matched(
 def test_keyframes_in_the_take_are_left_aside_and_said_to_be(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """They are not even read, and stay as they are."""
+    """The posed keyframes are neither read nor changed."""
     (take / "keyframes.json").write_text("no JSON at all", encoding="utf-8")
     assert convert(take, tmp_path / "out", "--library", library, "--json", "--no-report") == 0
     notes = said_as_json(capsys)["notes"]
@@ -89,7 +89,7 @@ def test_keyframes_in_the_take_are_left_aside_and_said_to_be(
 def test_posed_and_matched_keyframes_work_together(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One posed frame is enough; what was matched in the file before is matched anew."""
+    """One posed frame is enough; keyframes matched earlier are matched anew."""
     posed = json.loads((tmp_path / "posed.json").read_text(encoding="utf-8"))["keyframes"]
     earlier = {**posed[-1], "matched": {"library": "x", "posture": "y", "mirrored": False, "confidence": 0.5}}
     write_json(tmp_path / "one.json", {"keyframes": [posed[1], earlier]})
@@ -105,7 +105,7 @@ def test_posed_and_matched_keyframes_work_together(
 def test_matched_keyframes_can_be_given_back(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without the library, to the same folder: the file is used and stays, corrected as it may be."""
+    """Without the library, into the same folder: the keyframe file is used and kept with its corrections."""
     out = tmp_path / "out"
     assert convert(take, out, "--library", library, "--quiet", "--no-report") == 0
     kept = (out / "keyframes.json").read_bytes()
@@ -119,7 +119,7 @@ def test_matched_keyframes_can_be_given_back(
 def test_a_clip_that_no_library_fits_is_said_to_be_one(
     take: Path, library: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    """Status 1, one line, and the output folder as it was; a take that is posed converts all the same."""
+    """Status 1, one line, and the output folder as it was; a posed take converts nevertheless."""
     from keymark.core.matching.match_take import LibraryChoice
     from keymark.operators.cli.conversion import matched_keyframes
 
@@ -128,7 +128,7 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
         return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits")
 
     monkeypatch.setattr(matched_keyframes, "match_take", nothing_fits)
-    monkeypatch.setattr(folders, "SHIPPED", tmp_path)
+    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path)
     assert convert(take, tmp_path / "out", "--library", "auto", "--quiet") == 1
     said = capsys.readouterr().err
     assert "none of them fits; likeliest are Swaying 50%" in said and len(said.splitlines()) == 1
@@ -159,8 +159,8 @@ def test_what_cannot_be_matched_with_is_one_line(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Status 2, before anything is read of the clip."""
-    monkeypatch.setenv(folders.VARIABLE, str(library.parent))
+    """Status 2, before the clip is read."""
+    monkeypatch.setenv(library_search_path.VARIABLE, str(library.parent))
     assert convert(take, tmp_path / "out", *more, "--quiet") == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1

@@ -1,4 +1,4 @@
-"""The lines by which a farm learns how far a task is."""
+"""Progress lines of Open Job Description for render farms."""
 
 import pytest
 from keymark.core.progress import Progress
@@ -22,7 +22,7 @@ def test_a_line_for_each_percent_where_it_is_wanted(
     asked: str,
     lines: list[str],
 ) -> None:
-    """Never the same twice, and none among JSON or where quiet is asked for."""
+    """No line is repeated, and none is written with --json or --quiet."""
     monkeypatch.setenv("KEYMARK_PROGRESS", asked)
     with Console(quiet=quiet, as_json=as_json) as console:
         for fraction in (0.5, 0.5001, 0.9, 0.3):

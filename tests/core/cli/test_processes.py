@@ -1,4 +1,4 @@
-"""The command line as a process of its own: started, asked to end, and quick to help."""
+"""The command line as a process of its own: start, SIGTERM, and --help without heavy imports."""
 
 import os
 import signal
@@ -45,18 +45,21 @@ def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess
 
 
 def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
-    """The exit status is the process'."""
+    """The exit status is that of the process."""
     process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
     said, wrong = process.communicate()
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
 
 
-def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Words are there at once: what computes is loaded by the command that needs it."""
+@pytest.mark.parametrize("words", [("--help",), ("convert",), ("library", "show", "--help")])
+def test_help_and_mistakes_wait_for_no_library(
+    words: tuple[str, ...], tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Heavy modules are imported by the command that needs them alone."""
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
-    _, told = module_process(tmp_path, repository, "--help").communicate()
+    _, told = module_process(tmp_path, repository, *words).communicate()
     loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
-    assert "keymark.operators.cli.shoot_arguments" in loaded
+    assert "keymark.operators.cli.commands.batch" in loaded
     assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 
@@ -64,7 +67,7 @@ def test_help_waits_for_no_library(tmp_path: Path, repository: Path, monkeypatch
 def test_a_process_that_is_asked_to_end_cleans_up(
     take: Path, out: Path, tmp_path: Path, repository: Path
 ) -> None:
-    """In the middle of its work, on the signal that render farms send, it leaves the output as it was."""
+    """SIGTERM, which render farms send, leaves the output as it was, also in the middle of the work."""
     before = tree(out.parent)
     # Inside a Blender program this process has bpy, but the Python that it starts has none.
     find = "import importlib.util, sys; sys.exit(importlib.util.find_spec('bpy') is None)"

@@ -1,4 +1,4 @@
-"""Standard streams that are closed, or take few letters."""
+"""Standard streams that are closed, or have a narrow encoding."""
 
 import sys
 from io import BytesIO, TextIOWrapper
@@ -13,7 +13,7 @@ from keymark.operators.cli.main import main
 def test_a_process_without_standard_streams_does_its_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As one that something started with `>&-`; there is nobody to tell, but the exit status tells."""
+    """As in a process started with `>&-`, which has the exit status alone."""
     take = write_synthetic_take(tmp_path / "take", 8)
     for stream in ("stdin", "stdout", "stderr"):
         monkeypatch.setattr(sys, stream, None)
@@ -23,7 +23,7 @@ def test_a_process_without_standard_streams_does_its_work(
 
 
 def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its exporters print where they write, and fail where standard output takes no such letters."""
+    """Its exporters print the path, and fail where standard output cannot encode it."""
     with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
         monkeypatch.setattr(sys, "stdout", stream)
         with blender_silence(debug=False):

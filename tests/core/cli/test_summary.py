@@ -1,4 +1,4 @@
-"""The summary of a batch as files: one line a take, one page, whole at every moment."""
+"""The summary files of a batch: a line a take and a page, each written atomically."""
 
 import json
 import threading
@@ -13,7 +13,7 @@ from keymark.operators.cli.batch.summary import LINES, PAGE, write_summary
 
 
 def outcomes(output: Path) -> list[Outcome]:
-    """One of each kind, not in order."""
+    """One outcome of each kind, unordered."""
     return [
         waiting(output, "day2/jump"),
         converted(output, "day1/walk", library="walking", matched=(60,)),
@@ -23,7 +23,7 @@ def outcomes(output: Path) -> list[Outcome]:
 
 
 def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
-    """In the order of names, in ASCII, with all fields; a result counts only where it is of this input."""
+    """In the order of names, in ASCII, with all fields; a result counts only if it is of this input."""
     output = tmp_path / "out"
     files = write_summary(output, Shoot(tmp_path / "autumn", ()), outcomes(output))
     assert files == (output / LINES, output / PAGE)
@@ -41,7 +41,7 @@ def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
 
 
 def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
-    """Whatever order they come in, and nothing else is left in the folder."""
+    """In any order of the outcomes, and no other file is left in the folder."""
     shoot = Shoot(tmp_path, ())
     first = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path))]
     again = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path)[::-1])]
@@ -50,7 +50,7 @@ def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
-    """Its results lie beside the summary."""
+    """The results are beside the summary."""
     outcome = Outcome(".", tmp_path, Status.CONVERTED, RECORD)
     lines, page = write_summary(tmp_path, Shoot(tmp_path / "walk", ()), [outcome])
     assert json.loads(lines.read_text(encoding="ascii"))["files"] == [*FILES, "conversion.json"]

@@ -1,4 +1,4 @@
-"""What is no Python and must yet come with an installation: presets, in the wheel and in the extension."""
+"""Files beside the Python modules that every installation needs, in the wheel and in the extension's zip."""
 
 import ast
 import tomllib
@@ -8,31 +8,38 @@ import pytest
 
 
 @pytest.fixture
-def presets(repository: Path) -> set[Path]:
-    """Every file below presets, from the root."""
-    files = {path.relative_to(repository) for path in (repository / "presets").rglob("*") if path.is_file()}
-    assert any(path.match("presets/keyframes/*.json") for path in files)
-    return files
+def package_data(repository: Path) -> set[Path]:
+    """Every file of the presets, and those beside the modules that are no Python, from the root."""
+    files = {path for path in (repository / "presets").rglob("*") if path.is_file()}
+    for room in ("core", "operators"):
+        found = (path for path in (repository / room).rglob("*") if path.is_file())
+        files |= {path for path in found if path.suffix not in (".py", ".pyc")}
+    relative = {path.relative_to(repository) for path in files}
+    assert any(path.match("presets/keyframes/*.json") for path in relative)
+    assert {Path("core/report/summary/style.css"), Path("core/report/summary/script.js")} <= relative
+    return relative
 
 
-def test_the_wheel_takes_all_presets_along(repository: Path, presets: set[Path]) -> None:
-    """The patterns of setup.py match every one of them."""
+def test_the_wheel_takes_all_package_data_along(repository: Path, package_data: set[Path]) -> None:
+    """The patterns of setup.py match every file, each from the folder of its package."""
     tree = ast.parse((repository / "setup.py").read_text(encoding="utf-8"))
     words = next(
         node for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "package_data"
     )
-    patterns = ast.literal_eval(words.value)["keymark"]
-    taken = {path.relative_to(repository) for pattern in patterns for path in repository.glob(pattern)}
-    assert presets - taken == set()
+    taken: set[Path] = set()
+    for package, patterns in ast.literal_eval(words.value).items():
+        folder = repository.joinpath(*package.split(".")[1:])
+        taken |= {path.relative_to(repository) for pattern in patterns for path in folder.glob(pattern)}
+    assert package_data - taken == set()
 
 
-def test_the_extension_leaves_no_preset_out(repository: Path, presets: set[Path]) -> None:
-    """No pattern of the manifest names a folder above them, or their kind of file."""
+def test_the_extension_leaves_no_package_data_out(repository: Path, package_data: set[Path]) -> None:
+    """No pattern of the manifest names a folder above a file, or its kind of file."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     excluded = [pattern.strip("/") for pattern in manifest["build"]["paths_exclude_pattern"]]
     left_out = {
         path
-        for path in presets
+        for path in package_data
         for pattern in excluded
         if any(part.match(pattern) for part in (path, *path.parents) if part != Path())
     }

@@ -18,7 +18,7 @@ FRAMES = 12
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take; its clip is not looked at."""
+    """A take, whose clip is not read."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("strip") / "take", FRAMES))
 
 
@@ -32,7 +32,7 @@ def motion() -> Motion:
 
 
 def moved(motion: Motion, meters: list[float]) -> Motion:
-    """The same motion somewhere else."""
+    """The motion, moved."""
     delta = np.zeros(len(BODY.skeleton.dof_names))
     delta[:3] = meters
     posture = motion.posture.plus(np.tile(delta, (FRAMES, 1)))
@@ -45,7 +45,7 @@ def plain(scale: int = 1) -> Image:
 
 
 def height(picture: Image) -> int:
-    """How many rows of a picture the limbs fill."""
+    """Number of rows of a picture that the limbs fill."""
     limbs = np.zeros(picture.shape[:2], dtype=bool)
     for color in (LEFT, RIGHT):
         limbs |= np.abs(picture.astype(int) - color).max(axis=-1) <= 40
@@ -82,7 +82,7 @@ def test_short_clips_and_reduced_frames(take: Take, motion: Motion) -> None:
 def test_an_estimate_that_left_the_picture_shows_the_footage(
     take: Take, motion: Motion, place: list[float]
 ) -> None:
-    """Behind the camera, far beside it, or so near that it fills everything: there is a picture still."""
+    """A performer behind the camera, far beside it or very near still gives a picture."""
     image = plain()
     image[::8] = 255
     for tile in tiles(film_strip(take, moved(motion, place), {frame: image for frame in range(6)})):

@@ -13,7 +13,7 @@ from keymark.core.library.library import LibraryMotion, MotionStep
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.library_sheet import MARGIN, WIDTH, library_sheet
 from keymark.core.report.mannequin import View, draw_mannequin
-from keymark.core.report.mannequin_feet import drawn_frames, foot_frame
+from keymark.core.report.mannequin_feet import foot_frame_index, skin_frames
 from keymark.core.report.posture_picture import SIZE, posture_picture
 
 BODY = Body(ACTOR)
@@ -21,14 +21,14 @@ STANDING = standing_posture(BODY)
 
 
 def alike(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
-    """Where a picture has a color, whatever its brightness."""
+    """Mask of the pixels of a color, in any brightness."""
     wanted, shown = np.array(color, dtype=np.float64), image.astype(np.float64)
     cosine = shown @ wanted / (np.linalg.norm(shown, axis=-1) * np.linalg.norm(wanted) + 1e-9)
     return cosine > 0.985
 
 
 def moved(posture: Posture, offset: tuple[float, float, float]) -> Posture:
-    """The posture elsewhere."""
+    """The posture, moved."""
     return Posture(posture.skeleton, posture.translation + offset, posture.rotations, posture.angles)
 
 
@@ -62,7 +62,7 @@ def test_a_limb_in_front_hides_what_is_behind() -> None:
 
 @pytest.mark.parametrize("offset", [(0.0, 0.0, 0.3), (3.0, -2.0, 0.0)])
 def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, float]) -> None:
-    """Whoever leaps is seen above the floor; whoever walked away is in the middle all the same."""
+    """A leaping figure is above the floor; one that has walked away is centered nevertheless."""
     here, there = (posture_picture(BODY, posture) for posture in (STANDING, moved(STANDING, offset)))
     lowest = [np.flatnonzero((alike(im, LEFT) | alike(im, RIGHT)).any(axis=1))[-1] for im in (here, there)]
     if offset[2]:
@@ -72,7 +72,7 @@ def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, f
 
 
 def crouching(knee: float) -> Posture:
-    """Someone with bent knees whose ankles are as high over the floor as in standing [radians]."""
+    """A posture with bent knees [rad] whose ankles are as high above the floor as in standing."""
     angles = STANDING.angles.copy()
     names = [BODY.skeleton.joints[i].name for i in BODY.skeleton.hinge_joints]
     for side in ("L", "R"):
@@ -88,11 +88,11 @@ def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
     """The rigid foot of a leaning shin dips; drawn, its sole is level, and its ankle stays where it was."""
     posture = crouching(knee)
     pose = BODY.pose(posture)
-    turned, origins = drawn_frames(BODY, pose)
+    turned, origins = skin_frames(BODY, pose)
     assert sole_heights_m(BODY, pose).max() < -0.01
     for side, heights in zip(("L", "R"), sole_places(BODY, pose)[..., 2], strict=True):
         foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
-        frame = foot_frame(BODY, foot.name)
+        frame = foot_frame_index(BODY, foot.name)
         ankle, tip = (BODY.local(end) for end in (foot.start, foot.end))
         heel = np.array([tip[0], ankle[1] + HEEL_BEHIND * BODY.actor.segments_m[foot.name], tip[2]])
         drawn = [(origins[frame] + turned[frame] @ place)[2] for place in (heel, tip)]
@@ -103,16 +103,16 @@ def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
 
 
 def test_a_foot_in_the_air_is_drawn_as_the_shin_has_it() -> None:
-    """Nothing but the floor turns it."""
+    """A foot above the floor keeps its rotation."""
     pose = BODY.pose(moved(crouching(0.8), (0.0, 0.0, 0.5)))
-    turned, _ = drawn_frames(BODY, pose)
+    turned, _ = skin_frames(BODY, pose)
     for side in ("L", "R"):
         foot = next(segment for segment in BODY.skeleton.segments if segment.name == f"foot.{side}")
-        np.testing.assert_array_equal(turned[foot_frame(BODY, foot.name)], pose.rotation[foot.joint])
+        np.testing.assert_array_equal(turned[foot_frame_index(BODY, foot.name)], pose.rotation[foot.joint])
 
 
 def test_every_posture_is_on_the_sheet() -> None:
-    """Figures for each step of each motion and for what belongs to none; any letters do."""
+    """A figure for each step of each motion and for each posture in none; any letters are accepted."""
     library = small_library()
     both, first, none = (
         library_sheet(replace(library, motions=motions, title="Schritte 歩く", description="ö" * 500))
@@ -124,7 +124,7 @@ def test_every_posture_is_on_the_sheet() -> None:
 
 
 def test_a_long_motion_goes_on_in_the_next_row() -> None:
-    """More postures than fit beside each other are divided evenly."""
+    """Several rows share the postures evenly."""
     library = small_library()
     names = [posture.name for posture in library.postures]
     steps = tuple(MotionStep(names[n % 3], 0.1 * n) for n in range(18))
@@ -134,7 +134,7 @@ def test_a_long_motion_goes_on_in_the_next_row() -> None:
 
 
 def test_short_motions_lie_side_by_side() -> None:
-    """Two that fit one row do not take two."""
+    """Two strips that fit into one row share it."""
     library = small_library()
     one, other = library.motions[0], replace(library.motions[0], name="Again")
     sheets = [library_sheet(replace(library, motions=motions)) for motions in ((one,), (one, other))]

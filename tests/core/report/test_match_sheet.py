@@ -1,4 +1,4 @@
-"""The sheet of matched keyframes: which are shown, and that each is drawn where it was matched."""
+"""The sheet of matched keyframes: the choice of keyframes, and the posture drawn over each frame."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
 
 
 def test_many_keyframes_are_thinned_out_evenly(take: Take) -> None:
-    """The first and the last stay; few are shown all."""
+    """Many are thinned, with the first and the last kept; a few are all shown."""
     posture = take.keyframes[0].posture
     many = replace(take, keyframes=tuple(Keyframe(index, posture) for index in range(100)))
     shown = [keyframe.index for keyframe in shown_keyframes(many)]

@@ -1,4 +1,4 @@
-"""Pictures of a result: drawn where they should be, and never in the way of a result."""
+"""Pictures of a result: drawn at the right pixels, and without errors for any motion."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +10,7 @@ from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_t
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.report.canvas import ACCENT, INK, LEFT, RIGHT, Canvas, ticks, write_png
-from keymark.core.report.contact_sheet import chosen_frames
+from keymark.core.report.contact_sheet import evenly_spaced_frames
 from keymark.core.report.overlay_sheet import CELL_WIDTH, overlay_sheet
 from keymark.core.report.pictures import PICTURES, write_pictures
 from keymark.core.report.speed_plot import speed_plot
@@ -51,12 +51,12 @@ def tracks() -> RegionTracks:
 
 
 def count(image: np.ndarray, color: tuple[int, int, int], tolerance: int = 12) -> int:
-    """How many pixels have about this color."""
+    """Number of pixels of about this color."""
     return int((np.abs(image.astype(int) - color).max(axis=-1) <= tolerance).sum())
 
 
 def test_all_pictures_are_written(take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path) -> None:
-    """Every named file is a picture that can be read, with something drawn on it."""
+    """Every named file is a readable picture that is not blank."""
     files = write_pictures(tmp_path / "report", take, motion, tracks, np.linspace(0.0, 9.0, FRAMES))
     assert [file.name for file in files] == list(PICTURES)
     for file in files:
@@ -165,15 +165,15 @@ def test_a_camera_that_looks_straight_down_or_up_has_views(motion: Motion, pitch
 
 @pytest.mark.parametrize(("frame_count", "shown"), [(1, 1), (2, 2), (12, 12), (118, 12)])
 def test_frames_shown_are_spread_from_first_to_last(frame_count: int, shown: int) -> None:
-    """At most twelve, the ends among them, never one twice."""
-    frames = chosen_frames(frame_count)
+    """At most twelve frames, with both ends, without repetition."""
+    frames = evenly_spaced_frames(frame_count)
     assert len(frames) == shown and frames[0] == 0 and frames[-1] == frame_count - 1
     assert len(set(np.diff(frames))) <= 2
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (1.0, 118.0), (0.0, 0.003), (-7.0, 3.0), (5.0, 5.0)])
 def test_ticks_are_round_and_inside(low: float, high: float) -> None:
-    """Marks of an axis lie on it, evenly, at most as many as asked for."""
+    """Ticks are within the axis, evenly spaced, and at most as many as requested."""
     marks = ticks(low, high, 7)
     assert 1 <= len(marks) <= 7
     assert min(marks) >= low - 1e-9 and max(marks) <= high + 1e-9 * max(1.0, abs(high))
@@ -184,7 +184,7 @@ def test_ticks_are_round_and_inside(low: float, high: float) -> None:
 
 
 def test_a_line_breaks_at_what_is_not_finite_and_stays_on_the_canvas() -> None:
-    """Places that are NaN leave a gap; places far outside do not wrap around."""
+    """NaN points leave a gap; points far outside do not wrap around."""
     canvas = Canvas(60, 20)
     canvas.line([[0, 10], [20, 10], [np.nan, 10], [40, 10], [60, 10]], INK, 2.0)
     image = canvas.image()
@@ -195,6 +195,6 @@ def test_a_line_breaks_at_what_is_not_finite_and_stays_on_the_canvas() -> None:
 
 
 def test_a_picture_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
-    """A folder that is not there is reported, not ignored as OpenCV does."""
+    """A missing folder is an error, which OpenCV itself ignores."""
     with pytest.raises(OSError, match="none"):
         write_png(str(tmp_path / "none" / "x.png"), Canvas(4, 4).image())

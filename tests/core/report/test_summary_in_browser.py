@@ -1,4 +1,4 @@
-"""The page of a batch in a real browser: nothing is refused, pictures are there, one can search and sort."""
+"""The page of a batch in a real browser: nothing is blocked, pictures load, search and order work."""
 
 import base64
 import hashlib
@@ -48,7 +48,7 @@ addEventListener("load", () => {
   document.body.append(answer);
 });
 """
-"""Looks at the page from within, in a copy whose policy allows this one script more."""
+"""A script that inspects the page, in a copy whose policy allows it."""
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def look(page: Path, profile: Path, width: int) -> dict[str, Any]:
-    """Open the page in a window of some width and return what the probe saw; the browser may not complain."""
+    """Open the page in a window of a width and return the probe's findings; fail on any warning."""
     assert BROWSER is not None
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"]
     options += [f"--user-data-dir={profile}", f"--window-size={width},900"]
@@ -93,7 +93,7 @@ def look(page: Path, profile: Path, width: int) -> dict[str, Any]:
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
 def test_a_browser_shows_everything_and_searches_and_sorts(page: Path, tmp_path: Path) -> None:
-    """In a wide window: every row, every picture, no complaint; finding and ordering change what is seen."""
+    """In a wide window: every row and picture, no warning; search and order change the rows."""
     seen = look(page, tmp_path, 1400)
     assert len(seen["all"]) == TAKES + 4 and seen["shown"] and seen["styled"] == "3px" and seen["wide"] <= 0
     assert seen["images"] == [SIZE[0]] * (TAKES + 1)
@@ -108,6 +108,6 @@ def test_a_browser_shows_everything_and_searches_and_sorts(page: Path, tmp_path:
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
 def test_a_narrow_window_needs_no_scrolling_sideways(page: Path, tmp_path: Path) -> None:
-    """However long a name or a note is; everything is still there."""
+    """With names and notes of any length, and with nothing lost."""
     seen = look(page, tmp_path, 500)
     assert seen["wide"] <= 0 and len(seen["all"]) == TAKES + 4

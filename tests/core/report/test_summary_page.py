@@ -1,4 +1,4 @@
-"""The page of a batch: nothing in it but what the template has, whatever takes are called and say."""
+"""The page of a batch: its elements are the template's for any names and texts of takes."""
 
 import base64
 import hashlib
@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.report.summary.html_text import LONGEST, duration, percent, visible
 from keymark.core.report.summary.page import summary_page
-from keymark.core.report.summary.style import DARK, LIGHT
+from keymark.core.report.summary.style_and_script import STYLE
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
@@ -36,7 +36,7 @@ def page(*outcomes: Outcome) -> Page:
 
 
 def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
-    """A converted and a failed take that say a text wherever they can."""
+    """A converted and a failed take with a text in every field."""
     files = {f"{name}.json": "", f"report/{name}.png": "", "report/strip.jpg": "", "report/overlay.png": ""}
     record = ConversionRecord(
         **{**vars(RECORD), "take": text, "library": text, "method": text, "notes": (text,), "files": files}
@@ -50,7 +50,7 @@ def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
 @settings(max_examples=60, deadline=None)
 @given(NAMES, TEXTS, TEXTS)
 def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str, title: str) -> None:
-    """The very strings are found again as text; elements and attributes are those of a harmless shoot."""
+    """The strings come back as text; elements and attributes are those of a harmless shoot."""
     found = Page(summary_page(title, hostile(name, text), OUTPUT))
     assert found.shape() == page(*hostile("x", "y")).shape()
     assert found.all("h1")[0].text == visible(title)
@@ -80,12 +80,12 @@ def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str
     ],
 )
 def test_what_cannot_be_seen_is_spelt_out(text: str, shown: str) -> None:
-    """Letters of every writing stay; control characters, turning marks and broken letters become visible."""
+    """Letters of every script stay; control characters, direction marks and surrogates are spelt out."""
     assert visible(text) == shown and shown.encode("utf-8")
 
 
 def test_links_lead_to_the_files(tmp_path: Path) -> None:
-    """Names that mean something in an address still lead to their files."""
+    """Names with characters that are special in URLs still lead to their files."""
     name = "day 1/50% #2?x=1&y;\"'\\ ż:\u202e"
     folder = tmp_path / name
     for file in RECORD.files:
@@ -102,7 +102,7 @@ def test_links_lead_to_the_files(tmp_path: Path) -> None:
 
 
 def test_the_page_allows_its_own_style_and_script_and_nothing_else() -> None:
-    """The policy has the digests of what stands in the page; nothing comes from elsewhere or runs inline."""
+    """The policy has the digests of the page's style and script; nothing is remote or inline."""
     found = page(converted(OUTPUT, "walk"))
     policy = found.all("meta")[1].attributes["content"]
     rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
@@ -117,7 +117,7 @@ def test_the_page_allows_its_own_style_and_script_and_nothing_else() -> None:
 
 
 def test_everyone_can_read_the_page() -> None:
-    """Headers say what they are of, pictures what they show, and the page its language."""
+    """Headers have scopes, pictures alternative texts, and the page a language."""
     found = page(converted(OUTPUT, "walk"), failed(OUTPUT, "fall", "no clip"), waiting(OUTPUT, "jump"))
     assert found.all("html")[0].attributes["lang"] == "en"
     assert {th.attributes["scope"] for th in found.all("th")} == {"col", "row", "rowgroup"}
@@ -131,12 +131,16 @@ def test_everyone_can_read_the_page() -> None:
         assert element.attributes.get("role") == roles.get(element.tag) or element.tag not in roles
 
 
+LIGHT, DARK = (dict(re.findall(r"--(\w+):(#\w{6});", line)) for line in STYLE.splitlines()[:2])
+"""The colors of day and night, by the names that the style has for them."""
+
+
 @pytest.mark.parametrize("colors", [LIGHT, DARK], ids=["light", "dark"])
 def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None:
     """Every color of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
 
     def luminance(color: str) -> float:
-        shares = [int(color[place : place + 2], 16) / 255 for place in (1, 3, 5)]
+        shares = [int(color[index : index + 2], 16) / 255 for index in (1, 3, 5)]
         linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
@@ -144,6 +148,7 @@ def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None
         low, high = sorted((luminance(colors[one]), luminance(colors[other])))
         return (high + 0.05) / (low + 0.05)
 
+    assert set(LIGHT) == set(DARK) and LIGHT != DARK
     words = ("ink", "soft", "link", "failed", "poor", "fair", "good")
     for word, ground in product(words, ("paper", "card")):
         assert contrast(word, ground) >= 4.5, (word, ground)
@@ -163,7 +168,7 @@ def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None
     ],
 )
 def test_confidence_in_a_word(confidence: float | None, weakest: float | None, expected: Verdict) -> None:
-    """The thresholds are those that the page explains; what falls short does not seem to reach them."""
+    """The thresholds are those that the page explains; a rounded percentage never reaches one it misses."""
     outcome = converted(OUTPUT, "walk", confidence=confidence, weakest=weakest)
     assert verdict(outcome) is expected
     (row,) = page(outcome).rows()
@@ -175,7 +180,7 @@ def test_confidence_in_a_word(confidence: float | None, weakest: float | None, e
 
 
 def test_takes_that_need_a_person_come_first() -> None:
-    """Failures, then the least certain; within a word too; those that wait for their turn come last."""
+    """Failures first, then by confidence, also within a section; waiting takes last."""
     outcomes = [
         converted(OUTPUT, "a good"),
         waiting(OUTPUT, "a waits"),
@@ -198,7 +203,7 @@ def test_takes_that_need_a_person_come_first() -> None:
 
 
 def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What needs a person is shown first; how many are not is said where they would stand."""
+    """The most urgent takes are shown; each section says how many are left out."""
     monkeypatch.setattr("keymark.core.report.summary.page.MOST_ROWS", 3)
     fair = [converted(OUTPUT, f"fair {number}", confidence=0.6) for number in range(4)]
     found = page(*fair, failed(OUTPUT, "z", "no clip"), converted(OUTPUT, "good"))
@@ -209,7 +214,7 @@ def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest
 
 
 def test_a_reason_that_failures_share_is_said_once_above() -> None:
-    """One mistake in a shoot fails all its takes; its sentence stands in the head with their number."""
+    """A reason that several takes share is in the head, with their number."""
     same = [failed(OUTPUT, f"take {number}", "shoot.json: no actor") for number in range(5)]
     head = page(*same, failed(OUTPUT, "other", "no clip")).all("ul")[0].text
     assert head.startswith(
@@ -241,7 +246,7 @@ def test_the_head_counts_what_was_converted_now_or_before() -> None:
 
 
 def test_what_a_take_was_made_from_is_said() -> None:
-    """Posed and matched keyframes are told apart, and frames to pose come with the best first."""
+    """Posed and matched keyframes are pluralize apart; frames to pose are listed the best first."""
     (row,) = page(converted(OUTPUT, "walk", matched=(60,), library="walking")).rows()
     assert "2 posed and 1 matched keyframes, library walking, method map" in row.text
     assert "frame 87, then 31" in row.text and "120 frames, 4.0 s at 30 frames a second" in row.text

@@ -1,0 +1,36 @@
+"""Memory and processors of the machine, and the memory of this process, as far as the system tells."""
+
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+
+def resident_bytes() -> int | None:
+    """Resident memory of this process, or else its peak; None where the system tells neither."""
+    with suppress(OSError, ValueError, IndexError):
+        pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[1]
+        return int(pages) * os.sysconf("SC_PAGE_SIZE")
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else most * 1024
+
+
+def available_memory_bytes() -> int | None:
+    """Memory that this process may use: the machine's, or less where a container limits it."""
+    known = []
+    with suppress(OSError, ValueError, AttributeError):
+        known.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    with suppress(OSError, ValueError):  # of a Linux container; the word max stands for no limit
+        known.append(int(Path("/sys/fs/cgroup/memory.max").read_text(encoding="ascii")))
+    return min((size for size in known if size > 0), default=None)
+
+
+def processor_count() -> int:
+    """Number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

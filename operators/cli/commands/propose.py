@@ -1,0 +1,35 @@
+"""`keymark propose`: its arguments."""
+
+import argparse
+from pathlib import Path
+
+from ..command import Command
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the take, how many frames of it to propose, and the picture."""
+    parser.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
+    parser.add_argument(
+        "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
+    )
+    parser.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
+    parser.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Propose the frames."""
+    from ..use_cases.propose import propose_command
+
+    propose_command(arguments)
+
+
+PROPOSE = Command(
+    name="propose",
+    summary="propose the frames to pose",
+    description=(
+        "Follows the markers and proposes frames to pose as keyframes: about evenly spaced, where the "
+        "markers move slowly."
+    ),
+    add_arguments=add_arguments,
+    run=run,
+)

@@ -1,0 +1,21 @@
+"""`keymark worker`: what the worker processes of a batch run; people never call it."""
+
+import argparse
+
+from ..command import Command
+
+
+def run(_arguments: argparse.Namespace) -> None:
+    """Convert the jobs of a batch."""
+    from ..batch.worker import run_worker
+
+    run_worker()
+
+
+WORKER = Command(
+    name="worker",
+    summary="convert the takes told on standard input",
+    description="",
+    run=run,
+    hidden=True,
+)

@@ -1,1 +1,0 @@
-"""`keymark library`: its words, its commands, and where libraries are found."""

@@ -1,0 +1,35 @@
+"""The folders in which the command line finds libraries, and those that `--library` means."""
+
+import os
+import sys
+from pathlib import Path
+
+from ...core.library.library import Library
+from ...core.library.registry import SHIPPED, find_library, registered_libraries
+from ...core.library.texts import EVERY_LIBRARY
+
+VARIABLE = "KEYMARK_LIBRARIES"
+"""Environment variable with further folders of libraries, separated as in PATH."""
+
+
+def library_folders() -> list[Path]:
+    """The folders that are searched, in order; the first library with an identifier counts."""
+    folders = [Path(folder) for folder in os.environ.get(VARIABLE, "").split(os.pathsep) if folder]
+    blender = sys.modules.get("bpy")
+    if blender is not None and blender.app.binary_path:  # where users keep libraries of their own
+        from ..library.registry import own_folder
+
+        folders.append(own_folder())
+    return [*folders, SHIPPED]
+
+
+def requested_libraries(wanted: str) -> tuple[Library, ...]:
+    """The libraries that `--library` means: one by name or file, or every usable one.
+
+    Raises:
+        InputError: There is no such library, or none at all, or a file is unusable.
+    """
+    folders = library_folders()
+    if wanted != EVERY_LIBRARY:
+        return (find_library(wanted, folders),)
+    return tuple(found.library for found in registered_libraries(folders) if found.library is not None)

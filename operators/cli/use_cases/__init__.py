@@ -1,0 +1,1 @@
+"""What each command does: `use_cases/convert.py` is run by `commands/convert.py`, and so on."""

@@ -1,0 +1,180 @@
+"""Output of `keymark check`: a table of the takes with the problems of each, or one object for `--json`."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
+from ....core.shoot.check.take_check import TakeCheck
+from ....core.shoot.shoot import Shoot
+from ..line_wrapping import wrapped
+
+READY, LOOK, FAILS = "ready", "look", "fails"
+"""The take would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before a problem that stops the conversion, and before a warning."""
+FEWEST_IN_COMMON = 3
+"""Number of takes from which on a sentence that they share is printed once."""
+MOST_NAMED = 3
+SEPARATOR = "  "
+"""Between two columns of the table."""
+NARROWEST_NAME = 12
+"""Smallest width of the column of names."""
+
+
+def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
+    """The checks as an object for `--json`."""
+    counts = Counter(map(_status, checks))
+    costs = [check.cost for check in checks if check.cost is not None]
+    return {
+        "takes": [_take(check) for check in checks],
+        "counts": {word: counts[word] for word in (READY, LOOK, FAILS)},
+        "estimated_seconds": round(sum(cost.seconds for cost in costs), 1),
+        "estimated_bytes": sum(cost.size_bytes for cost in costs),
+    }
+
+
+def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
+    """The checks as text for people.
+
+    Args:
+        shoot: The shoot that was checked.
+        checks: The check of every take.
+        columns: Width of the terminal, to which sentences are wrapped; None keeps them whole.
+    """
+    shared = _shared(checks)
+    lines = _table(shoot, checks, shared, columns)
+    together: dict[tuple[str, ...], list[str]] = {}
+    for sentence, takes in shared.items():
+        together.setdefault(tuple(takes), []).append(sentence)
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
+        lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
+    return "\n".join([*lines, "", *wrapped(_last_line(checks), 0, columns)])
+
+
+def _table(
+    shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
+) -> list[str]:
+    """A row a take, and below it the sentences on this take alone."""
+    names = [_name(shoot, check) for check in checks]
+    markers = _common_markers(checks)
+    titles = ("", "take", "frames", "size", "rate", "keyframes", *markers)
+    rows = [
+        (_status(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)
+    ]
+    widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
+    if columns is not None:
+        figures = sum(width + len(SEPARATOR) for width in (widths[0], *widths[2:]))
+        widths[1] = max(min(widths[1], columns - figures), NARROWEST_NAME)
+    said_once = set(shared)
+    lines = _aligned(titles, widths)
+    for check, row in zip(checks, rows, strict=True):
+        lines += _aligned(row, widths)
+        own = [sentence for sentence in _marked(check) if sentence not in said_once]
+        lines += [line for sentence in own for line in wrapped(sentence, widths[0] + 2, columns)]
+    return lines
+
+
+def _marked(check: TakeCheck) -> tuple[str, ...]:
+    """All sentences on a take, marked by whether they stop its conversion."""
+    return (
+        *(f"{STOPS} {sentence}" for sentence in check.problems),
+        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
+    )
+
+
+def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
+    size = "-" if check.size is None else f"{check.size[0]}x{check.size[1]}"
+    rate = "-" if check.fps is None else f"{check.fps:.4g}"
+    frames = "-" if check.frames is None else str(check.frames)
+    posed = str(check.keyframes) if check.library is None else f"{check.keyframes}+{check.library}"
+    seen = {readout.name: f"{100 * readout.found // readout.sampled}%" for readout in check.markers}
+    return (frames, size, rate, posed, *(seen.get(name, "-") for name in markers))
+
+
+def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
+    """A row with words to the left and numbers to the right; two lines where the name is too long."""
+    first, name, *rest = cells
+    numbers = [f"{cell:>{width}}" for cell, width in zip(rest, widths[2:], strict=True)]
+    words = f"{first:{widths[0]}}"
+    if len(name) > widths[1]:
+        whole = SEPARATOR.join([words, name])
+        return [whole, SEPARATOR.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
+    return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
+
+
+def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
+    """Names of the markers of all takes, without repetition, in order of appearance."""
+    return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
+
+
+def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
+    """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
+    found: dict[str, list[str]] = {}
+    for check in checks:
+        for sentence in _marked(check):
+            found.setdefault(sentence, []).append(check.name)
+    return {sentence: takes for sentence, takes in found.items() if len(takes) >= FEWEST_IN_COMMON}
+
+
+def _last_line(checks: Sequence[TakeCheck]) -> str:
+    counts = Counter(map(_status, checks))
+    pluralize = [
+        f"{counts[READY]} ready",
+        f"{counts[LOOK]} to look at",
+        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
+    ]
+    costs = [check.cost for check in checks if check.cost is not None]
+    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(pluralize)}."
+    if not costs:
+        return line
+    seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
+    return f"{line} Roughly {_time(seconds)} of one processor and {_size(size)} for those that convert."
+
+
+def _time(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def _size(size_bytes: int) -> str:
+    return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
+
+
+def _name(shoot: Shoot, check: TakeCheck) -> str:
+    return absolute_path(shoot.folder).name if check.name == "." else check.name
+
+
+def _status(check: TakeCheck) -> str:
+    if not check.converts:
+        return FAILS
+    return LOOK if check.warnings else READY
+
+
+def _take(check: TakeCheck) -> dict[str, Any]:
+    return {
+        "take": check.name,
+        "status": _status(check),
+        "problems": list(check.problems),
+        "warnings": list(check.warnings),
+        "size": None if check.size is None else list(check.size),
+        "fps": check.fps,
+        "frames": check.frames,
+        "keyframes": check.keyframes,
+        "library": check.library,
+        "markers": {
+            readout.name: {
+                "found": readout.found,
+                "sampled": readout.sampled,
+                "area_px": round(readout.area_px, 1),
+                "distinctness": round(readout.distinctness, 3),
+            }
+            for readout in check.markers
+        },
+        "estimated_seconds": None if check.cost is None else round(check.cost.seconds, 1),
+        "estimated_bytes": None if check.cost is None else check.cost.size_bytes,
+    }

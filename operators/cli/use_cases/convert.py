@@ -1,0 +1,77 @@
+"""`keymark convert`: convert one take and report the result."""
+
+import argparse
+from dataclasses import replace
+from typing import Any
+
+from ....core.shoot.discovery.take_path import take_path
+from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ....core.take.description import Description, describe, effective_settings
+from ..console import arguments_console
+from ..conversion.convert_take import convert_take
+from ..conversion.matched_keyframes import match_summary
+from ..conversion.result import Conversion
+from ..usage import UsageError
+
+
+def convert_command(arguments: argparse.Namespace) -> None:
+    """Convert the take that the command line names, and list the files that were made."""
+    with arguments_console(arguments) as console:
+        console.stage("Reading the take")
+        description = describe(take_path(arguments.take))
+        settings = _settings(arguments, description)
+        conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
+        console.finish(conversion_summary(conversion), _text(conversion))
+
+
+def conversion_summary(conversion: Conversion) -> dict[str, Any]:
+    """The result of a conversion as an object for `--json`."""
+    motion = conversion.reconstruction.motion
+    return {
+        "files": [str(file) for file in conversion.files],
+        "method": motion.method,
+        "frames": len(motion.time_s),
+        "frame_start": motion.frame_start,
+        "fps": motion.fps,
+        "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
+        "notes": list(conversion.notes),
+        **({} if conversion.choice is None else match_summary(conversion.take, conversion.choice)),
+    }
+
+
+def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
+    """The settings of the command line, and else of the take; a library given here is matched alone.
+
+    Raises:
+        UsageError: The options contradict each other.
+    """
+    given = ConversionSettings(
+        keyframes=arguments.keyframes,
+        library=arguments.library,
+        floor_m=arguments.floor,
+        method=arguments.method,
+        pictures=False if arguments.no_report else None,
+    )
+    settings = given.with_defaults(effective_settings(description))
+    _check_floor(arguments.floor, settings)
+    return settings if arguments.library is None else replace(settings, keyframes=arguments.keyframes)
+
+
+def _check_floor(floor_m: float | None, settings: ConversionSettings) -> None:
+    if floor_m is None:
+        return
+    if settings.library is None:
+        raise UsageError("--floor is given without --library; only matching asks for the floor")
+    if not abs(floor_m) <= HIGHEST_FLOOR_M:
+        raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
+
+
+def _text(conversion: Conversion) -> str:
+    motion = conversion.reconstruction.motion
+    notes = [f"Note: {note}." for note in conversion.notes]
+    count = f"{len(motion.keyframe_indices)} keyframes"
+    if conversion.choice is not None:
+        posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
+        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} matched keyframes"
+    lines = [f"{len(motion.time_s)} frames from {count} ({motion.method}):"]
+    return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])
