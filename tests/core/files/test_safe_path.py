@@ -70,10 +70,14 @@ def test_links_must_stay_in_one_of_the_folders(tmp_path: Path) -> None:
             check_links([home / name], [home])
 
 
-def test_a_circle_of_links_is_left_to_who_opens_it(tmp_path: Path) -> None:
-    """It leads nowhere."""
+def test_a_circle_of_links_counts_as_where_it_lies(tmp_path: Path) -> None:
+    """It leads nowhere, so it leads out of no folder; opening it is what fails."""
     try:
         os.symlink(tmp_path / "a", tmp_path / "a")
     except OSError:
         pytest.skip("no links here")
     check_links([tmp_path / "a"], [tmp_path])
+    with pytest.raises(InputError, match="must stay inside"):
+        check_links([tmp_path / "a"], [tmp_path / "elsewhere"])
+    with pytest.raises(OSError):
+        (tmp_path / "a").read_bytes()

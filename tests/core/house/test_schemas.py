@@ -80,14 +80,17 @@ def test_numbers_and_texts_have_limits(name: str) -> None:
 def test_a_valid_file_is_valid_to_both(known: dict[str, Format], name: str) -> None:
     """The file from which all tests of the format begin."""
     one = known[name]
-    validator(name, one.whole).validate(one.valid)
-    one.read(json.dumps(one.valid).encode())
+    assert list(validator(name, one.whole).iter_errors(one.valid)) == []
+    assert not refused_by_reader(one, one.valid)
 
 
 def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
     """Every library, the demonstration, and the takes to develop with."""
-    for path in (repository / "presets" / "keyframes").glob("*.json"):
-        validator("library").validate(json.loads(path.read_text(encoding="utf-8")))
+    libraries = sorted((repository / "presets" / "keyframes").glob("*.json"))
+    assert libraries
+    for path in libraries:
+        value = json.loads(path.read_text(encoding="utf-8"))
+        assert list(validator("library").iter_errors(value)) == [], path
     for take in [repository / "presets" / "demo" / "aerobic", *shared_takes.iterdir()]:
         files = {
             "take.json": ("take", True),
@@ -97,7 +100,8 @@ def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
         files["keyframes_noisy.json"] = ("keyframes", False)
         for file, (name, whole) in files.items():
             if (take / file).exists():
-                validator(name, whole).validate(json.loads((take / file).read_text(encoding="utf-8")))
+                value = json.loads((take / file).read_text(encoding="utf-8"))
+                assert list(validator(name, whole).iter_errors(value)) == [], take / file
 
 
 def refused_by_reader(one: Format, value: Any) -> bool:
