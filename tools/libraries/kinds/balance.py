@@ -207,7 +207,7 @@ class Swing:
 
 
 def _along_a_beam(work: Composer) -> None:
-    """Steps of half a metre on a line, the free foot swinging out around the other."""
+    """Steps of half a meter on a line, the free foot swinging out around the other."""
     off, around, there = (
         Foot(0.0, 0.02, -6.0, 26.0, 0.02),
         Foot(-0.2, -0.4, -8.0, 16.0, 0.1),
