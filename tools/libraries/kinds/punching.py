@@ -27,7 +27,7 @@ Path = tuple[tuple[str, float], ...]
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "punching",
         "Punching",
