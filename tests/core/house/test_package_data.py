@@ -1,4 +1,4 @@
-"""Package data: presets are in the wheel and in the extension."""
+"""What is no Python and must yet come with an installation: presets, in the wheel and in the extension."""
 
 import ast
 import tomllib
@@ -9,14 +9,14 @@ import pytest
 
 @pytest.fixture
 def presets(repository: Path) -> set[Path]:
-    """Every file below presets, relative to the root."""
+    """Every file below presets, from the root."""
     files = {path.relative_to(repository) for path in (repository / "presets").rglob("*") if path.is_file()}
     assert any(path.match("presets/keyframes/*.json") for path in files)
     return files
 
 
 def test_the_wheel_takes_all_presets_along(repository: Path, presets: set[Path]) -> None:
-    """The patterns of setup.py match every preset."""
+    """The patterns of setup.py match every one of them."""
     tree = ast.parse((repository / "setup.py").read_text(encoding="utf-8"))
     words = next(
         node for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "package_data"
@@ -27,7 +27,7 @@ def test_the_wheel_takes_all_presets_along(repository: Path, presets: set[Path])
 
 
 def test_the_extension_leaves_no_preset_out(repository: Path, presets: set[Path]) -> None:
-    """No exclusion of the manifest matches a preset."""
+    """No pattern of the manifest names a folder above them, or their kind of file."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     excluded = [pattern.strip("/") for pattern in manifest["build"]["paths_exclude_pattern"]]
     left_out = {

@@ -72,7 +72,7 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
 
 
 def test_the_table_names_every_field(page: str) -> None:
-    """The table has the fields of `shoot.json` and of lists, and no others."""
+    """Those of `shoot.json` by name, and no other ones as its own."""
     from keymark.core.shoot.finding.take_list import KNOWN as LISTED
     from keymark.core.take.shoot_file import KNOWN
 
