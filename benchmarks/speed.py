@@ -69,7 +69,7 @@ def convert_once(folder: Path, output: Path) -> dict[str, Any]:
     clock = StageClock()
     started = time.perf_counter() - began
     description = describe(folder)
-    # the rest of a console is not called
+    # No more of a console is needed.
     result = convert(description, output, clock, chosen_settings(description))  # type: ignore[arg-type]
     frames = len(result.reconstruction.motion.time_s)
     return {
