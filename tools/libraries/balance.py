@@ -59,7 +59,7 @@ def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:
                 [np.sin(toes), -np.cos(toes)]
             )
     if not places:
-        raise ValueError("nobody is balanced without a foot on the floor")
+        raise ValueError("balance needs a foot on the floor")
     wanted = (
         left * places["L"] + (1.0 - left) * places["R"] if len(places) == 2 else next(iter(places.values()))
     )

@@ -25,7 +25,7 @@ ANKLE_M = 0.082
 SLOW_M, SLOW_DEG = 0.004, 1.2
 QUICK_FRAMES = (3.0, 9.0)
 QUICK_M, QUICK_DEG = 0.0006, 0.3
-"""What no living person is without, slow and quick."""
+"""Amplitudes of a living body's sway, slow and quick."""
 
 
 def tall_m(body: Body) -> float:

@@ -36,7 +36,7 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
     return read_trial(write_synthetic_take(tmp_path_factory.mktemp("benchmarks") / "take", FRAMES))
 
 
-def test_the_density_that_is_needed_lies_where_the_curve_crosses_the_limit() -> None:
+def test_the_needed_density_is_where_the_curve_crosses_the_limit() -> None:
     """Linear over the logarithm between measured densities, after the last one beyond the limit."""
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 50.0, 30.0]) == pytest.approx(np.sqrt(8.0 * 16.0))
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 35.0, 45.0]) is None
@@ -44,7 +44,7 @@ def test_the_density_that_is_needed_lies_where_the_curve_crosses_the_limit() -> 
     assert needed_for(40.0, [3.0, 4.0, 5.0, 6.0], [50.0, 30.0, 40.1, 30.1]) == pytest.approx(5.0, abs=0.02)
 
 
-def test_keyframes_of_any_frames_stand_where_the_truth_does(trial: Trial) -> None:
+def test_generated_keyframes_match_the_truth(trial: Trial) -> None:
     """Exact ones within a millimeter; hand-posed ones with the given error, the same in every run."""
     frames = spread_frames(trial, 5)
     assert frames[0] == 0 and frames[-1] == FRAMES - 1 and set(np.diff(frames)) <= {5, 6}
@@ -60,7 +60,7 @@ def test_keyframes_of_any_frames_stand_where_the_truth_does(trial: Trial) -> Non
     assert few.best_interpolation().keyframes == 5
 
 
-def test_the_best_interpolation_is_none_of_the_worse(trial: Trial) -> None:
+def test_the_best_interpolation_has_the_smallest_error(trial: Trial) -> None:
     """It has the smallest error of all interpolations tried."""
     every = [trial.score(points).mpjpe for points in trial.interpolated().values()]
     assert len(every) == 3 and trial.best_interpolation().mpjpe == min(every) < max(every)
@@ -94,7 +94,7 @@ def test_keyframes_posed_over_a_wrong_lens_look_the_same_in_the_picture(trial: T
     assert depth[1] == pytest.approx(1.1 * depth[0])
 
 
-def test_other_segments_leave_the_posed_points_about_where_they_were(trial: Trial) -> None:
+def test_other_segments_nearly_keep_the_posed_points(trial: Trial) -> None:
     """Lengths are scaled, and no point of a keyframe moves further than lengths force it to."""
     other = with_segments(trial, {"forearm.L": 1.05})
     lengths = [one.take.body.actor.segments_m for one in (trial, other)]
@@ -106,7 +106,7 @@ def test_other_segments_leave_the_posed_points_about_where_they_were(trial: Tria
     assert 1e-4 < np.abs(points[1] - points[0]).max() < 0.05 * lengths[0]["forearm.L"]
 
 
-def test_a_hidden_marker_is_nowhere_and_the_others_are_where_they_were(trial: Trial) -> None:
+def test_only_the_hidden_marker_disappears(trial: Trial) -> None:
     """It is invisible in the hidden frames only."""
     gone = hidden(trial, 1, slice(4, 9)).tracks
     assert not gone.visible[4:9, 1].any() and not gone.quality[4:9, 1].any()
@@ -133,7 +133,7 @@ def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixtu
     assert "nowhere is neither" in capsys.readouterr().err
 
 
-def test_a_point_is_as_far_off_as_all_points_are_on_average(trial: Trial) -> None:
+def test_the_mean_of_the_points_errors_is_the_score(trial: Trial) -> None:
     """The errors of the points have the score as their mean, and the table has a row a method."""
     found = measure(trial)
     for one in found.values():

@@ -27,7 +27,7 @@ def test_every_library_that_fits_a_take_is_shipped() -> None:
     assert {name for names in bench.FITTING.values() for name in names} <= shipped
 
 
-def test_nothing_that_was_posed_is_used(trial: Trial) -> None:
+def test_posed_keyframes_are_not_used(trial: Trial) -> None:
     """Neither as a keyframe nor for tracking markers, and every frame is scored."""
     assert trial.take.keyframes == () and trial.unscored == ()
 

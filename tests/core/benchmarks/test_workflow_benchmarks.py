@@ -49,7 +49,7 @@ def test_every_keyframe_is_fitted_from_each_start_that_it_has(trial: Trial) -> N
     assert posing.table({"take": means}).count("| take |") == 1 + len(means)
 
 
-def test_what_a_keyframe_gains_is_what_the_error_falls_by(trial: Trial) -> None:
+def test_the_gain_of_a_keyframe_is_the_decrease_of_the_error(trial: Trial) -> None:
     """A keyframe in a posed frame changes nothing; confidence is compared with the truth."""
     postures = exact_postures(trial)
     judged = suggestions.judge(trial, postures, 2)
@@ -61,7 +61,7 @@ def test_what_a_keyframe_gains_is_what_the_error_falls_by(trial: Trial) -> None:
     assert -1.0 <= judged.rank <= 1.0
 
 
-def test_calibration_holds_what_is_claimed_against_what_is_true() -> None:
+def test_calibration_compares_claims_with_the_truth() -> None:
     """Frames are binned by their claimed confidence."""
     judged = suggestions.Judged(10.0, {}, 0, 0.0, [0.2, 0.4, 0.95], [0.5, 0.7, 1.0])
     low, *between, high = suggestions.calibration([judged])
@@ -105,14 +105,14 @@ def test_changes_of_a_take_are_one_keyframe_each(trial: Trial) -> None:
     assert same == [True, True, False, True]
 
 
-def test_what_has_not_changed_is_not_estimated_again(trial: Trial) -> None:
+def test_an_unchanged_take_is_not_estimated_again(trial: Trial) -> None:
     """Reconstructing an unchanged take again gives the same motion."""
     first = run(reconstruct(trial.take, "map", trial.reading))
     once_more = again.compared(trial.take, first)
     assert once_more.largest_mm == once_more.moved_mm == 0.0 and once_more.cost < 1.0
 
 
-def test_takes_are_told_apart_by_where_they_lie(trial: Trial) -> None:
+def test_takes_are_grouped_by_folder(trial: Trial) -> None:
     """The demonstration belongs to the takes with which methods are tuned."""
     assert group_of(ROOT / "presets" / "demo" / "aerobic") == "given"
     assert group_of(trial.take.folder) == "studio"

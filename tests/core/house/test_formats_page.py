@@ -58,7 +58,7 @@ def test_every_schema_has_its_row(page: str, repository: Path) -> None:
     assert named == there
 
 
-def test_the_settings_of_the_editor_name_schemas_that_are_there(page: str, repository: Path) -> None:
+def test_editor_settings_name_existing_schemas(page: str, repository: Path) -> None:
     """Paths in the example lead to files of the repository."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     for entry in json.loads(example)["json.schemas"]:

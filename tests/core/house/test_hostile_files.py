@@ -38,9 +38,7 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.fuzz
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_whatever_a_file_holds_it_is_read_or_refused(
-    known: dict[str, Format], name: str, data: st.DataObject
-) -> None:
+def test_any_content_is_read_or_refused(known: dict[str, Format], name: str, data: st.DataObject) -> None:
     """Random changes of values and bytes raise no other error, no second line and no NumPy warning."""
     content = data.draw(files(known[name].valid))
     with warnings.catch_warnings():
@@ -92,7 +90,7 @@ def changed_take(pristine: Path, take: Path, data: st.DataObject) -> None:
 @pytest.mark.fuzz
 @settings(max_examples=10 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_a_changed_take_converts_or_says_why_not(
+def test_a_mutated_take_converts_or_is_refused(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
     """A conversion prints at most one line, and its output folder is complete or unchanged."""
@@ -104,7 +102,7 @@ def test_a_changed_take_converts_or_says_why_not(
 @pytest.mark.fuzz
 @settings(max_examples=10 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_commands_that_only_look_say_what_is_wrong(
+def test_reading_commands_report_errors(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
     """They return a status and print one line on standard error; their input is unchanged."""
@@ -128,7 +126,7 @@ def test_commands_that_only_look_say_what_is_wrong(
 @pytest.mark.parametrize("name", ["clip", "keyframes.json", "take.json", "frames/0002.png"])
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "folder", "outside", "loop"])
 @pytest.mark.usefixtures("no_blender")
-def test_what_is_no_file_is_not_waited_for(
+def test_special_files_do_not_block(
     pristine: Path,
     tmp_path: Path,
     name: str,
@@ -180,7 +178,7 @@ HUGE: dict[str, bytes] = {
 
 
 @pytest.mark.parametrize("kind", HUGE)
-def test_what_no_file_needs_is_refused(tmp_path: Path, kind: str) -> None:
+def test_excessive_json_is_refused(tmp_path: Path, kind: str) -> None:
     """Deep, numerous or large content is refused with one short sentence before memory is allocated."""
     path = tmp_path / "huge.json"
     path.write_bytes(HUGE[kind])
@@ -189,7 +187,7 @@ def test_what_no_file_needs_is_refused(tmp_path: Path, kind: str) -> None:
     assert is_sentence(str(caught.value), 400 + len(str(path)))
 
 
-def test_brackets_in_texts_are_no_depth() -> None:
+def test_brackets_in_strings_are_not_nesting() -> None:
     """Brackets within strings do not count as nesting."""
     text = json.dumps({"a": "[" * 500 + '"\\' + "{" * 500, "b": [[1]]})
     assert parse_json(text, "here")["b"] == [[1]]

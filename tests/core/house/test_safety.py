@@ -108,19 +108,19 @@ def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path)
         "curve.driver_add('location')",
     ],
 )
-def test_what_could_is_found(source: str) -> None:
+def test_forbidden_code_is_found(source: str) -> None:
     """The check above can fail: it reports each of these lines."""
     assert len(list(faults("core.take.take", source))) == 1
 
 
-def test_what_is_innocent_passes() -> None:
+def test_allowed_code_passes() -> None:
     """Processes in the batch's own module, arrays without pickles, patterns and own modules are allowed."""
     assert list(faults("operators.cli.batch.pool", "import subprocess\nimport asyncio")) == []
     source = "np.load(path, allow_pickle=False)\nre.compile(text)\nfrom .code import x\nimport json"
     assert list(faults("core.take.take", source)) == []
 
 
-def test_the_extension_asks_for_files_only(repository: Path) -> None:
+def test_the_extension_requests_file_permission_only(repository: Path) -> None:
     """No permission but files, with a short reason: no network, clipboard, camera or microphone."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert set(manifest["permissions"]) == {"files"}

@@ -77,14 +77,14 @@ def test_numbers_and_texts_have_limits(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_valid_file_is_valid_to_both(known: dict[str, Format], name: str) -> None:
+def test_schema_and_reader_accept_a_valid_file(known: dict[str, Format], name: str) -> None:
     """Both accept the file from which all tests of the format begin."""
     one = known[name]
     assert list(validator(name, one.whole).iter_errors(one.valid)) == []
     assert not refused_by_reader(one, one.valid)
 
 
-def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
+def test_shipped_files_are_valid(repository: Path, shared_takes: Path) -> None:
     """Every library, the demonstration, and the development takes."""
     libraries = sorted((repository / "presets" / "keyframes").glob("*.json"))
     assert libraries
@@ -125,9 +125,7 @@ def as_read(value: Any) -> Any:
 @pytest.mark.fuzz
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_what_a_schema_refuses_the_reader_refuses(
-    known: dict[str, Format], name: str, data: st.DataObject
-) -> None:
+def test_readers_refuse_what_schemas_refuse(known: dict[str, Format], name: str, data: st.DataObject) -> None:
     """Random changes of a valid file that a schema refuses are refused by its reader too."""
     one = known[name]
     value = as_read(data.draw(changed(one.valid, 2)))
@@ -194,7 +192,7 @@ MISTAKES: list[tuple[str, Change]] = [
 
 
 @pytest.mark.parametrize(("name", "change"), MISTAKES)
-def test_a_mistake_is_seen_by_both(known: dict[str, Format], name: str, change: Change) -> None:
+def test_schema_and_reader_refuse_a_mistake(known: dict[str, Format], name: str, change: Change) -> None:
     """Schema and reader refuse each mistake, so editors mark it."""
     one = known[name]
     value = json.loads(json.dumps(one.valid))
@@ -203,7 +201,7 @@ def test_a_mistake_is_seen_by_both(known: dict[str, Format], name: str, change: 
     assert refused_by_reader(one, value)
 
 
-def test_a_part_of_a_take_is_valid_where_a_shoot_says_the_rest(known: dict[str, Format]) -> None:
+def test_a_partial_take_is_valid_below_a_shoot(known: dict[str, Format]) -> None:
     """`take.json` may be empty; only a take that inherits nothing must be complete."""
     assert validator("take").is_valid({}) and validator("take").is_valid({"camera": {"lens_mm": None}})
     assert not validator("take", True).is_valid({})
