@@ -1,4 +1,4 @@
-"""Accuracy on every take with truth: what a user could do without the footage beside the project's methods.
+"""Accuracy on every take with truth: the project's methods compared with keyframe interpolation.
 
 Usage: accuracy.py [TAKE ...] [--plot] with names or folders of takes; by default all found. See README.md.
 """
@@ -26,18 +26,18 @@ ESTIMATES = ("ekf", "map")
 METHODS = (*INTERPOLATIONS, *ESTIMATES)
 MEASURES = ("mpjpe", "rooted", "depth", "worst_p95", "jitter", "skate", "coverage95")
 DRAWN = {"prior": "interpolation", "ekf": "ekf", "map": "map"}
-"""Methods whose error over time is drawn, and what of the charts' colors each has."""
+"""Methods whose error over time is drawn, with the name of each one's chart color."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """How far one method is from the truth of one take."""
+    """Errors of one method on one take."""
 
     score: Score
     distance_mm: Array
-    """(F, 13) from the true points."""
+    """(F, 13) distance from the true points."""
     points_mm: dict[str, float]
-    """Mean of that over the frames that are scored, by point."""
+    """Mean distance over the scored frames, by point."""
 
     def to_dict(self) -> dict[str, Any]:
         """The measures by name."""
@@ -45,11 +45,11 @@ class Measured:
 
 
 Results = dict[str, dict[str, dict[str, Measured]]]
-"""By take, way of posing, and method."""
+"""By take, keyframe file, and method."""
 
 
 def measure(trial: Trial) -> dict[str, Measured]:
-    """Errors of all methods on one take with one file of keyframes."""
+    """Errors of all methods on one take with one keyframe file."""
     found = {name: _held_against(trial, points) for name, points in trial.interpolated().items()}
     for method in ESTIMATES:
         motion = trial.estimated(method)
@@ -65,7 +65,7 @@ def _held_against(trial: Trial, points: Array, sigma_m: Array | None = None) -> 
 
 
 def draw(name: str, trial: Trial, found: dict[str, Measured]) -> None:
-    """The error of every frame as a picture, with dashed lines at the keyframes."""
+    """Draw the error of every frame, with dashed lines at the keyframes."""
     frame = trial.take.frame_start + np.arange(len(trial.truth), dtype=np.float64)
     curves = [
         Curve(method, frame, found[method].distance_mm.mean(axis=1), COLORS[drawn])
@@ -128,7 +128,7 @@ def point_table(results: Results) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write; draw where asked to."""
+    """Measure, print and write the results; draw them with --plot."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument("--plot", action="store_true", help="draw each take's error over time")

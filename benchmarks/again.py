@@ -1,4 +1,4 @@
-"""Reconstructing again after one keyframe changed: what it costs, and how far it is from beginning anew.
+"""Reconstruction after one keyframe changed: cost and difference of a warm start against a cold one.
 
 Usage: again.py [TAKE ...] [--long] with names or folders of takes; by default all found. See README.md.
 """
@@ -35,32 +35,32 @@ LONG_S = 100.0
 
 @dataclass(frozen=True)
 class Again:
-    """One change, reconstructed from what was known and from nothing."""
+    """One change, reconstructed from the previous solution and from scratch."""
 
     cost: float
     """Processor time as a share of the cold run's."""
     mean_mm: float
-    """Distance of the points from those of the cold run: mean ..."""
+    """Mean distance of the points from those of the cold run."""
     p99_mm: float
-    """... 99th percentile ..."""
+    """99th percentile of that distance."""
     largest_mm: float
-    """... and largest."""
+    """Largest such distance."""
     moved_mm: float
     """Mean distance by which the change itself moved the points."""
 
 
 def nothing_changed(take: Take, _: Posture) -> Take:
-    """The same take once more."""
+    """The take without a change."""
     return take
 
 
 def one_moved(take: Take, _: Posture) -> Take:
-    """The keyframe in the middle posed a little otherwise."""
+    """The take with its middle keyframe posed a little differently."""
     return with_one_moved(take)
 
 
 def one_added(take: Take, posed: Posture) -> Take:
-    """A keyframe more in the middle of the widest gap."""
+    """The take with one more keyframe, in the middle of the widest gap."""
     frames = np.array(take.keyframe_indices)
     widest = int(np.diff(frames).argmax())
     index = int(frames[widest] + frames[widest + 1]) // 2
@@ -69,7 +69,7 @@ def one_added(take: Take, posed: Posture) -> Take:
 
 
 def one_deleted(take: Take, _: Posture) -> Take:
-    """Without the keyframe in the middle."""
+    """The take without its middle keyframe."""
     middle = len(take.keyframes) // 2
     return replace(take, keyframes=(*take.keyframes[:middle], *take.keyframes[middle + 1 :]))
 
@@ -83,11 +83,11 @@ CHANGES: dict[str, Callable[[Take, Posture], Take]] = {
 
 
 def measure(take: Take, posed: Callable[[Reconstruction], Posture]) -> dict[str, Again]:
-    """All changes of a take.
+    """Reconstruct all changes of a take.
 
     Args:
         take: The take.
-        posed: Postures of all frames, of which one is added, given the first reconstruction.
+        posed: Maps the first reconstruction to the postures of all frames, of which one is added.
     """
     reading = run(reconstruct(take, "interpolation")).reading
     first = run(reconstruct(take, "map", reading))
@@ -96,7 +96,7 @@ def measure(take: Take, posed: Callable[[Reconstruction], Posture]) -> dict[str,
 
 
 def compared(take: Take, first: Reconstruction) -> Again:
-    """A changed take, reconstructed from nothing and from a first reconstruction."""
+    """Compare a changed take reconstructed from scratch and from a first reconstruction."""
     results: list[Reconstruction] = []
 
     def estimate(earlier: Reconstruction | None) -> None:
@@ -117,7 +117,7 @@ def compared(take: Take, first: Reconstruction) -> Again:
 
 
 def hand_posed_from_truth(take: Take) -> Callable[[Reconstruction], Posture]:
-    """Postures that a person would pose in a take with truth."""
+    """Hand-posed postures of all frames of a take with truth."""
 
     def posed(first: Reconstruction) -> Posture:
         truth = read_truth(take.folder / "truth.json", take.frame_start, first.tracks.frame_count)
@@ -128,7 +128,7 @@ def hand_posed_from_truth(take: Take) -> Callable[[Reconstruction], Posture]:
 
 
 def measure_long(folder: Path) -> dict[str, Again]:
-    """The changes in a long clip made of a take; the added keyframe is what was reconstructed there."""
+    """Measure the changes in a long clip made of a take; the added keyframe has the reconstructed posture."""
     take = read_take(folder)
     frames = run(reconstruct(take, "interpolation")).tracks.frame_count
     with tempfile.TemporaryDirectory() as temporary:
@@ -163,7 +163,7 @@ def mean_of(rows: list[dict[str, Again]]) -> dict[str, Again]:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument("--long", action="store_true", help="a long clip made of the first take instead")

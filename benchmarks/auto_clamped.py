@@ -1,4 +1,4 @@
-"""What Blender itself makes of keyframes: F-curves with auto-clamped handles on quaternion components.
+"""Blender's own interpolation of keyframes: F-curves with auto-clamped handles on quaternion components.
 
 A reimplementation for comparison, in the form of cubic Hermite curves: a handle's slope is that of the line
 through both neighbors, zero at an extremum and at the ends, and no handle's end passes a neighbor's value.

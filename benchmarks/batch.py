@@ -1,4 +1,4 @@
-"""What a shoot of many takes costs: `keymark batch` with one worker and with several, and the ways around it.
+"""Cost of a shoot of many takes: `keymark batch` with one worker and with several, and its alternatives.
 
 Usage: batch.py [TAKE] [--takes N] [--jobs N] with the name or the folder of a take, by default the
 demonstration's, of which the shoot has N copies with hard links to one clip. See README.md beside this file.
@@ -21,28 +21,28 @@ from takes import chosen_takes, load_project, write_results
 
 USUAL, USUAL_JOBS = "demo/aerobic", 2
 TAKES, LOOPED = 12, 3
-"""Takes of the shoot, and how many of them a loop of `convert` goes through."""
+"""Number of takes in the shoot, and of those converted by a loop of `convert`."""
 MB_OF_MAXRSS = 2**20 if sys.platform == "darwin" else 2**10
 STATISTICS = Path("/proc/stat")
 NEEDED = ("take.json", "keyframes.json")
 LOOP, ONE, SEVERAL, AGAIN, START, CHECK = "loop", "one", "several", "again", "start", "check"
 CONVERSIONS = 5
-"""So many are averaged for what a conversion is made of."""
+"""Number of conversions averaged for the breakdown of one."""
 CORE = ("extract", "estimate")
-"""Columns of `speed.py` that are the core's own work; all others are what surrounds it."""
+"""Columns of `speed.py` that are the core's own work; all others are overhead."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What some commands cost, all processes they start pluralize."""
+    """Cost of commands, including all processes they start."""
 
     takes: int
     wall_s: float
     processor_s: float
     peak_mb: float
-    """Of the process that held most."""
+    """Peak memory of the largest process."""
     others: float | None
-    """Processors that others kept busy meanwhile; None where the system does not tell."""
+    """Processors kept busy by other programs meanwhile; None where the system does not tell."""
 
     @property
     def a_take(self) -> tuple[float, float]:
@@ -51,7 +51,7 @@ class Cost:
 
 
 def make_shoot(take: Path, count: int, folder: Path) -> Path:
-    """A folder of so many takes; their clips are one file where the disk allows."""
+    """Make a folder of copies of a take; their clips are hard links to one file where the disk allows."""
     clip = json.loads((take / "take.json").read_text(encoding="utf-8")).get("clip", "clip.mp4")
     for number in range(count):
         copy = folder / f"day{number // 50 + 1}" / f"take{number + 1:03d}"
@@ -66,7 +66,7 @@ def make_shoot(take: Path, count: int, folder: Path) -> Path:
 
 
 def busy_s() -> float | None:
-    """Processor seconds that the whole machine has worked since it started."""
+    """Processor seconds used by the whole machine since it started."""
     if not STATISTICS.is_file():
         return None
     user, nice, system, _, _, irq, softirq, *_ = map(
@@ -76,7 +76,7 @@ def busy_s() -> float | None:
 
 
 def cost(takes: int, *commands: Sequence[str]) -> Cost:
-    """Run command lines of this very tree, one after the other.
+    """Run command lines of this source tree one after the other, and measure them.
 
     Raises:
         SystemExit: One of them fails.
@@ -89,7 +89,7 @@ def cost(takes: int, *commands: Sequence[str]) -> Cost:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
         )
-        _, status, used = os.wait4(process.pid, 0)  # with all that it has started and waited for
+        _, status, used = os.wait4(process.pid, 0)  # includes the processes it has started and waited for
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode:
             raise SystemExit(f"keymark {' '.join(words)} ended with {process.returncode}")
@@ -101,7 +101,7 @@ def cost(takes: int, *commands: Sequence[str]) -> Cost:
 
 
 def conversion_s(take: Path) -> dict[str, float]:
-    """Processor time of a conversion's parts [s] as workers do it, on one thread: a mean after a first."""
+    """Processor time of a conversion's stages [s] as in a worker, on one thread: mean after a warm-up."""
     load_project()
     import cv2
     from keymark.core.take.description import describe, effective_settings
@@ -121,7 +121,7 @@ def conversion_s(take: Path) -> dict[str, float]:
 
 
 def measure(take: Path, count: int, jobs: int) -> dict[str, Cost]:
-    """Every way of converting the same shoot, and what is done before and after."""
+    """Measure every way of converting the same shoot, a repeated batch, and `check`."""
     with tempfile.TemporaryDirectory() as temporary:
         shoot = make_shoot(take, count, Path(temporary) / "shoot")
         results = Path(temporary) / "results"
@@ -142,7 +142,7 @@ def measure(take: Path, count: int, jobs: int) -> dict[str, Cost]:
 
 
 def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]) -> str:
-    """Everything as Markdown."""
+    """All results as Markdown."""
     titles = {
         LOOP: "`convert` in a loop",
         ONE: "`batch --jobs 1`",
@@ -190,7 +190,7 @@ def report(name: str, jobs: int, costs: dict[str, Cost], parts: dict[str, float]
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write; with --keymark, be the command line of this tree."""
+    """Measure, print and write the results; with --keymark, act as the command line of this tree."""
     if arguments[:1] == ["--keymark"]:
         load_project()
         from keymark.operators.cli.main import main as keymark

@@ -1,4 +1,4 @@
-"""Curves over an axis, and pairs of values in rows, as pictures drawn the way the project's report is."""
+"""Charts of curves over an axis and of pairs of values in rows, in the style of the project's report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ from keymark.core.report.canvas import (  # noqa: E402
 WIDTH, HEIGHT = 1200, 520
 ROW, ROW_NAMES = 24, 330
 COLORS = {"interpolation": GRAY, "ekf": RIGHT, "map": LEFT}
-"""Of what is compared, the same in all charts."""
+"""Color of each method, the same in all charts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,18 +35,18 @@ class Curve:
     """Values y (N,) over x (N,)."""
 
     name: str
-    """What the legend calls it; empty for none."""
+    """Name in the legend; empty for none."""
     x: Array
     y: Array
     color: Color
     points: str = ""
-    """How the values themselves are marked: `full`, `hollow`, or not at all."""
+    """Marks of the values: `full`, `hollow`, or empty for none."""
     thickness: float = 2.0
 
 
 @dataclass(frozen=True)
 class Labels:
-    """What a chart and its axes are called."""
+    """Titles of a chart and its axes."""
 
     title: str
     x: str
@@ -77,9 +77,9 @@ def draw_chart(
         name: The file's name without its ending.
         labels: Title and axes.
         curves: What to draw, the last uppermost.
-        level: A y that is marked by a dashed line, as an aim is.
-        marks: Places x that are marked by dashed lines.
-        x_ticks: Values to name on a logarithmic x axis; a linear axis where None.
+        level: A y marked by a dashed line, such as an aim.
+        marks: Values of x marked by dashed lines.
+        x_ticks: Labeled values of a logarithmic x axis; a linear axis where None.
     """
     canvas = Canvas(WIDTH, HEIGHT)
     first = min(float(curve.x.min()) for curve in curves)

@@ -1,7 +1,7 @@
-"""What `keymark check` costs a take, by size and length of its clip, beside converting a small one.
+"""Cost of `keymark check` per take, by size and length of its clip, as a share of converting a small one.
 
 Usage: check.py [TAKE] with the name or the folder of a take, by default the demonstration's. Its clip is made
-larger and longer with ffmpeg, as encoders do it by default: a picture that stands by itself every 250 frames.
+larger and longer with ffmpeg, with encoders' default settings: an intra frame every 250 frames.
 """
 
 import argparse
@@ -24,7 +24,7 @@ from keymark.core.take.take_file import read_take  # noqa: E402
 
 USUAL = "demo/aerobic"
 NOISE = "noise=alls=6:allf=t"
-"""A camera's: without it, what was enlarged decodes more easily than what was filmed."""
+"""Camera noise: without it, an enlarged clip decodes more easily than a filmed one."""
 KINDS: dict[str, tuple[int, list[str]]] = {
     "as it is": (0, ["-c", "copy"]),
     "two hours of it": (1800, ["-c", "copy", "-t", "7200"]),
@@ -33,11 +33,11 @@ KINDS: dict[str, tuple[int, list[str]]] = {
                                     "-preset", "ultrafast", "-x265-params", "log-level=none"]),
     "3840 x 2160, 4 s": (1, ["-vf", f"scale=3840:2160,{NOISE}", "-t", "4", "-preset", "ultrafast"]),
 }  # fmt: skip
-"""How often the clip is repeated, and what ffmpeg makes of it."""
+"""Repetitions of the clip, and ffmpeg's arguments, by kind."""
 
 
 def made_take(source: Path, folder: Path, repeats: int, options: list[str]) -> Path:
-    """A take of another clip; but for the clip as it is, with a library in place of keyframes."""
+    """Make a take of another clip, with a library in place of keyframes unless the clip is the original."""
     folder.mkdir()
     said = json.loads((source / "take.json").read_text(encoding="utf-8"))
     clip = source / said.get("clip", "clip.mp4")
@@ -56,7 +56,7 @@ def made_take(source: Path, folder: Path, repeats: int, options: list[str]) -> P
 
 
 def measure(take: Path) -> list[dict[str, float | str]]:
-    """Processor time for every kind of clip [s], and as a share of reconstructing the take itself."""
+    """Measure processor time of every kind of clip [s], and as a share of reconstructing the take itself."""
     converting_s = processor_time(lambda: run(reconstruct(read_take(take))))
     rows: list[dict[str, float | str]] = []
     for kind, (repeats, options) in KINDS.items():
@@ -84,7 +84,7 @@ def measure(take: Path) -> list[dict[str, float | str]]:
 
 
 def report(name: str, rows: list[dict[str, float | str]]) -> str:
-    """Everything as Markdown."""
+    """All results as Markdown."""
     lines = [
         f"Take {name}; processor seconds, and as a share of reconstructing the take as it is.",
         "",
@@ -100,7 +100,7 @@ def report(name: str, rows: list[dict[str, float | str]]) -> str:
 
 
 def main() -> None:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("take", nargs="?", metavar="TAKE", default=USUAL, help="name or folder of a take")
     name, take = next(iter(chosen_takes([parser.parse_args().take]).items()))

@@ -1,4 +1,4 @@
-"""What a process costs: its processor time and its memory."""
+"""Processor time and memory of a process."""
 
 import resource
 import time
@@ -10,19 +10,19 @@ STATUS = Path("/proc/self/status")
 
 
 def processor_time(work: Callable[[], object]) -> float:
-    """The processor's time for some work [s]."""
+    """Processor time of a call [s]."""
     start = time.process_time()
     work()
     return time.process_time() - start
 
 
 def least_time(work: Callable[[], object]) -> float:
-    """The shortest processor time of a few runs [s]: what else the machine does lengthens it least."""
+    """Shortest processor time of a few runs [s], which other load lengthens least."""
     return min(processor_time(work) for _ in range(REPEATS))
 
 
 def peak_memory_mb() -> float:
-    """The most memory this process ever had resident [MB of 2^20 bytes]."""
+    """Peak resident memory of this process [MB of 2^20 bytes]."""
     if STATUS.is_file():  # elsewhere a process may inherit the peak of the one that started it
         for line in STATUS.read_text(encoding="ascii").splitlines():
             if line.startswith("VmHWM:"):

@@ -1,9 +1,9 @@
-"""How well and how fast the markers are found: against the exactly visible pixels of rendered takes.
+"""Accuracy and speed of marker tracking, against the exactly visible pixels of rendered takes.
 
 Run it from anywhere: `python benchmarks/extraction.py [TAKE ...]`; without takes, those of `shared/takes`
 beside the repository. A take is a folder with take.json, its clip, and visibility.json (the markers' pixels
-and centroids). The speed is that of the first take at 1280 x 720: enlarged, with noise added, once as long as
-it is and once played to and fro. All times are of the processor, in one process and one thread.
+and centroids). The speed is that of the first take at 1280 x 720: enlarged, with noise added, once at its own
+length and once played forward and backward. All times are processor times of one process with one thread.
 """
 
 import argparse
@@ -36,13 +36,13 @@ from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 
 
 def styles_of(take: Path) -> list[MarkerStyle]:
-    """The markers that a take names."""
+    """The markers of a take."""
     markers = json.loads((take / "take.json").read_text(encoding="utf-8"))["markers"]
     return [MarkerStyle(name, name, tuple(marker["color_srgb"])) for name, marker in markers.items()]
 
 
 def extract(clip: Clip, styles: list[MarkerStyle]) -> RegionTracks:
-    """Drive the extraction to its end."""
+    """Run the extraction to its end."""
     job = track_markers(clip, styles)
     while True:
         try:
@@ -52,7 +52,7 @@ def extract(clip: Clip, styles: list[MarkerStyle]) -> RegionTracks:
 
 
 def quality_rows(take: Path) -> list[str]:
-    """One line a marker: errors, areas, misses and false regions."""
+    """Table of the markers: errors, areas, misses and false regions, one line each."""
     start = time.process_time()
     tracks = extract(Clip.open(take / "clip.mp4"), styles_of(take))
     elapsed = time.process_time() - start
@@ -89,7 +89,7 @@ def marker_rows(tracks: RegionTracks, take: Path, scale: float = 1.0, left: floa
 
 
 def decode(path: Path) -> None:
-    """Decode every frame and do nothing with it."""
+    """Decode every frame."""
     capture = cv2.VideoCapture(str(path))
     while capture.read()[0]:
         pass
@@ -97,7 +97,7 @@ def decode(path: Path) -> None:
 
 
 class LearningTime:
-    """How long the colors took to learn, as the extraction goes on; a context that measures all of it."""
+    """Context manager that measures the learning of colors within the extraction."""
 
     def __enter__(self) -> "LearningTime":
         """Begin to measure."""
@@ -116,13 +116,13 @@ class LearningTime:
 
 
 def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:
-    """Processor time over decoding alone, and the quality, of the take's clip enlarged to 1280 x 720."""
+    """Processor time relative to decoding alone, and quality, with the take's clip enlarged to 1280 x 720."""
     styles = styles_of(take)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "large.mp4"
         scale, left = write_large(take / "clip.mp4", path, frames)
         decoding, extracting, learning = [], [], []
-        for _ in range(repeats):  # in turns, as whatever else the computer does comes and goes
+        for _ in range(repeats):  # alternately, since other load varies over time
             decoding.append(processor_time(lambda: decode(path)))
             with LearningTime() as learned:
                 extracting.append(processor_time(lambda: extract(Clip.open(path), styles)))
@@ -140,7 +140,7 @@ def speed_rows(take: Path, frames: int, repeats: int) -> list[str]:
 
 
 def write_large(source: Path, target: Path, frames: int) -> tuple[float, float]:
-    """Write a clip enlarged, noisy and to and fro; return the enlargement and the new left edge in px."""
+    """Write a clip enlarged, noisy, forward and backward; return its scale and the new left edge [px]."""
     images = [image for _, _, image in Clip.open(source).frames()]
     there_and_back = images + images[-2:0:-1]
     rng = np.random.default_rng(0)

@@ -1,4 +1,4 @@
-"""Finishing: what planted feet do to the truth of a motion, and how many keys hold it within a tolerance.
+"""Finishing: accuracy with planted feet, and the number of keys that keep a motion within a tolerance.
 
 Usage: finishing.py [TAKE ...] with names or folders of takes with truth; by default all found. See README.md.
 """
@@ -28,7 +28,7 @@ from keymark.core.progress import run  # noqa: E402
 
 TOLERANCES_MM = (5, 10, 20)
 BAKED_MM = TOLERANCES_MM[0]
-"""The tolerance that a bake has by default."""
+"""Default tolerance of a bake."""
 COLUMNS = {
     "frames": 0,
     "keyframes": 0,
@@ -44,7 +44,7 @@ Row = dict[str, float]
 
 
 def measure(folder: Path) -> Row:
-    """One take's motion by `map` from its keyframes posed by hand, finished in several ways."""
+    """Measure one take's motion by `map` from hand-posed keyframes, finished in several ways."""
     trial = read_trial(folder)
     postures = hand_posed(trial, exact_postures(trial))
     trial = keyed(trial, postures, trial.take.keyframe_indices)
@@ -75,7 +75,7 @@ def finished(trial: Trial, posture: Posture) -> Row:
 
 
 def with_planted_feet(trial: Trial, posture: Posture, rig: Rig) -> Row:
-    """Errors [mm] of the motion, of the same with planted feet, and of that in few keys."""
+    """Errors [mm] of the motion, of the motion with planted feet, and of the latter in few keys."""
     body, times = trial.take.body, np.arange(len(trial.truth), dtype=np.float64)
     planted = run(plant_feet(body, posture, trial.tracks.time_s))
     allowed = point_tolerances(rig, len(times), BAKED_MM * 1e-3, planted.contacts)
@@ -97,7 +97,7 @@ def with_planted_feet(trial: Trial, posture: Posture, rig: Rig) -> Row:
 
 
 def point_places(rig: Rig, trial: Trial) -> IndexArray:
-    """(13,) which of the rig's joints and ends is each principal point."""
+    """(13,) index of each principal point among the rig's joints and ends."""
     body = trial.take.body
     rest = Posture.stack([keyframe.posture for keyframe in trial.take.keyframes])
     shown = rig.pose(rig_values(rig, rest, body)).points
@@ -111,9 +111,9 @@ def keys_a_bone(keys: ReducedKeys) -> float:
 
 
 def even_keys(rig: Rig, times: Array, values: list[Array], posed: IndexArray, tolerance_m: float) -> float:
-    """The fewest evenly spaced keys, the posed frames besides, that hold every point within a tolerance.
+    """The fewest evenly spaced keys, besides the posed frames, that keep every point within a tolerance.
 
-    Found by halving, as if more keys never made it worse.
+    Found by bisection, which assumes that more keys never increase the error.
     """
     goal, last = rig.pose(values).points, len(times) - 1
 
@@ -152,7 +152,7 @@ def table(takes: dict[str, Row], groups: dict[str, list[str]], columns: dict[str
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     takes: dict[str, Row] = {}

@@ -1,4 +1,4 @@
-"""Error against the number of keyframes: how few of them give a motion that is good enough.
+"""Error against the number of keyframes, and the fewest that keep it within a limit.
 
 Usage: keyframe_economy.py [TAKE ...] [--ekf] [--snap] with names or folders of takes. See README.md.
 """
@@ -26,7 +26,7 @@ Curves = dict[str, dict[str, list[float]]]
 
 
 def measure(folder: Path, methods: tuple[str, ...], *, snap: bool) -> dict[str, Any]:
-    """Keyframes per 100 frames as they came out whole, and the errors of one take."""
+    """Measure one take: the keyframes per 100 frames, rounded to whole keyframes, and the errors."""
     trial = read_trial(folder)
     frames = len(trial.truth)
     counts = [max(FEWEST, round(frames * density / 100.0)) for density in PER_100_FRAMES]
@@ -66,7 +66,7 @@ def mean_of(takes: dict[str, dict[str, Any]], methods: tuple[str, ...]) -> dict[
 
 
 def add_needed(measured: dict[str, Any]) -> dict[str, Any]:
-    """A take's curves, with the keyframes per 100 frames that each method needs."""
+    """Add a take's curves, and the keyframes per 100 frames that each method needs."""
     needed = {
         posed: {
             method: needed_for(LIMIT_MM, *distinct(measured["densities"], errors))
@@ -78,7 +78,7 @@ def add_needed(measured: dict[str, Any]) -> dict[str, Any]:
 
 
 def distinct(densities: list[float], errors: list[float]) -> tuple[list[float], list[float]]:
-    """The curve without what stands in it twice, because a short clip has too few frames for a difference."""
+    """The curve without duplicate densities, which arise in clips too short to tell them apart."""
     places = np.unique(densities, return_index=True)[1]
     return [densities[place] for place in places], [errors[place] for place in places]
 
@@ -102,14 +102,14 @@ def table(takes: dict[str, dict[str, Any]]) -> str:
 
 
 def shown(needed: float | None, densities: list[float]) -> str:
-    """A density for a person, with a sign where the measured ones do not reach that far."""
+    """A density as text, with `<` or `>` where it lies outside the measured ones."""
     if needed is None:
         return f"> {densities[-1]:.1f}"
     return f"< {needed:.1f}" if needed <= densities[0] else f"{needed:.1f}"
 
 
 def draw(name: str, measured: dict[str, Any], takes: int) -> None:
-    """The mean curves as a picture."""
+    """Draw the mean curves."""
     x = np.array(measured["densities"])
     curves = [
         Curve(f"{method}, {posed}", x, np.array(errors), COLORS[method], points)
@@ -121,7 +121,7 @@ def draw(name: str, measured: dict[str, Any], takes: int) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write, draw."""
+    """Measure, print, write and draw the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument(

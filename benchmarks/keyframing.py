@@ -1,4 +1,4 @@
-"""Keyframes at any frames of a take with truth: exact ones, and such as a person poses."""
+"""Keyframes at any frames of a take with truth: exact, or with the errors of hand posing."""
 
 import sys
 import zlib
@@ -10,7 +10,7 @@ from takes import ROOT, load_project
 from trials import Trial
 
 load_project()
-sys.path.append(str(ROOT / "tools"))  # the studio that films takes knows how people err
+sys.path.append(str(ROOT / "tools"))  # its posing module models people's errors
 
 from keymark.core.arrays import IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
@@ -24,7 +24,7 @@ SEED = 20
 
 
 def random_source(trial: Trial) -> np.random.Generator:
-    """A source of errors that differ between takes and are the same in every run."""
+    """A random source seeded by the take, the same in every run."""
     return np.random.default_rng([SEED, zlib.crc32(trial.take.folder.name.encode())])
 
 
@@ -34,20 +34,20 @@ def exact_postures(trial: Trial) -> Posture:
 
 
 def hand_posed(trial: Trial, exact: Posture, rms_m: float = ERROR_RMS_M) -> Posture:
-    """Postures off by about `rms_m` as a person's are: a frame's error is the same, whoever else is posed."""
+    """Postures with hand-posing errors of about `rms_m`; a frame's error does not depend on others."""
     sight = -trial.take.camera.matrix_world.reshape(-1, 4, 4)[0, :3, 2]
     posed = pose_by_hand(trial.take.body, exact, sight, random_source(trial))
     return exact.plus(rms_m / ERROR_RMS_M * posed.minus(exact))
 
 
 def spread_frames(trial: Trial, count: int, *, snap: bool = False) -> IndexArray:
-    """Frames, the first and the last among them, evenly spaced or moved to where the markers are slow."""
+    """Frames, including the first and the last, evenly spaced or moved to minima of the markers' speed."""
     speed = marker_speed(trial.tracks) if snap else np.zeros(len(trial.truth))
     return propose_keyframes(speed, count)
 
 
 def keyed(trial: Trial, postures: Posture, indices: Iterable[int]) -> Trial:
-    """The trial with the postures of some frames as its keyframes."""
+    """The trial with the postures at `frames` as its keyframes."""
     frames = tuple(int(index) for index in indices)
     keyframes = tuple(Keyframe(index, postures[index]) for index in frames)
     return replace(trial, take=replace(trial.take, keyframes=keyframes), unscored=frames)

@@ -1,4 +1,4 @@
-"""What a library learned from one take saves on another of its kind: error against posed keyframes.
+"""Keyframes saved by a library learned from another take of the same kind: error against posed keyframes.
 
 Usage: learning.py [LEARNED:TAKE ...] with names or folders of takes. See README.md.
 """
@@ -24,11 +24,11 @@ from keymark.core.progress import run  # noqa: E402
 
 PAIRS = ("stroll:walk", "walk:stroll", "demo/aerobic:aerobic", "aerobic:demo/aerobic")
 COUNTS = (0, 2, 3, 4, 6, 8, 10, 12)
-"""Posed keyframes tried; with none, the library alone."""
+"""Numbers of posed keyframes tried; 0 is the library alone."""
 
 
 def learned(folder: Path) -> Library:
-    """The library of a take's own motion, as it is reconstructed from keyframes posed by hand."""
+    """The library learned from a take's own motion, reconstructed from hand-posed keyframes."""
     motion = read_trial(folder, folder / "keyframes_noisy.json").estimated("map")
     about = LibraryMetadata(folder.name, "Keymark")
     return learn_library(motion.body, motion.posture, motion.time_s, about)
@@ -48,7 +48,7 @@ def measure(library: Library, folder: Path) -> dict[str, Any]:
         )
         if count:
             errors["posed"][count] = scored(some)
-        match = run(match_take(some.take, trial.reading, [library])).match  # what is posed steers it
+        match = run(match_take(some.take, trial.reading, [library])).match  # keyframes constrain it
         assert match is not None
         fit = fit if count else match.fit
         errors["with the library"][count] = scored(replace(some, take=with_matches(some.take, match)))
@@ -56,13 +56,13 @@ def measure(library: Library, folder: Path) -> dict[str, Any]:
 
 
 def scored(trial: Trial) -> tuple[float, float]:
-    """Mean error with the hips aligned and without [mm], over frames that nobody posed."""
+    """Mean error [mm] over unposed frames, hips aligned and absolute."""
     score = trial.score(trial.estimated("map").points)
     return score.rooted, score.mpjpe
 
 
 def saved(measured: dict[str, Any], column: int) -> dict[int, float | None]:
-    """For each number of keyframes used with the library: how many without it give the same error."""
+    """Number of keyframes that alone give the same error, for each number used with the library."""
     alone = measured["errors"]["posed"]
     counts = [float(count) for count in alone]
     curve = [alone[count][column] for count in alone]
@@ -95,12 +95,12 @@ def table(found: dict[str, dict[str, Any]]) -> str:
 
 
 def shown(count: float | None) -> str:
-    """A number of keyframes for a person."""
+    """A number of keyframes as text."""
     return f"> {COUNTS[-1]}" if count is None else f"{count:.1f}"
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pairs", nargs="*", metavar="LEARNED:TAKE", default=PAIRS)
     found: dict[str, dict[str, Any]] = {}

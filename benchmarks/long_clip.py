@@ -1,4 +1,4 @@
-"""Long clips, made of a take's own: what ten minutes cost, then a correction; is there a seam."""
+"""Long clips made from a take: cost of ten minutes, cost of a correction, and the seam between windows."""
 
 import json
 import math
@@ -34,7 +34,7 @@ SEAM_S = 60.0
 
 
 def lengthened(folder: Path, repeats: int, place: Path) -> Path:
-    """A take that plays `folder`'s clip `repeats` times, forwards and backwards in turn."""
+    """Make a take that plays `folder`'s clip `repeats` times, forward and backward in turn."""
     take = read_take(folder)
     images, capture = [], cv2.VideoCapture(str(take.clip))
     while True:
@@ -66,7 +66,7 @@ def lengthened(folder: Path, repeats: int, place: Path) -> Path:
 
 
 def measure_long(folder: Path) -> dict[str, Any]:
-    """Convert ten minutes, without Blender's files, in a process of its own; and look for a seam in one."""
+    """Convert ten minutes, without Blender's files, in a process of its own, and measure the seam of one."""
     short = read_take(folder)
     frames, fps = len(open_clip(short).time_stamps()), short.fps
     with tempfile.TemporaryDirectory() as temporary:
@@ -82,7 +82,7 @@ def measure_long(folder: Path) -> dict[str, Any]:
 
 
 def measure_seam(folder: Path) -> dict[str, float]:
-    """How far [mm] any point of a motion solved in windows is from the same solved at once."""
+    """Largest distance [mm] of any point between a motion solved in windows and the same solved at once."""
     take = read_take(folder)
     reading = run(reconstruct(take, "interpolation")).reading
     tracks = reading.tracks
@@ -111,7 +111,7 @@ def measure_seam(folder: Path) -> dict[str, float]:
 
 
 def convert_long(folder: Path, output: Path) -> dict[str, Any]:
-    """Reconstruct and write the motion in this process; by stage, processor time [s] and peak memory [MB]."""
+    """Reconstruct and write the motion in this process; processor time [s] and peak memory [MB] by stage."""
     seconds: dict[str, float] = {}
     peak_mb: dict[str, float] = {}
     began = time.process_time()
@@ -133,7 +133,7 @@ def convert_long(folder: Path, output: Path) -> dict[str, Any]:
 
 
 def with_one_moved(take: Take) -> Take:
-    """The take with the keyframe in its middle posed a little otherwise, as an animator corrects it."""
+    """The take with its middle keyframe posed a little differently, as after an animator's correction."""
     middle = len(take.keyframes) // 2
     deviations = take.body.skeleton.deviations
     step = 0.1 * deviations * np.random.default_rng(3).normal(size=len(deviations))

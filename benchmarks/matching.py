@@ -1,4 +1,4 @@
-"""Keyframe libraries: what becomes of footage that nobody posed a keyframe of, and of two keyframes.
+"""Keyframe libraries: accuracy without posed keyframes, and with two.
 
 Usage: matching.py [TAKE ...] [--choose] with names or folders of takes. See README.md.
 """
@@ -47,10 +47,10 @@ FITTING: dict[str, tuple[str, ...]] = {
     "spin": ("turning",),
     "star_jumps": ("aerobic", "jumping"),
 }
-"""What the takes show, by name; the first is measured, any is right as a choice. Others fit none."""
+"""Fitting libraries by take: the first is measured, any is a right choice. Other takes fit none."""
 ON_THE_FLOOR = 0.0
 RAISED = ("real_balance",)
-"""Takes whose performer stands on something else than the floor z = 0, which is therefore not stated."""
+"""Takes whose performer stands on something other than the floor z = 0; their floor is not given."""
 NONE = "none"
 COLUMNS = (
     "library", "course", "no posing", "hips aligned", "coverage", "two alone", "two interpolated",
@@ -60,37 +60,37 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Measured:
-    """One take with the library that fits it; errors in mm."""
+    """Errors [mm] of one take with the library that fits it."""
 
     library: str
     course: Score
     """The match itself, before the estimate."""
     unposed: Score
-    """Nothing posed."""
+    """The motion without posed keyframes."""
     two: Score
-    """The first and the last frame posed, without a library."""
+    """The motion with the first and the last frame posed, without a library."""
     two_interpolated: Score
-    """The better interpolation of the same."""
+    """The best interpolation of the same two keyframes."""
     both: Score
-    """The first and the last frame posed, with the library."""
+    """The motion with the first and the last frame posed, and the library."""
     matching_ms: float
-    """Process time of matching a frame, reading not counted."""
+    """Process time of matching per frame, reading excluded."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """What `auto` makes of a take."""
+    """The choice of `auto` for a take."""
 
     ranking: tuple[tuple[str, float], ...]
     chosen: str
     right: bool | None
-    """None where none of the shipped libraries fits, and none was chosen or should have been."""
+    """Whether the choice is right; None where no shipped library fits and none was chosen."""
     reason: str
     matching_ms: float
 
 
 def read_unposed(folder: Path) -> Trial:
-    """A take read as if nobody had posed anything: keyframes tell nothing of where markers are looked for."""
+    """A take read without its keyframes, which then do not guide the tracking of markers either."""
     take = replace(read_take(folder), keyframes=())
     reading = run(read_footage(take))
     return Trial(
@@ -101,14 +101,14 @@ def read_unposed(folder: Path) -> Trial:
 def matched(
     name: str, take: Take, reading: Reading, libraries: Sequence[Library]
 ) -> tuple[LibraryChoice, float]:
-    """What matching finds, and its process time [ms a frame]."""
+    """The match, and its process time [ms a frame]."""
     begun = time.process_time()
     choice = run(match_take(take, reading, libraries, None if name in RAISED else ON_THE_FLOOR))
     return choice, 1e3 * (time.process_time() - begun) / reading.tracks.frame_count
 
 
 def measure(name: str, trial: Trial, library: Library) -> Measured:
-    """A take with one library: nothing posed, and the first and the last frame."""
+    """Measure a take with one library: without posed keyframes, and with the first and the last frame."""
     choice, matching_ms = matched(name, trial.take, trial.reading, [library])
     match = choice.match
     if match is None:
@@ -121,7 +121,7 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
     exact = exact_postures(trial)
     posed = tuple(Keyframe(index, exact[index]) for index in ends)
     two = replace(trial, take=replace(trial.take, keyframes=posed), unscored=ends)
-    known, _ = matched(name, two.take, trial.reading, [library])  # what is posed steers the match
+    known, _ = matched(name, two.take, trial.reading, [library])  # posed keyframes constrain the match
     both = replace(two, take=with_matches(two.take, known.match or match))
     if known.reading is not None:
         both = replace(both, reading=known.reading)
@@ -137,13 +137,13 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
 
 
 def estimated(trial: Trial) -> Score:
-    """How far the default method's motion is from the truth."""
+    """Score of the default method's motion."""
     motion = run(reconstruct(trial.take, "map", trial.reading)).motion
     return trial.score(motion.points, motion.sigma_m)
 
 
 def choose(name: str, trial: Trial, libraries: Sequence[Library]) -> Chosen:
-    """Which library `auto` takes."""
+    """Run the choice of `auto` on a take."""
     choice, matching_ms = matched(name, trial.take, trial.reading, libraries)
     ranking = tuple((library.identifier, round(share, 4)) for library, share in choice.ranking)
     taken = NONE if choice.match is None else choice.match.library.identifier
@@ -151,7 +151,7 @@ def choose(name: str, trial: Trial, libraries: Sequence[Library]) -> Chosen:
 
 
 def is_right(name: str, chosen: str) -> bool | None:
-    """Whether a take shows what was chosen; None where it shows nothing that is shipped, and none was."""
+    """Whether the chosen library fits the take; None where no shipped one does and none was chosen."""
     if name in FITTING:
         return chosen in FITTING[name]
     return None if chosen == NONE else False
@@ -187,7 +187,7 @@ def _line(name: str, library: str, row: Sequence[float]) -> str:
 
 
 def choice_table(results: dict[str, Chosen]) -> str:
-    """What was chosen, as Markdown."""
+    """The choices as Markdown."""
     lines = [
         "The library chosen among all that are shipped.",
         "",
@@ -206,7 +206,7 @@ def choice_table(results: dict[str, Chosen]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument("--choose", action="store_true", help="only see which library is chosen")

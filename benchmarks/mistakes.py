@@ -1,4 +1,4 @@
-"""What may be wrong with a take, one thing at a time: timing, lens, segments, markers out of sight, speed."""
+"""Trials with one error each: timing, lens, segment lengths, hidden markers, speed."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -24,7 +24,7 @@ from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
 
 def mistimed(trial: Trial, shifts: ArrayLike) -> Trial:
-    """The trial with every keyframe's posture some frames (K,) late; the same frames are scored."""
+    """The trial with each keyframe's posture `shifts` (K,) frames late; the same frames are scored."""
     keyframes = trial.take.keyframes
     index = shifted([keyframe.index for keyframe in keyframes], shifts, len(trial.truth))
     late = [Keyframe(int(at), keyframe.posture) for at, keyframe in zip(index, keyframes, strict=True)]
@@ -32,25 +32,25 @@ def mistimed(trial: Trial, shifts: ArrayLike) -> Trial:
 
 
 def shifted(index: ArrayLike, shifts: ArrayLike, frame_count: int) -> IndexArray:
-    """Rising frames moved by shifts, as far as the clip and the order of the frames allow."""
+    """Rising frames moved by shifts, within the clip and without changing their order."""
     at = np.asarray(index, dtype=np.intp) + np.asarray(shifts, dtype=np.intp)
     order = np.arange(len(at))
-    # Of frames that rise by one or more, what is left without that one may stand still but never fall.
+    # Strictly rising frames less their index may repeat but never fall.
     apart = np.maximum.accumulate(np.maximum(at, 0) - order)
     return np.minimum(apart, frame_count - len(at)) + order
 
 
 def with_lens(trial: Trial, factor: float) -> Trial:
-    """The trial as through a lens `factor` times as long, with camera and keyframes where they were."""
+    """The trial with a focal length `factor` times as long and unchanged camera pose and keyframes."""
     camera = replace(trial.take.camera, lens_mm=factor * trial.take.camera.lens_mm)
     return replace(trial, take=replace(trial.take, camera=camera))
 
 
 def posed_through_lens(trial: Trial, factor: float) -> Trial:
-    """The trial as through a lens `factor` times as long, with keyframes that were posed over its picture.
+    """The trial with a focal length `factor` times as long and keyframes posed over its picture.
 
-    Who poses so puts the performer `factor` times as far away, where the picture has the right size. No
-    method can know better: the truth moves with the keyframes.
+    Such keyframes put the performer `factor` times as far away, where the size in the picture is right. No
+    method can detect this, so the truth moves with the keyframes.
     """
     body, camera = trial.take.body, trial.take.camera
     posed = Posture.stack([keyframe.posture for keyframe in trial.take.keyframes])
@@ -85,7 +85,7 @@ def with_segments(trial: Trial, factors: Mapping[str, float]) -> Trial:
 
 
 def hidden(trial: Trial, marker: int, frames: slice) -> Trial:
-    """The trial with one marker out of sight for some frames."""
+    """The trial with one marker hidden in some frames."""
     tracks = trial.tracks
     values = {name: np.array(getattr(tracks, name)) for name in ("centroid", "second_moment", "area")}
     for array in values.values():
@@ -97,7 +97,7 @@ def hidden(trial: Trial, marker: int, frames: slice) -> Trial:
 
 
 def doubled_speed(trial: Trial, every_keyframe: int = 1) -> Trial:
-    """The trial with every second frame alone, and of its keyframes every one or every second."""
+    """The trial with every second frame only, and all or every second of its keyframes."""
     index = sorted({frame // 2 for frame in trial.take.keyframe_indices})
     kept = [*index[:-1:every_keyframe], index[-1]]
     camera = trial.take.camera

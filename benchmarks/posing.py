@@ -1,4 +1,4 @@
-"""Assisted posing: how far a start is from the truth, and the pose that one frame's markers make of it.
+"""Assisted posing: errors of a start and of the pose fitted from it to one frame's markers.
 
 Usage: posing.py [TAKE ...] with names or folders of takes with truth; by default all found. See README.md.
 """
@@ -39,27 +39,27 @@ class Fit:
     """One frame fitted from one start."""
 
     start_mm: float
-    """Mean distance of the 13 points from the truth before ..."""
+    """Mean distance of the 13 points from the truth, of the start."""
     fit_mm: float
-    """... and after the fit."""
+    """The same of the fit."""
     across_start_mm: float
-    """The same across the lines of sight, which is what the picture can tell."""
+    """Part of the start's distance across the lines of sight, which the picture shows."""
     across_fit_mm: float
     start_px: float
-    """Mean distance of the markers' centroids from the seen ones before ..."""
+    """Mean distance of the markers' centroids from the observed ones, of the start."""
     fit_px: float
-    """... and after."""
+    """The same of the fit."""
     cpu_ms: float
     """Processor time, calibration on the keyframes included."""
 
     @property
     def worse(self) -> bool:
-        """Whether the fit made it worse."""
+        """Whether the fit is farther from the truth than the start."""
         return self.fit_mm > self.start_mm
 
 
 def measure(trial: Trial) -> dict[str, list[Fit]]:
-    """Fits at every keyframe of a trial, by start; all other keyframes are as the trial has them."""
+    """Fit the pose at every keyframe of a trial, by start; the other keyframes are the trial's."""
     found: dict[str, list[Fit]] = {start: [] for start in STARTS}
     for number, keyframe in enumerate(trial.take.keyframes):
         if not trial.tracks.visible[keyframe.index].any():
@@ -75,7 +75,7 @@ def measure(trial: Trial) -> dict[str, list[Fit]]:
 
 
 def fitted(trial: Trial, index: int, posed: tuple[Keyframe, ...]) -> Fit:
-    """The fit of one frame with some keyframes posed, as the operator makes it, held against the truth."""
+    """The operator's fit of one frame, given some posed keyframes, compared with the truth."""
     take = trial.take
     body, segments = take.body, take.marker_segments
     model = RegionModel(body, take.camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
@@ -121,7 +121,7 @@ def distances(trial: Trial, posture: Posture, index: int) -> tuple[float, float]
 
 
 def summary(fits: Iterable[Fit]) -> dict[str, float]:
-    """Means over fits, and the share of those that made it worse."""
+    """Means over fits, and the share of fits that are worse than their start."""
     rows = list(fits)
     means = {name: float(np.mean([asdict(fit)[name] for fit in rows])) for name in asdict(rows[0])}
     return {**means, "worse": float(np.mean([fit.worse for fit in rows])), "fits": float(len(rows))}
@@ -150,7 +150,7 @@ def table(rows: dict[str, dict[str, dict[str, float]]]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     takes: dict[str, dict[str, list[Fit]]] = {}

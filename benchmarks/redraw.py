@@ -1,11 +1,11 @@
-"""What Keymark adds to a redraw of Blender's window for a take of 3,000 frames.
+"""Keymark's share of a redraw of Blender's window, for a take of 3,000 frames.
 
 Usage: blender --addons bl_ext.user_default.keymark --window-geometry 0 0 1600 1000 --python redraw.py
 
 Needs a Blender with the extension and a screen, a virtual one too. The demonstration take's motion is
-repeated to 3,000 frames. Each row is the processor's time of one redraw of the whole window while frames go
-by, and what of it is the main thread's: a virtual screen's pixels are computed by other threads, where
-others have a graphics card.
+repeated to 3,000 frames. Each row is the processor time of one redraw of the whole window during playback,
+and the main thread's part of it: the pixels of a virtual screen are computed by other threads instead of a
+graphics card.
 """
 
 import os
@@ -26,7 +26,7 @@ DEMO = Path(__file__).resolve().parent.parent / "presets" / "demo" / "aerobic"
 FRAMES = 3000
 REDRAWS = 40
 STRIDE = 29
-"""Frames from one redraw to the next, within the clip: nothing that was drawn before serves again."""
+"""Frames from one redraw to the next, within the clip, so that no cached drawing is reused."""
 SWITCHES = ("show_observed", "show_predicted", "show_skeleton", "show_paths", "show_legend")
 TIMELINE = ("show_speed", "show_proposals", "show_confidence", "show_weak_frames")
 
@@ -98,7 +98,7 @@ def sidebar(category: str) -> None:
 
 
 def benchmark() -> Generator[None, None, None]:
-    """Measure with everything, without overlays, and without the panel."""
+    """Measure with overlays and panel, without overlays, and without the panel."""
     area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
     area.spaces.active.show_region_ui = True
     for _ in range(5):

@@ -1,4 +1,4 @@
-"""What wrong input costs: the error before and after the footage is used, with one thing wrong at a time.
+"""Cost of wrong input: errors of interpolation and of `map`, with one error in the input at a time.
 
 Usage: sensitivity.py [TAKE ...] with names or folders of takes. See README.md beside this file.
 """
@@ -22,7 +22,7 @@ LENSES = (0.9, 1.1)
 SEGMENTS = (0.95, 1.05)
 HIDDEN_FRAMES = 15
 PART = "-"
-"""What the name of a row begins with whose errors are those of a few frames."""
+"""Prefix of rows whose errors are those of a few frames."""
 MEASURES = ("mpjpe", "rooted")
 METHODS = ("interpolation", "map")
 
@@ -32,14 +32,14 @@ Errors = dict[str, dict[str, float]]
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A thing that is wrong, and the trials whose mean stands in the table."""
+    """An error of the input, and the trials whose mean is in the table."""
 
     wrong: str
     trials: tuple[Trial, ...]
 
 
 def rows_of(trial: Trial) -> Iterator[Row]:
-    """Everything that is tried with one take."""
+    """All rows of one take."""
     yield Row("nothing", (trial,))
     exact = exact_postures(trial)
     for rms_m in POSING_M:
@@ -140,7 +140,7 @@ def table(mean: dict[str, Errors], takes: dict[str, dict[str, Errors]]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write, draw."""
+    """Measure, print, write and draw the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     takes: dict[str, dict[str, Errors]] = {}

@@ -1,4 +1,4 @@
-"""Where the time and the memory of `keymark convert` go, and how both grow with the clip's length.
+"""Time and memory of `keymark convert` by stage, and their growth with the clip's length.
 
 Usage: speed.py [TAKE] [--long] with the name or the folder of a take, by default the first found. Each row
 of the first table is a process of its own, so that start-up and peak memory are those of a user's call. With
@@ -19,7 +19,7 @@ from clock import least_time, peak_memory_mb
 from takes import chosen_takes, load_project, write_results
 
 REPEATS = (1, 10)
-"""The clip's length in the two rows, in lengths of the take, played forwards and backwards in turn."""
+"""The clip's length in the two rows, in lengths of the take, played forward and backward in turn."""
 STAGES = {
     "Reading the take": "read",
     "Opening the clip": "extract",
@@ -33,18 +33,18 @@ COLUMNS = ("start-up", "read", "extract", "estimate", "write", "blend, bvh", "pi
 
 
 class StageClock:
-    """Takes the part of the command line's console and notes when each stage begins, by some clock."""
+    """Stand-in for the command line's console that records the start of each stage, by a given clock."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self.began: list[tuple[str, float]] = []
         self._clock = clock
 
     def stage(self, name: str) -> None:
-        """A new stage begins."""
+        """Record a new stage."""
         self.began.append((name, self._clock()))
 
     def progress(self, progress: Any) -> None:
-        """A job goes on; its stage may have changed."""
+        """Record a new stage where a job's progress has one."""
         if not self.began or self.began[-1][0] != progress.stage:
             self.stage(progress.stage)
 
@@ -112,7 +112,7 @@ def table(name: str, rows: list[dict[str, Any]]) -> str:
 
 
 def processor_times(folder: Path) -> dict[str, float]:
-    """Processor time [ms a frame] on one core of decoding, of following the markers too, and of estimates."""
+    """Processor time [ms a frame] on one core: decoding, decoding with tracking, both estimates."""
     load_project()
     import cv2
     from keymark.core.estimate.reconstruct import reconstruct
@@ -138,7 +138,7 @@ def processor_times(folder: Path) -> dict[str, float]:
 
 
 def times_table(times: dict[str, float]) -> str:
-    """Processor times as Markdown, with what following the markers adds to decoding."""
+    """Processor times as Markdown, with the ratio of tracking to decoding."""
     titles = ("decode", "decode and extract", "ratio", "map", "ekf")
     ratio = times["extract"] / times["decode"]
     values = (times["decode"], times["extract"], ratio, times["map"], times["ekf"])
@@ -154,7 +154,7 @@ def times_table(times: dict[str, float]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write; with --once, convert once and print the durations."""
+    """Measure, print and write the results; with --once, convert once and print the durations."""
     if arguments[:1] == ["--once"]:
         print(json.dumps(convert_once(Path(arguments[1]), Path(arguments[2]))))
         return 0

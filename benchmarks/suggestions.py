@@ -1,4 +1,4 @@
-"""Frames worth another keyframe: what one there gains, and whether the confidence in each frame is earned.
+"""Suggested keyframes: the gain of one at a suggested frame, and the calibration of confidence.
 
 Usage: suggestions.py [TAKE ...] with names or folders of takes; by default all found. See README.md.
 """
@@ -27,34 +27,34 @@ from keymark.core.review.review import review  # noqa: E402
 from keymark.core.review.weak_frames import NEAREST_FRAMES  # noqa: E402
 
 PER_100_FRAMES = (4, 8)
-"""So few that another helps much, and nearly as many as a finished take has."""
+"""Sparse keyframes, where another helps much, and nearly those of a finished take."""
 RANDOM_FRAMES = 3
-"""So many frames stand for any frame."""
+"""Number of random frames averaged."""
 PLACES = ("suggested", "widest gap", "random")
 BINS = (0.0, 0.5, 0.7, 0.85, 1.0)
-"""Bounds of confidence between which frames are taken together."""
+"""Bounds of the confidence bins."""
 
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What a reconstruction says of itself, and what is true of it."""
+    """Claims of a reconstruction and their true values."""
 
     error_mm: float
     """Mean over all frames and points before another keyframe."""
     gains_mm: dict[str, float]
-    """By how much that falls with a keyframe more at each place; by nothing where none is suggested."""
+    """Decrease of that error by one more keyframe, by choice of frame; 0 where none is suggested."""
     suggested: int
-    """Frames that are named as worth a keyframe."""
+    """Number of frames suggested for a keyframe."""
     rank: float
     """Rank correlation of doubt (1 - confidence) with error over the frames that are not keyframes."""
     confidence: list[float]
-    """Of these frames."""
+    """Confidence in each of these frames."""
     within: list[float]
     """Share of each frame's points that truly lie within the tolerance."""
 
 
 def measure(folder: Path) -> dict[int, Judged]:
-    """A take by keyframes per 100 frames."""
+    """Judge a take for each number of keyframes per 100 frames."""
     trial = read_trial(folder)
     postures = hand_posed(trial, exact_postures(trial))
     counts = {density: max(2, round(len(trial.truth) * density / 100.0)) for density in PER_100_FRAMES}
@@ -62,7 +62,7 @@ def measure(folder: Path) -> dict[int, Judged]:
 
 
 def judge(trial: Trial, postures: Posture, count: int) -> Judged:
-    """The trial with so many keyframes, at the frames that are proposed, and with one more."""
+    """Judge the trial with keyframes at the proposed frames, and with one more."""
     frames = spread_frames(trial, count, snap=True)
     posed = keyed(trial, postures, frames)
     reconstruction = run(reconstruct(posed.take, "map", trial.reading))
@@ -105,7 +105,7 @@ def middle_of_widest_gap(frames: IndexArray) -> int:
 
 
 def random_frames(trial: Trial, frames: IndexArray) -> list[int]:
-    """Some frames no nearer to a keyframe than those that are suggested, as far as there are any."""
+    """Random frames no nearer to a keyframe than suggested ones may be, as far as any exist."""
     every = np.arange(len(trial.truth))
     distance = np.abs(every[:, None] - frames).min(axis=1)
     far = every[distance >= min(NEAREST_FRAMES, int(distance.max()))]
@@ -136,7 +136,7 @@ def gain_table(takes: dict[str, dict[int, Judged]], groups: dict[str, list[str]]
 
 
 def calibration(judged: list[Judged]) -> list[tuple[int, float, float]]:
-    """For each stretch of confidence: frames in it, their mean confidence, and what was true of them."""
+    """Frames, mean confidence and mean true share of each confidence bin."""
     claimed = np.concatenate([one.confidence for one in judged])
     true = np.concatenate([one.within for one in judged])
     stretch = np.digitize(claimed, BINS[1:-1])
@@ -149,7 +149,7 @@ def calibration(judged: list[Judged]) -> list[tuple[int, float, float]]:
 
 
 def calibration_table(groups: dict[str, list[Judged]]) -> str:
-    """What confidence claims and what is true, by group, as Markdown."""
+    """Claimed confidence and true share by group, as Markdown."""
     titles = [f"{low:g} to {high:g}" for low, high in zip(BINS[:-1], BINS[1:], strict=True)]
     lines = [
         f"Share of points within {100 * TOLERANCE_SHARE:g} % of the stature, claimed / true (frames), by "
@@ -172,7 +172,7 @@ MEASURED = ("confidence", "within")
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     takes: dict[str, dict[int, Judged]] = {}

@@ -8,16 +8,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 NAMED_PLACES = "KEYMARK_TAKES"
-"""Environment variable of further folders of takes, apart as in PATH."""
+"""Environment variable of further folders of takes, separated as in PATH."""
 OUTPUT = ROOT / "out" / "bench"
 GIVEN_PLACES = (ROOT.parent / "shared" / "takes", ROOT / "presets" / "demo")
-"""The takes that methods are made and tuned with."""
+"""Folders of the takes with which methods are developed and tuned."""
 GROUPS = ("given", "studio")
-"""Those, and all others."""
+"""Names of the takes in those folders, and of all others."""
 
 
 def load_project() -> None:
-    """Make this very tree importable as `keymark`, whatever is installed."""
+    """Make this source tree importable as `keymark`, whether or not another is installed."""
     sys.path.insert(0, str(ROOT / "tests"))
     spec = importlib.util.spec_from_file_location("_boot", ROOT / "tests" / "_boot.py")
     if spec is None or spec.loader is None:
@@ -46,7 +46,7 @@ def take_names() -> dict[str, Path]:
 
 
 def chosen_takes(wanted: Sequence[str]) -> dict[str, Path]:
-    """Folders of the takes a person names, by name as in tables or by folder; all that are found if none."""
+    """Folders of the takes given by name, as in tables, or by folder; all takes found if none is given."""
     if not wanted:
         return take_names()
     chosen: dict[str, Path] = {}
@@ -64,12 +64,12 @@ def chosen_takes(wanted: Sequence[str]) -> dict[str, Path]:
 
 
 def group_of(folder: Path) -> str:
-    """Which of the two groups a take is of: means over both together would hide what tuning did."""
+    """The group of a take; means over both groups together would hide the effect of tuning."""
     return GROUPS[0] if folder.resolve().parent in GIVEN_PLACES else GROUPS[1]
 
 
 def write_results(name: str, markdown: str, json_text: str) -> None:
-    """Print a table and keep it, with the same as JSON, in out/bench."""
+    """Print a table and write it, with the same numbers as JSON, into out/bench."""
     OUTPUT.mkdir(parents=True, exist_ok=True)
     (OUTPUT / f"{name}.md").write_text(markdown + "\n", encoding="utf-8")
     (OUTPUT / f"{name}.json").write_text(json_text + "\n", encoding="utf-8")

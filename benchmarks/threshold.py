@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 def needed_for(limit: float, densities: ArrayLike, errors: ArrayLike) -> float | None:
     """The density from which on an error stays within a limit.
 
-    Between measured densities the error is taken to run straight over the density's logarithm.
+    Between measured densities the error is interpolated linearly over the density's logarithm.
 
     Args:
         limit: The error that is good enough.
@@ -15,7 +15,7 @@ def needed_for(limit: float, densities: ArrayLike, errors: ArrayLike) -> float |
         errors: (N,) at these densities, in the limit's unit.
 
     Returns:
-        The density; the lowest measured where even that is good enough, None where the highest is not.
+        The density; the lowest measured one where that is within the limit, None where the highest is not.
     """
     density, error = np.asarray(densities, dtype=np.float64), np.asarray(errors, dtype=np.float64)
     beyond = np.flatnonzero(error > limit)

@@ -1,4 +1,4 @@
-"""One take to try methods on: its markers are followed once, and what is tried is held against its truth."""
+"""One take to test methods on: its markers are tracked once, and results are compared with its truth."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,19 +24,19 @@ INTERPOLATIONS = {
     "auto-clamped": interpolate_auto_clamped,
     "prior": interpolate,
 }
-"""What a user could do without the footage; README.md says what each is."""
+"""Keyframe interpolations, which do without the footage; README.md describes each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A take as a method is given it, and the truth, which the method is not given."""
+    """A take as a method's input, and its truth, which the method does not see."""
 
     take: Take
     reading: Reading
     truth: Array
     """(F, 13, 3) true points [m]."""
     unscored: tuple[int, ...]
-    """Frames, from 0, that count in no mean, as those given as keyframes."""
+    """Frames, from 0, that count in no mean, such as the keyframes."""
 
     @property
     def tracks(self) -> RegionTracks:
@@ -56,17 +56,17 @@ class Trial:
         return run(reconstruct(self.take, method, self.reading)).motion
 
     def score(self, points: Array, sigma_m: Array | None = None) -> Score:
-        """How far points (F, 13, 3) are from the truth."""
+        """Score of points (F, 13, 3) against the truth."""
         return score_points(points, self.truth, self.unscored, self.take.camera, sigma_m)
 
     def best_interpolation(self) -> Score:
-        """The score of the interpolation that happens to be nearest to the truth."""
+        """The score of the interpolation nearest to the truth."""
         scores = [self.score(points) for points in self.interpolated().values()]
         return min(scores, key=lambda score: score.mpjpe)
 
 
 def read_trial(folder: Path, keyframes: Path | None = None) -> Trial:
-    """A take with its own keyframes, or with those of a file, after following its markers."""
+    """Read a take with its own keyframes, or with those of a file, and track its markers."""
     take = read_take(folder, keyframes)
     reading = run(reconstruct(take, "interpolation")).reading
     truth = read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count)

@@ -3,8 +3,8 @@
 Usage: blender --background --addons bl_ext.user_default.keymark --python docs/session.py -- FOLDER [LIBRARY]
 
 Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
-that of the demonstration take; an animator's eye and hand are stood in for by the poses that come with that
-take. With a LIBRARY, as in `aerobic`, nobody poses: its postures are matched with the footage.
+that of the demonstration take, whose shipped poses replace an animator's. With a LIBRARY, as in `aerobic`,
+nothing is posed: its postures are matched with the footage.
 """
 
 import sys
@@ -38,16 +38,16 @@ LENGTHS_M = {
     "trunk": 0.482,
     "neck_head": 0.238,
 }
-"""The right side's follow the left's."""
+"""Lengths of the left side and the middle; the right side's follow the left's."""
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """The take at work, to be asked for anew when takes were added or removed: Blender moves them then."""
+    """The active take; get it again after adding or removing takes, because Blender moves them in memory."""
     return scene.keymark.takes[scene.keymark.active_take]
 
 
 def load_footage(scene: bpy.types.Scene) -> None:
-    """Step 1, footage: the clip behind a camera that stands where the real one stood."""
+    """Step 1, footage: load the clip and put its camera where the real one stood."""
     bpy.ops.keymark.load_footage(filepath=str(DEMO / "clip.mp4"))
     take = active_take(scene)
     take.camera.location, take.camera.rotation_euler = CAMERA_LOCATION, CAMERA_ROTATION
@@ -55,7 +55,7 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, markers: the usual five, each with its color from one click on the footage."""
+    """Step 2, markers: add the usual five and pick each color by one click on the footage."""
     bpy.ops.keymark.add_usual_markers()
     for number, marker in enumerate(take.markers):
         take.active_marker = number
@@ -64,7 +64,7 @@ def pick_markers(take: bpy.types.PropertyGroup) -> None:
 
 
 def build_actor(take: bpy.types.PropertyGroup) -> None:
-    """Step 3, actor: of the height, standing where the performer is; then each length as it was measured."""
+    """Step 3, actor: build it from the height, where the performer stands; then set the measured lengths."""
     bpy.ops.keymark.build_actor(stature=HEIGHT_M)
     for name, length in LENGTHS_M.items():
         setattr(take.lengths, name, length)
@@ -72,7 +72,7 @@ def build_actor(take: bpy.types.PropertyGroup) -> None:
 
 
 def animator(scene: bpy.types.Scene) -> tuple[bpy.types.Object, list[int]]:
-    """Who poses: an actor that is posed over the footage already, and the frames in which it is."""
+    """The stand-in for an animator: an actor already posed over the footage, and the posed frames."""
     mine = scene.keymark.active_take
     bpy.ops.keymark.open_take(filepath=str(DEMO / "take.json"))
     theirs = active_take(scene)
@@ -85,14 +85,14 @@ def animator(scene: bpy.types.Scene) -> tuple[bpy.types.Object, list[int]]:
 
 
 def pose_keyframes(scene: bpy.types.Scene) -> None:
-    """Step 4, keyframes: have frames proposed; then pose, correct and store."""
+    """Step 4, keyframes: propose frames; then fit, correct and store the pose of each."""
     bpy.ops.keymark.propose_keyframes()
     print("Proposed:", sorted(proposal.frame for proposal in active_take(scene).proposals))
     hand, frames = animator(scene)
     take = active_take(scene)
     for frame in frames:
         scene.frame_set(frame)
-        bpy.ops.keymark.fit_pose(start="KEYFRAMES")  # near enough to begin with
+        bpy.ops.keymark.fit_pose(start="KEYFRAMES")  # a start to correct
         for bone in take.armature.pose.bones:  # the animator corrects it, in depth too
             bone.matrix_basis = hand.pose.bones[bone.name].matrix_basis
         bpy.ops.keymark.store_keyframe()
@@ -100,7 +100,7 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
 
 
 def match_keyframes(scene: bpy.types.Scene, library: str) -> None:
-    """Step 4 without posing: keyframes from a library; what is in doubt may be replaced, or posed."""
+    """Step 4 without posing: keyframes from a library; replace or pose the doubtful ones."""
     bpy.ops.keymark.match_library(library=library)
     for match in active_take(scene).matching.matches:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
@@ -121,7 +121,7 @@ def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.type
         print(f"Frame {weak.frame} is worth another keyframe")
     take.finish.tolerance_mm = 5.0
     bpy.ops.keymark.bake_motion()  # step 7, finish: few keys, resting feet stand still
-    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "session.blend"))  # a catalog lies beside the file
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "session.blend"))  # catalogs lie beside the file
     bpy.ops.keymark.mark_asset()
     bpy.ops.wm.save_mainfile()
     bpy.ops.keymark.export_motion(format="BVH", filepath=str(folder / "motion.bvh"))

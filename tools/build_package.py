@@ -1,8 +1,8 @@
-"""Build the extension's zips, one a platform, with the wheels that Blender lacks, into dist/.
+"""Build the extension's zips into dist/, one a platform, with the wheels that Blender lacks.
 
-Usage: build_package.py [--platform linux-x64] ... [--tool blender_ext.py]. Only what git knows of the tree is
-packed, less the manifest's own exclusions. Wheels are downloaded into wheels/ once. The packing and the
-validation are Blender's own, `blender_ext.py`; by default that of the bpy module beside the running Python.
+Usage: build_package.py [--platform linux-x64] ... [--tool blender_ext.py]. Only files known to git are
+packed, less the manifest's exclusions. Wheels are downloaded into wheels/ once. Blender's own
+`blender_ext.py` packs and validates; by default that of the bpy module of the running Python.
 """
 
 import argparse
@@ -20,12 +20,12 @@ ROOT = Path(__file__).resolve().parent.parent
 WHEELS = ROOT / "wheels"
 DIST = ROOT / "dist"
 
-# The distributions that no Blender brings; numpy it does bring, and a second one would clash.
+# Distributions that Blender lacks; it ships numpy, and a second numpy would clash.
 COMPILED = "scipy"  # a wheel for each Python
 STABLE = "opencv-python-headless"  # one wheel for every Python (abi3)
 PURE = "threadpoolctl"  # one wheel for everything
 PYTHONS = {"linux-x64": ("311", "313", "314"), "windows-x64": ("311", "313"), "macos-arm64": ("311", "313")}
-# 314: Debian's own Blender; a package that names any Python is refused by one that it does not name.
+# 314: Debian's own Blender, which refuses packages with wheels of other Pythons only.
 TAGS = {
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
@@ -40,7 +40,7 @@ def pins() -> dict[str, str]:
 
 
 def wheels_for(platform: str) -> list[Path]:
-    """The wheels of one platform, downloaded into wheels/ where they are not there yet."""
+    """The wheels of one platform, downloaded into wheels/ if missing."""
     requirement = pins()
     found = [download(requirement[STABLE], platform, PYTHONS[platform][0], "abi3")]
     found.append(download(requirement[PURE], platform, PYTHONS[platform][0], "none"))
@@ -51,9 +51,7 @@ def wheels_for(platform: str) -> list[Path]:
 
 def download(requirement: str, platform: str, python: str, abi: str) -> Path:
     """The wheel of one requirement for one platform, Python and binary interface."""
-    record = (
-        WHEELS / f"{requirement}-{platform}-{abi}.json"
-    )  # remembers the file's name, which only pip knows
+    record = WHEELS / f"{requirement}-{platform}-{abi}.json"  # records the file's name, which only pip knows
     if record.is_file() and (WHEELS / json.loads(record.read_text())).is_file():
         return WHEELS / json.loads(record.read_text())
     WHEELS.mkdir(exist_ok=True)
@@ -74,7 +72,7 @@ def download(requirement: str, platform: str, python: str, abi: str) -> Path:
 
 
 def tracked_files() -> list[str]:
-    """What git knows of the tree, and what it would add: never what .gitignore names."""
+    """Files of the tree tracked by git or untracked and not ignored by .gitignore."""
     command = [
         "git",
         "-c",

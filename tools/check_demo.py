@@ -1,7 +1,7 @@
-"""Hold what `make demo` has written against what it promises. Usage: check_demo.py OUTPUT TAKE.
+"""Check the output of `make demo` against its promises. Usage: check_demo.py OUTPUT TAKE.
 
-OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures with something on
-them, and a motion near the take's truth. The exit status is 1, with one line for each thing that is wrong.
+OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures that are not
+blank, and a motion near the take's truth. The exit status is 1 on errors, with one line for each.
 """
 
 import json
@@ -16,7 +16,7 @@ PICTURES_AT_LEAST = 4
 
 
 def check_motion(motion: dict, take: dict, truth: dict) -> list[str]:
-    """Say what is wrong with a motion.json: frames that are missing or not finite, or an error too large."""
+    """Errors of a motion.json: missing or non-finite frames, or too large a distance from the truth."""
     wrong = []
     errors = []
     if set(motion["points"]) != set(truth["points"]):
@@ -37,7 +37,7 @@ def check_motion(motion: dict, take: dict, truth: dict) -> list[str]:
 
 
 def check_files(folder: Path, frame_count: int) -> list[str]:
-    """Say what is wrong with the .blend and the .bvh beside a motion.json."""
+    """Errors of the .blend and the .bvh beside a motion.json."""
     wrong = []
     blend = folder / "motion.blend"
     starts = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, Zstandard, gzip
@@ -50,7 +50,7 @@ def check_files(folder: Path, frame_count: int) -> list[str]:
 
 
 def check_pictures(folder: Path) -> list[str]:
-    """Say which pictures are empty, or that there are too few."""
+    """Errors of the pictures: blank ones, or too few."""
     files = sorted(folder.rglob("*.png"))
     wrong = [] if len(files) >= PICTURES_AT_LEAST else [f"{folder} holds only {len(files)} pictures"]
     for file in files:
@@ -61,7 +61,7 @@ def check_pictures(folder: Path) -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    """Check, print what is wrong, return the exit status."""
+    """Check, print the errors, return the exit status."""
     output, take_folder = map(Path, arguments)
     take = json.loads((take_folder / "take.json").read_text(encoding="utf-8"))
     truth = json.loads((take_folder / "truth.json").read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Say which Debian packages hold the shared libraries that the bpy wheel needs and this machine lacks.
+"""List the Debian packages with the shared libraries that the bpy wheel needs and this machine lacks.
 
 Usage: check_libraries.py [--packages]. The exit status is 1 if any is missing; `--packages` prints only the
 packages' names, for apt-get.
@@ -21,7 +21,7 @@ PACKAGE_OF = {
 
 
 def is_missing(library: str) -> bool:
-    """Whether the dynamic linker does not find `library`."""
+    """Whether the dynamic linker fails to find `library`."""
     try:
         ctypes.CDLL(library)
     except OSError:

@@ -1,6 +1,6 @@
-"""Run mypy over the package under its own name, whatever the folder that holds it is called.
+"""Run mypy over the package as `keymark`, independently of the name of its folder.
 
-mypy derives module names from folders; the root's folder is the user's to name. So it looks at a folder of
+mypy derives module names from folders, and a clone's folder may have any name. So it checks a folder of
 links called `keymark`, and its findings are printed with the paths of the tree.
 """
 
@@ -15,7 +15,7 @@ ROOMS = ("__init__.py", "core", "operators")
 
 
 def link_package() -> None:
-    """Make LINKS/keymark hold links to what the package consists of."""
+    """Fill LINKS/keymark with links to the package's folders and files."""
     package = LINKS / "keymark"
     package.mkdir(parents=True, exist_ok=True)
     for name in ROOMS:

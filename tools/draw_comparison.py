@@ -1,7 +1,6 @@
 """Draw the demonstration take's motion by each method over both cameras. Usage: draw_comparison.py PICTURE.
 
-The upper rows show the footage that was used, the lower ones the reference camera from the side, which no
-method saw.
+The upper rows show the footage used, the lower ones the reference camera from the side, which no method saw.
 """
 
 import json
@@ -55,7 +54,7 @@ def main(output: str) -> None:
     methods = METHODS[::-1]
     row = TITLE + CELL[1] + GAP
     canvas = Canvas(GAP + len(FRAMES) * (CELL[0] + GAP), len(views) * len(methods) * row)
-    reading = None  # of one clip, however many methods look at it
+    reading = None  # shared by all methods
     for i, method in enumerate(methods):
         done = run(reconstruct(take, method, reading))
         motion, reading = done.motion, done.reading

@@ -1,6 +1,6 @@
 """Draw some postures of every shipped library, for the docs. Usage: draw_libraries.py PICTURE.
 
-`keymark library show NAME --sheet FILE` draws all of one.
+`keymark library show NAME --sheet FILE` draws all postures of one library.
 """
 
 import sys
@@ -20,7 +20,7 @@ QUALITY = 82
 
 
 def some_postures(library: Library) -> list[LibraryPosture]:
-    """A few postures, evenly chosen in the order in which the library lists them."""
+    """A few postures, evenly spaced in the library's order."""
     places = np.unique(np.linspace(0, len(library.postures) - 1, FIGURES).round().astype(int))
     return [library.postures[place] for place in places]
 

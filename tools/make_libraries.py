@@ -1,7 +1,7 @@
-"""Write the shipped keyframe libraries into presets/keyframes, and on request their contact sheets.
+"""Write the shipped keyframe libraries into presets/keyframes, and with --sheet their contact sheets.
 
 Usage: make_libraries.py [NAME ...] [--sheet FOLDER], with the Python of the development environment; by
-default all libraries. They are composed in tools/libraries; equal sources give equal files.
+default all libraries. tools/libraries composes them; equal sources give equal files.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Make takes with truth: compose a performance, film it, and write down everything about it.
+"""Make takes with truth: compose a performance, film it, and write its take, keyframe and truth files.
 
 Usage: make_takes.py [--output FOLDER] [--threads N] [NAME ...], with the Python of a virtual environment that
 has `bpy`; by default all takes of studio/catalogue.py into out/takes. The one called `aerobic` is the
@@ -55,7 +55,7 @@ LICENSE = (
 
 
 def main(arguments: list[str]) -> int:
-    """Make the takes named; their folders get every file anew."""
+    """Make the takes named, replacing every file in their folders."""
     parser = argparse.ArgumentParser(description="Make takes with truth.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(TAKES)}; by default all")
     parser.add_argument("--output", type=Path, default=ROOT / "out" / "takes")
@@ -95,7 +95,7 @@ def make(described: Described, output: Path, threads: int | None) -> None:
 def _masks(
     performer: Performer, performance: Performance, room: BuiltRoom, described: Described
 ) -> BoolArray:
-    """(F, M, height, width) where each marker is exactly visible in the middle of each exposure."""
+    """(F, M, height, width) masks of each marker's visible pixels, at the middle of each exposure."""
     place_camera(described.camera)
     frames = []
     with only_markers(performer.thing, room) as grays:
@@ -139,7 +139,7 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
 
 
 def _keep_points_only(path: Path) -> None:
-    """Take the postures out of a keyframe file: a person who marks thirteen points says nothing of twists."""
+    """Remove the postures from a keyframe file: thirteen marked points do not determine twists."""
     keyframes = json.loads(path.read_text(encoding="utf-8"))["keyframes"]
     for keyframe in keyframes:
         del keyframe["posture"]
@@ -161,7 +161,7 @@ def _visibility(masks: BoolArray) -> dict[str, dict[str, list]]:
 
 
 def _eyedropper(clip: Path, masks: BoolArray) -> tuple[MarkerStyle, ...]:
-    """One color a marker, as found in the encoded footage: the median inside its region over the clip."""
+    """Color of each marker in the encoded footage: the median inside its region over the clip."""
     capture = cv2.VideoCapture(str(clip))
     images = np.stack([capture.read()[1] for _ in masks])[..., ::-1]
     styles = []
@@ -173,7 +173,7 @@ def _eyedropper(clip: Path, masks: BoolArray) -> tuple[MarkerStyle, ...]:
 
 
 def _write_json(path: Path, value: object) -> None:
-    """Write JSON without spaces, which the folder's size would feel."""
+    """Write JSON without spaces, for small files."""
     path.write_text(json.dumps(value, separators=(",", ":")) + "\n", encoding="utf-8")
 
 

@@ -1,8 +1,8 @@
-"""Run the tests inside a real Blender, with the libraries it lacks.
+"""Run the tests inside a real Blender, adding the libraries it lacks.
 
 Usage: test_in_blender.py BLENDER [pytest arguments]. Blender from blender.org brings numpy but neither pytest
-nor scipy and OpenCV. What is missing is installed for that Blender's Python into a folder of its own below
-.cache/; Blender itself is left as it is.
+nor scipy and OpenCV. The missing ones are installed for that Blender's Python into a folder of its own below
+.cache/; Blender itself is not changed.
 """
 
 import json
@@ -31,7 +31,7 @@ print("ANSWER" + json.dumps(["%d.%d" % sys.version_info[:2], missing]))
 
 
 def ask(blender: str) -> tuple[str, list[str]]:
-    """The version of a Blender's Python, and which of MODULES it lacks."""
+    """The version of a Blender's Python, and the names in MODULES that it lacks."""
     command = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python-expr", QUESTION]
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     for line in done.stdout.splitlines():
@@ -42,7 +42,7 @@ def ask(blender: str) -> tuple[str, list[str]]:
 
 
 def install(version: str, missing: list[str]) -> Path:
-    """A folder below .cache/ that holds the missing modules for that Python version."""
+    """Install the missing modules for that Python version into a folder below .cache/, and return it."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     lines = project["dependencies"] + project["optional-dependencies"]["dev"]
     pins = {line.split("==")[0]: line for line in lines if "==" in line}

@@ -1,5 +1,5 @@
 // A Flamenco 3 job type: converts every take of a shoot, one task a take, then gathers the motions in an asset library.
-// docs/farm_flamenco.md says how to install and submit it. For Flamenco 3.5 or newer.
+// docs/farm_flamenco.md explains how to install and submit it. For Flamenco 3.5 or newer.
 
 const AS_TAKES_SAY = "as the takes say";
 
@@ -32,8 +32,8 @@ const JOB_TYPE = {
             propargs: { min: 0, max: 100000 },
             label: "Tasks",
             description:
-                "How many tasks share the takes: as many as there are takes gives each its own. Fewer share them out " +
-                "evenly, and of more some have nothing to do",
+                "Number of tasks that share the takes: as many as takes gives each its own. Fewer share them evenly; " +
+                "surplus tasks end at once",
             eval:
                 "len([file for file in Path(abspath(settings.shoot)).rglob('*') if file.name == 'take.json' or " +
                 "(file.suffix.lower() in {'.avi', '.m4v', '.mkv', '.mov', '.mp4', '.mpeg', '.mpg', '.mts', '.mxf', " +
@@ -50,8 +50,8 @@ const JOB_TYPE = {
             default: "map",
             label: "Method",
             description:
-                "Method where nothing in the shoot names one. map: the whole clip at once. ekf: the filter of the " +
-                "paper. interpolation: the keyframes alone",
+                "Method of takes for which no file of the shoot names one. map: the whole clip at once. ekf: the " +
+                "paper's filter. interpolation: the keyframes alone",
         },
         {
             key: "library",
@@ -74,8 +74,8 @@ const JOB_TYPE = {
             default: AS_TAKES_SAY,
             label: "Keyframe Library",
             description:
-                "Library to match takes with where nothing in the shoot names one. auto chooses among all that the " +
-                "workers have",
+                "Library to match takes with for which no file of the shoot names one. auto chooses among all of the " +
+                "workers' libraries",
         },
         {
             key: "own_library",
@@ -99,7 +99,7 @@ const JOB_TYPE = {
             subtype: "file_name",
             default: "",
             label: "Name",
-            description: "What the shoot is called, in the asset library's file and catalogs",
+            description: "Name of the shoot in the asset library's file and catalogs",
             eval: "jobname",
             evalInfo: {
                 showLinkButton: true,
@@ -112,8 +112,8 @@ const JOB_TYPE = {
             default: true,
             label: "Go On after Failed Takes",
             description:
-                "When takes cannot be converted, let their tasks end well and merge the others; then the last task " +
-                "fails and names them. Otherwise their tasks fail, and a worker with three of them gets no more",
+                "Let the tasks of takes that cannot be converted succeed and merge the others; then the last task " +
+                "fails and names them. Otherwise their tasks fail, and a worker with three failures gets no more",
         },
         {
             key: "program",
@@ -122,10 +122,10 @@ const JOB_TYPE = {
             required: true,
             visible: "submission",
             label: "Blender or Keymark",
-            description: "How workers call a Blender that has Keymark, or the command keymark itself",
+            description: "Command by which workers call a Blender that has Keymark, or the command keymark itself",
         },
 
-        // Paths as the workers need them: in Blender they may be relative to the .blend.
+        // Absolute paths for the workers: in Blender paths may be relative to the .blend.
         {
             key: "shoot_path",
             type: "string",
@@ -177,7 +177,7 @@ function compileJob(job) {
     }
 }
 
-// Without Blender's add-on, as over the API, nothing has made the paths absolute; then they must be so already.
+// Without Blender's add-on, as over the API, paths are not made absolute; they must be absolute already.
 function folderOf(settings, key, what) {
     const folder = settings[`${key}_path`] || settings[key];
     if (!folder || folder.startsWith("//")) {
@@ -190,7 +190,7 @@ function isOn(setting) {
     return setting === undefined || setting === null || setting === true;
 }
 
-// A name that may be a file's on every system.
+// A valid file name on every system.
 function nameOf(job) {
     const name = (job.settings.name || job.name || "").replace(/[\\/:*?"<>|]/g, "-").trim();
     return name || "shoot";
@@ -223,7 +223,7 @@ function keymarkTask(name, settings, words) {
     task.addCommand(
         author.Command("exec", {
             exe: settings.program || "{blender}",
-            // What Blender needs in front of a command of an extension, keymark passes over.
+            // Blender needs these words before an extension's command; keymark ignores them.
             args: ["--command", "keymark", ...words],
         }),
     );

@@ -1,4 +1,4 @@
-"""Where a body's mass is, and moments moved so that it is over the feet or on the path of a throw."""
+"""Center of mass, and moments moved so that it is over the feet or on a ballistic path."""
 
 from dataclasses import replace
 
@@ -21,15 +21,15 @@ SHARES_OF_MASS = {
     "chest": (0.280, 0.5),
     "head": (0.081, 0.8),
 }
-"""Of a part in the body's mass, and where along it its center lies: Winter (2009), table 4.1; the trunk's is
-divided at the waist."""
+"""Share of each part in the body's mass, and position of its center along it: Winter (2009), table 4.1; the
+trunk's is divided at the waist."""
 BEFORE_ANKLE_M = 0.045
-"""Where a foot bears a person who stands [m]."""
+"""Distance of a standing person's center of pressure before the ankle [m]."""
 STEPS = 12
 
 
 def center_of_mass(body: Body, pose: Pose) -> Array:
-    """(..., 3) [m]."""
+    """(..., 3) center of mass [m]."""
     total, weight = np.zeros((*pose.posture.batch, 3)), 0.0
     for segment in body.skeleton.segments:
         mass, share = SHARES_OF_MASS.get(segment.name.partition(".")[0], (0.0, 0.0))
@@ -47,9 +47,9 @@ def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:
     """A moment with its hips moved over the floor until its mass is over its standing feet.
 
     Args:
-        moment: With at least one foot on the floor.
+        moment: A moment with at least one foot on the floor.
         left: Share of the weight on the left foot where both stand.
-        ahead_m: How far the mass shall be before (toe-ward of) that place: someone about to step or to jump.
+        ahead_m: Offset of the mass toward the toes, before a step or a jump.
     """
     places = {}
     for side, foot in moment.legs.items():
@@ -59,7 +59,7 @@ def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:
                 [np.sin(toes), -np.cos(toes)]
             )
     if not places:
-        raise ValueError("nobody is balanced without a foot on the floor")
+        raise ValueError("balance needs a foot on the floor")
     wanted = (
         left * places["L"] + (1.0 - left) * places["R"] if len(places) == 2 else next(iter(places.values()))
     )
@@ -69,9 +69,9 @@ def balanced(moment: Moment, left: float = 0.5, ahead_m: float = 0.0) -> Moment:
 
 
 def balanced_over(moment: Moment, x: float = 0.0, y: float = -BEFORE_ANKLE_M) -> Moment:
-    """A moment with its hips moved until its mass is over a place on the floor [m].
+    """A moment with its hips moved until its mass is over a point on the floor [m].
 
-    Its hands and feet stay where they are; by default the place is before ankles at the world's origin.
+    Its hands and feet stay in place; the default point is before ankles at the world's origin.
     """
     wanted = np.array([x, y])
     for _ in range(STEPS):
@@ -81,14 +81,14 @@ def balanced_over(moment: Moment, x: float = 0.0, y: float = -BEFORE_ANKLE_M) ->
 
 
 def thrown(moment: Moment, mass: Array) -> Moment:
-    """A moment in the air with its mass in a place (3,) [m]."""
+    """A moment in the air with its mass at a point (3,) [m]."""
     there = replace(moment, x=0.0, y=0.0, height=1.0)
     x, y, z = (float(value) for value in mass - mass_of(there))
     return replace(moment, x=x, y=y, height=1.0 + z)
 
 
 def flight(start: Array, end: Array, duration_s: float, share: float) -> Array:
-    """(3,) where a thrown mass is after a share of its flight from one place to another [m]."""
+    """(3,) position of a thrown mass after a share of its flight from one point to another [m]."""
     elapsed, left = share * duration_s, (1.0 - share) * duration_s
     rise = np.array([0.0, 0.0, 0.5 * GRAVITY_MPS2 * elapsed * left])
     return np.asarray(start + share * (end - start) + rise)

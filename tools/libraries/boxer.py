@@ -1,4 +1,4 @@
-"""How a boxer stands whose left hand leads, and what turns and bends for a punch or away from one."""
+"""A boxer's guard with the left hand leading, and its turns and bends for punches and evasions."""
 
 from .balance import balanced_over
 from .moment import AnyArm, Arm, Foot, Hand, Moment, Turn, moment
@@ -6,7 +6,7 @@ from .placing import pivoted
 
 LEAD, REAR = Foot(0.11, -0.20, -14.0), Foot(-0.13, 0.24, -52.0, 16.0)
 ASIDE = -34.0
-"""How far the hips of a boxer are turned from the opponent, who is straight ahead."""
+"""Turn of a boxer's hips from the opponent, who is straight ahead."""
 LEAD_GUARD = Arm(36, 62, 26, 114, 20, 4)
 REAR_GUARD = Arm(28, 56, 28, 132, 15, 4)
 
@@ -24,18 +24,18 @@ def boxing(
     aside: float = 0.0,
     feet: tuple[Foot, Foot] = (LEAD, REAR),
 ) -> Moment:
-    """A boxer.
+    """A moment of a boxer.
 
     Args:
         left: The lead arm.
         right: The rear arm.
-        turn: Of the hips from those of the guard, to the left [degrees].
-        chest: Of the chest on the hips, likewise.
-        bow: Of the trunk beyond the guard's, forward.
-        lean: Of the trunk, to the left.
+        turn: Turn of the hips from the guard, to the left [degrees].
+        chest: Turn of the chest on the hips, likewise.
+        bow: Bow of the trunk beyond the guard's, forward.
+        lean: Lean of the trunk, to the left.
         bend: Least flexion of the knees.
-        forward: How far the weight is before the middle of the feet [m].
-        aside: How far it is to the left [m].
+        forward: Offset of the weight before the middle of the feet [m].
+        aside: Offset of the weight to the left [m].
         feet: The lead foot and the rear one.
     """
     weight = 0.5 * (feet[0].y + feet[1].y) - 0.05 - forward
@@ -59,12 +59,12 @@ def boxing(
 def fist(
     x: float, ahead: float, height: float, swivel: float, pronation: float, girdle: float = 10.0
 ) -> Hand:
-    """A wrist at a place or as near as it gets."""
+    """A wrist at a position, or as near as it can reach."""
     return Hand(x, -ahead, height, swivel, pronation, girdle, short=0.3)
 
 
 def rear_pivot(turn: float, pitch: float) -> tuple[Foot, Foot]:
-    """The feet with the rear one turned on its ball, from how it stands in the guard [degrees]."""
+    """The feet with the rear one turned on its ball from its direction in the guard [degrees]."""
     return LEAD, pivoted(REAR, REAR.turn + turn, pitch)
 
 

@@ -1,4 +1,4 @@
-"""A library in the making: moments get names and times, and become postures in a file's precision."""
+"""Composition of a library: moments get names and times, and become postures in a file's precision."""
 
 from collections.abc import Callable, Sequence
 
@@ -11,7 +11,7 @@ from .solving import BODY, posture_of
 
 AUTHOR, LICENSE = "Keymark", "CC0-1.0"
 DECIMALS = 4
-"""Of meters and radians: a tenth of a millimeter, and the same on every computer."""
+"""Decimals of meters and radians: a tenth of a millimeter, and equal on every computer."""
 
 
 class Composer:
@@ -40,10 +40,10 @@ class Composer:
         self._motions: list[LibraryMotion] = []
 
     def pose(self, name: str, moment: Moment, *tags: str) -> str:
-        """Add a posture; its name comes back.
+        """Add a posture and return its name.
 
         Raises:
-            ValueError: The name is taken, or a limb cannot reach its place.
+            ValueError: The name is taken, or a limb cannot reach its target.
         """
         if name in self._postures:
             raise ValueError(f"there are two postures called {name}")
@@ -87,12 +87,12 @@ class Composer:
         """Add a cyclic motion.
 
         Args:
-            name: The motion's; its postures are called after it and their phase.
+            name: Name of the motion; its postures are named after it and their phase.
             at: The moment at a phase from 0 to 1.
             phases: Names of phases, and where in the cycle they are; the first is at 0.
-            duration_s: Of a cycle.
-            travel: What a cycle adds to the place [m] and the heading [rad].
-            tags: Of the postures.
+            duration_s: Duration of a cycle.
+            travel: Change of position [m] and heading [rad] over a cycle.
+            tags: Tags of the postures.
         """
         steps = [
             (self.pose(f"{name}: {phase}", at(share), *tags), share * duration_s) for phase, share in phases
@@ -100,7 +100,7 @@ class Composer:
         self.motion(name, steps, duration_s, True, travel)
 
     def library(self) -> Library:
-        """What has been collected."""
+        """The library of the collected postures and motions."""
         return Library(
             actor=BODY.actor,
             postures=tuple(self._postures.values()),

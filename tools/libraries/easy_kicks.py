@@ -8,13 +8,13 @@ from .kicker import HANGING, on_right
 from .moment import Foot, Leg, Moment, Turn, moment, swung_arm
 
 STAND = Foot(-0.09, 0.0, -8.0)
-"""Of the right foot; the library's "standing" has the left one beside it."""
+"""The right foot; in the library's "standing" the left one is beside it."""
 RUN_UP_S = 0.94
-"""From standing until the last stride before the ball."""
+"""Time from standing until the last stride before the ball."""
 
 
 def front(made: Composer) -> None:
-    """To the height of the hips, not much faster than a step."""
+    """A front kick to the height of the hips, not much faster than a step."""
     arms = {"left_arm": swung_arm(-16.0, 18.0, elbow=28.0), "right_arm": swung_arm(18.0, 22.0, elbow=34.0)}
     up = on_right(
         Leg(64.0, 4.0, 4.0, 88.0, 15.0), Turn(-4.0, -3.0), Turn(6.0, 3.0), stand=STAND, bend=14.0, **arms
@@ -43,7 +43,7 @@ def front(made: Composer) -> None:
 
 
 def side(made: Composer) -> None:
-    """To the height of the thigh, the trunk leaning away and the arms a little out."""
+    """A side kick to the height of the thigh, the trunk leaning away and the arms a little out."""
     arms = {"left_arm": swung_arm(4.0, 22.0, elbow=30.0), "right_arm": swung_arm(6.0, 30.0, elbow=34.0)}
     up = on_right(
         Leg(46.0, 16.0, 4.0, 78.0, 5.0), Turn(0.0, -6.0), Turn(4.0, 5.0), stand=STAND, bend=14.0, **arms

@@ -1,4 +1,4 @@
-"""Walking from footfalls: where and when each foot stands says how hips, trunk, arms and swinging legs move.
+"""Walking from footfalls: positions and times of the feet determine hips, trunk, arms and swinging legs.
 
 Sources of the numbers: events, joint angles and the feet's roll: Perry & Burnfield (2010), *Gait Analysis*,
 and Winter (2009), *Biomechanics and Motor Control of Human Movement*; excursions of the pelvis: Kadaba,
@@ -20,7 +20,7 @@ from .solving import BODY, ankle_of, hips_height
 
 RATE_HZ = 100.0
 STANCE = 0.61
-"""Share of a cycle for which a foot is on the floor."""
+"""Share of a cycle during which a foot is on the floor."""
 LEADS = 0.25
 """Share of a cycle from the strike of a foot until the hips pass over it."""
 HIPS_RISE_M = 0.065
@@ -28,11 +28,11 @@ HIPS_RISE_M = 0.065
 PUSH_SHAPE, PUSH_DEG = 2.6, 64.0
 SMOOTH_S, LOADING_S = 0.05, 0.06
 SWING_PLACE = {0.0: 0.0, 0.12: 0.07, 0.5: 0.52, 0.8: 0.87, 0.92: 0.975, 1.0: 1.0}
-"""Share of a swing's way that the ankle has gone after a share of its time."""
+"""Share of a swing's distance covered by the ankle, by share of its time."""
 SWING_HEIGHT = {0.0: (1.0, 0.0, 0.0), 0.12: (1.0, 0.0, 0.04), 0.35: (0.7, 0.1, 0.055), 0.6: (0.1, 0.5, 0.02)}
 SWING_HEIGHT |= {0.8: (0.0, 0.9, 0.012), 1.0: (0.0, 1.0, 0.0)}
-"""An ankle's height after a share of the swing: shares of its height at toe off and at heel strike, and
-meters for a stride of a meter and a half."""
+"""An ankle's height by share of the swing: shares of its heights at toe off and at heel strike, and meters
+for a stride of a meter and a half."""
 
 
 _SWING_PLACE, _SWING_HEIGHT = (
@@ -51,50 +51,50 @@ class Footfall:
     x: float
     y: float
     turn: float = 0.0
-    """Where the toes point, to the left of -Y [degrees]."""
+    """Direction of the toes, to the left of -Y [degrees]."""
     heel: float = 1.0
-    """How much it lands on the heel: 1 as in normal walking, 0 on the flat foot."""
+    """Landing on the heel: 1 as in normal walking, 0 on the flat foot."""
     push: float = 1.0
-    """How much it leaves by its toes."""
+    """Push-off with the toes: 1 as in normal walking."""
 
 
 @dataclass(frozen=True)
 class Style:
-    """What differs between walkers; 1 is normal walking."""
+    """Parameters that differ between walkers; factors of 1 are normal walking."""
 
     arms: float = 1.0
     sway: float = 1.0
-    """Of pelvis and chest."""
+    """Sway of pelvis and chest."""
     bow: float = 2.0
-    """The trunk's, forward [degrees]."""
+    """Bow of the trunk, forward [degrees]."""
     apart_m: float = 0.045
     """Half the distance between the feet, side by side [m]."""
     aside: float = 6.0
-    """How far the arms are held off the trunk [degrees]."""
+    """Elevation of the arms from the trunk [degrees]."""
     lean: float = 0.0
-    """Of the whole body to the left, as in a bend [degrees]."""
+    """Lean of the whole body to the left, as in a bend [degrees]."""
     elbow: float = 17.0
-    """Least flexion [degrees]."""
+    """Least flexion of the elbows [degrees]."""
     bend: float = 6.6
     """Least flexion of a supporting knee [degrees]."""
     toes_out: float = 7.0
-    """[degrees]"""
+    """Outward turn of the feet [degrees]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """A walk over footfalls in order of time, of which neighbors are of different feet."""
+    """A walk over footfalls in order of time, left and right alternating."""
 
     footfalls: Sequence[Footfall]
     step_s: float
-    """Of a usual step, from strike to strike of the other foot."""
+    """Duration of a usual step, from one foot's strike to the other's."""
     style: Style = Style()
     body: Body = BODY
 
     def at(self, time_s: float) -> Moment:
-        """The walker at a time."""
+        """The moment at a time."""
         x, y, pelvis, waist, neck = self._trunk(time_s)
-        cycle, vigour = self._cycle(time_s)
+        cycle, vigor = self._cycle(time_s)
         return Moment(
             x=x,
             y=y,
@@ -102,20 +102,20 @@ class Walk:
             pelvis=pelvis,
             waist=waist,
             neck=neck,
-            arms={"L": self._arm(cycle, vigour), "R": self._arm(cycle + np.pi, vigour)},
+            arms={"L": self._arm(cycle, vigor), "R": self._arm(cycle + np.pi, vigor)},
             legs={side: self._foot(side, time_s) for side in SIDES},
         )
 
     def _cycle(self, time_s: float) -> tuple[float, float]:
-        """The phase [rad], 0 where the left heel strikes, and how vigorous the walk is."""
-        vigour = np.interp(time_s, self.times, self._vigour)
-        return float(2.0 * np.pi * self._phases(time_s)), float(vigour)
+        """The phase [rad], 0 where the left heel strikes, and the vigor of the walk."""
+        vigor = np.interp(time_s, self.times, self._vigor)
+        return float(2.0 * np.pi * self._phases(time_s)), float(vigor)
 
     def _trunk(self, time_s: float) -> tuple[float, float, Turn, Turn, Turn]:
-        """The hips' place over the floor [m], and how pelvis, chest and head are turned."""
-        cycle, vigour = self._cycle(time_s)
+        """The hips' position over the floor [m], and the rotations of pelvis, chest and head."""
+        cycle, vigor = self._cycle(time_s)
         x, y, heading = (float(np.interp(time_s, self.times, values)) for values in self._hips.T)
-        sway, bow, facing = vigour * self.style.sway, self.style.bow, np.radians(heading)
+        sway, bow, facing = vigor * self.style.sway, self.style.bow, np.radians(heading)
         aside = 0.02 * sway * np.cos(cycle - 0.6 * np.pi)
         twist, drop = 5.0 * sway * np.cos(cycle), 4.0 * sway * np.cos(cycle - 0.3 * np.pi)
         return (
@@ -135,7 +135,7 @@ class Walk:
 
     @cached_property
     def _phases(self) -> PchipInterpolator:
-        """Cycles, whole where the left heel strikes and half where the right one does."""
+        """Phase [cycles]: whole at left heel strikes, half at right ones."""
         strikes = np.array([fall.strike_s for fall in self.footfalls])
         for i in range(1, len(strikes)):  # feet that stand side by side from the beginning
             strikes[i] = max(strikes[i], strikes[i - 1] + 0.5 * self.step_s)
@@ -144,7 +144,7 @@ class Walk:
 
     @cached_property
     def _hips(self) -> Array:
-        """(T, 3) the hips' midpoint x, y [m] and heading [degrees]: between the feet as they bear it."""
+        """(T, 3) the hips' midpoint x, y [m] and heading [degrees]: between the feet by their load."""
         weights, places = [], []
         for fall in self.footfalls:
             sign = 1.0 if fall.side == "L" else -1.0
@@ -159,15 +159,15 @@ class Walk:
         return gaussian_filter1d(share.T @ np.array(places), 0.05 * RATE_HZ, axis=0, mode="nearest")
 
     @cached_property
-    def _vigour(self) -> Array:
-        """(T,) how fast the walk is against 1.3 m/s, at most 1.3."""
+    def _vigor(self) -> Array:
+        """(T,) speed relative to 1.3 m/s, at most 1.3."""
         speed = np.linalg.norm(np.gradient(self._hips[:, :2], self.times, axis=0), axis=-1)
-        vigour = gaussian_filter1d(np.clip(speed / 1.3, 0.0, 1.3), 0.1 * RATE_HZ, mode="nearest")
-        return np.asarray(vigour)
+        vigor = gaussian_filter1d(np.clip(speed / 1.3, 0.0, 1.3), 0.1 * RATE_HZ, mode="nearest")
+        return np.asarray(vigor)
 
     @cached_property
     def _heights(self) -> Array:
-        """(T,) of the hips [m]: as high as the supporting legs allow, but for what would be a jolt."""
+        """(T,) height of the hips [m]: as high as the supporting legs allow, smoothed against jolts."""
         allowed = np.empty(len(self.times))
         for i, time_s in enumerate(self.times):
             x, y, pelvis, _, _ = self._trunk(time_s)
@@ -175,7 +175,7 @@ class Walk:
             allowed[i] = hips_height(Moment(x, y, bend=self.style.bend, pelvis=pelvis, legs=legs), self.body)
         lowest = minimum_filter1d(allowed, int(1.1 * RATE_HZ), mode="nearest")
         capped = np.minimum(allowed, lowest + HIPS_RISE_M)
-        # Loading bends the knee: the hips sink on for a moment after the heel strikes.
+        # Loading bends the knee: the hips keep sinking for a moment after heel strike.
         window = int(LOADING_S * RATE_HZ)
         sunk = minimum_filter1d(capped, window, mode="nearest", origin=(window - 1) // 2)
         smooth = gaussian_filter1d(sunk, SMOOTH_S * RATE_HZ, mode="nearest")
@@ -223,9 +223,9 @@ class Walk:
         turn = before.turn + gone * (after.turn - before.turn)
         return Ankle(float(place[0]), float(place[1]), float(height), turn)
 
-    def _arm(self, cycle: float, vigour: float) -> Arm:
-        """The arm of the side whose heel strikes at 0: it is back then."""
-        much = self.style.arms * vigour
+    def _arm(self, cycle: float, vigor: float) -> Arm:
+        """The arm of the side whose heel strikes at 0, when the arm is back."""
+        much = self.style.arms * vigor
         forward = -np.cos(cycle - 0.25)
         return swung_arm(
             float((-4.0 + 19.0 * forward) * much),

@@ -1,4 +1,4 @@
-"""Bouncing on both feet, hopping on one, and a leap from a run-up from one to the other."""
+"""Bouncing on both feet, hopping on one, and a leap from one foot to the other after a run-up."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from .moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
 HOP_S, SMALL_S, LEAP_S = 0.22, 0.20, 0.40
 """Times of flight."""
 LEAP_M = 1.55
-"""How far the mass flies."""
+"""Flight distance of the mass."""
 
 
 def bounce(made: Composer) -> None:
@@ -44,7 +44,7 @@ def bounce(made: Composer) -> None:
 
 
 def hop(made: Composer) -> None:
-    """On the left leg, a little forward each time."""
+    """Hops on the left leg, a little forward each time."""
     ahead_m = 0.42
 
     def down(bend: float, pitch: float, ahead: float, free: Leg, swing: float) -> Moment:
@@ -94,7 +94,7 @@ def hop(made: Composer) -> None:
 
 
 def leap(made: Composer) -> None:
-    """From a run-up off the left foot over to the right one."""
+    """A leap off the left foot onto the right one, from a run-up."""
     plant = balanced(
         moment(
             left_leg=Foot(0.02, 0.0, 5.0, -10.0),

@@ -1,4 +1,4 @@
-"""What can be wrong with a composed library, in numbers, for tests and for whoever composes.
+"""Measures of faults in a composed library, for tests and authors.
 
 Joints beyond their range, feet that slide or sink, arms in the trunk.
 """
@@ -17,7 +17,7 @@ TRUNK_RADIUS_M = (0.15, 0.105)
 
 
 def over_time(library: Library, motion: LibraryMotion, rate_hz: float = 60.0) -> tuple[Posture, Array]:
-    """Postures along a motion, once through, and their times (T,) [s]."""
+    """Postures along one pass of a motion, and their times (T,) [s]."""
     times = np.arange(0.0, motion.duration_s + 1e-9, 1.0 / rate_hz)
     return sample_motion(library, motion, Body(library.actor), times), times
 
@@ -37,7 +37,7 @@ def ranges_left(library: Library) -> list[str]:
 
 
 def soles(body: Body, pose: Pose) -> Array:
-    """(..., 2) heights of the soles [m], left first; a foot is as flat as its ankle's place allows.
+    """(..., 2) heights of the soles [m], left first; a foot is as flat as its ankle's position allows.
 
     The skeleton's foot is rigid with the shin, a person's is not: one that would dip into the floor is flat.
     """
@@ -55,7 +55,7 @@ def soles(body: Body, pose: Pose) -> Array:
 
 
 def slides(body: Body, posture: Posture, times: Array, low_m: float = 0.02) -> float:
-    """The farthest that an ankle low over the floor and slow strays while it rests [m]."""
+    """Largest drift of an ankle at rest, low over the floor and slow [m]."""
     pose = body.pose(posture)
     heights = soles(body, pose)
     worst = 0.0
@@ -72,7 +72,7 @@ def slides(body: Body, posture: Posture, times: Array, low_m: float = 0.02) -> f
 
 
 def arms_in_trunk(body: Body, posture: Posture, limb_radius_m: float = 0.03) -> Array:
-    """(...,) how deep an elbow, a wrist or a hand is in the trunk, as a share of its radius; 0 is outside."""
+    """(...,) depth of an elbow, a wrist or a hand in the trunk, as a share of its radius; 0 is outside."""
     pose = body.pose(posture)
     deepest = np.zeros(posture.batch)
     chest, pelvis = (body.skeleton.joint_index(name) for name in ("waist", "pelvis"))

@@ -1,4 +1,4 @@
-"""How someone stands who kicks with the left leg, and the balance on the right one."""
+"""Stance of a kick with the left leg, balanced on the right one."""
 
 from .balance import balanced
 from .moment import Arm, Foot, Leg, Moment, Turn, moment, swung_arm
@@ -8,7 +8,7 @@ LOW_GUARD = Arm(elevation=26.0, plane=40.0, rotation=20.0, elbow=84.0, pronation
 HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=16.0)
 LEVEL = Turn()
 STAND = Foot(-0.10, -0.08, -18.0)
-"""Of the right foot, which bears; behind it the left one kicks from."""
+"""The right foot, which bears; the left one starts behind it."""
 BEHIND = Foot(0.12, 0.24, 28.0)
 
 
@@ -23,7 +23,7 @@ def on_right(
     right_arm: Arm = GUARD,
     ahead_m: float = 0.0,
 ) -> Moment:
-    """Someone in balance on the right foot."""
+    """A moment in balance on the right foot."""
     return balanced(
         moment(
             left_leg=leg,

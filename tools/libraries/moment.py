@@ -1,4 +1,4 @@
-"""One moment of a motion in the words of a clinic: angles in degrees, places in meters.
+"""One moment of a motion in clinical terms: angles in degrees, positions in meters.
 
 A moment is posed facing -Y on the floor z = 0; left is +X. Every angle is zero for a person who stands
 upright with hanging arms and straight legs.
@@ -15,7 +15,7 @@ OTHER = {"L": "R", "R": "L"}
 
 @dataclass(frozen=True)
 class Turn:
-    """How the pelvis stands in the world, the chest on the pelvis, or the head on the chest [degrees]."""
+    """Orientation of the pelvis in the world, the chest on the pelvis, or the head on the chest [degrees]."""
 
     bow: float = 0.0
     """Forward; of the pelvis: its forward tilt."""
@@ -30,37 +30,37 @@ class Arm:
     """An arm by its angles [degrees], the shoulder's relative to the chest."""
 
     elevation: float = 9.0
-    """From hanging down: 90 is level, 180 overhead; negative is the other way in the same plane."""
+    """Angle from hanging down: 90 is level, 180 overhead; negative is the opposite side of the same plane."""
     plane: float = 30.0
-    """Where to: 0 sideways, 90 straight ahead, beyond that across the chest."""
+    """Plane of elevation: 0 sideways, 90 straight ahead, beyond that across the chest."""
     rotation: float = 12.0
     """Inward, about the upper arm; at 0 a hanging arm bends its elbow forward, one raised ahead upward."""
     elbow: float = 18.0
     pronation: float = 15.0
     girdle: float = 0.0
-    """The shoulder's own lift."""
+    """Elevation of the shoulder girdle."""
 
 
 def swung_arm(forward: float, aside: float = 7.0, **others: float) -> Arm:
-    """An arm that hangs, swung forward or (negative) back, and held a little off the trunk [degrees]."""
+    """A hanging arm, swung forward or (negative) back, and held a little off the trunk [degrees]."""
     elevation = math.hypot(forward, aside)
     return Arm(elevation, math.degrees(math.atan2(forward, aside)), **others)
 
 
 @dataclass(frozen=True)
 class Hand:
-    """An arm that reaches with its wrist for a place."""
+    """An arm that reaches with its wrist for a position."""
 
     x: float
     y: float
     z: float
-    """The wrist [m]."""
+    """Position of the wrist [m]."""
     swivel: float = 30.0
-    """Turns the elbow from hanging below the line to the hand outward [degrees]."""
+    """Outward turn of the elbow from hanging below the line to the hand [degrees]."""
     pronation: float = 15.0
     girdle: float = 0.0
     short: float = 0.0
-    """How far the wrist may stay short of the place where the arm is too short for it [m]."""
+    """Largest distance of the wrist from the position where the arm is too short for it [m]."""
 
 
 @dataclass(frozen=True)
@@ -70,37 +70,37 @@ class Leg:
     flexion: float = 0.0
     abduction: float = 0.0
     rotation: float = 0.0
-    """Toes outward."""
+    """Outward rotation of the toes."""
     knee: float = 0.0
     ankle: float = 0.0
-    """Toes down; no degree of freedom of the body, but it says how high the sole is."""
+    """Plantar flexion; no degree of freedom of the body, but it determines the height of the sole."""
 
 
 @dataclass(frozen=True)
 class Foot:
-    """A leg that puts its foot in a place. The foot rolls on its heel or its ball and does not slide."""
+    """A leg that puts its foot at a position. The foot rolls on its heel or its ball and does not slide."""
 
     x: float
     y: float
-    """Where the ankle is over the floor while the sole is flat [m]."""
+    """Position of the ankle over the floor while the sole is flat [m]."""
     turn: float = 0.0
-    """Where the toes point, to the left of -Y [degrees]; the knee points there too."""
+    """Direction of toes and knee, to the left of -Y [degrees]."""
     pitch: float = 0.0
-    """Toes down, on the ball; negative: toes up, on the heel [degrees]."""
+    """Roll of the foot [degrees]: positive on the ball, toes down; negative on the heel, toes up."""
     height: float = 0.0
-    """Of the lowest place of the sole [m]."""
+    """Height of the lowest point of the sole [m]."""
 
 
 @dataclass(frozen=True)
 class Ankle:
-    """A leg that takes its ankle to a place."""
+    """A leg that takes its ankle to a position."""
 
     x: float
     y: float
     z: float
-    """The ankle [m]."""
+    """Position of the ankle [m]."""
     turn: float = 0.0
-    """Where the knee points, to the left of -Y [degrees]."""
+    """Direction of the knee, to the left of -Y [degrees]."""
 
 
 AnyArm = Arm | Hand
@@ -109,18 +109,18 @@ AnyLeg = Leg | Foot | Ankle
 
 @dataclass(frozen=True)
 class Moment:
-    """All of a body at one moment."""
+    """A whole body at one moment."""
 
     x: float = 0.0
     y: float = 0.0
-    """The hips' midpoint over the floor [m]."""
+    """Position of the hips' midpoint over the floor [m]."""
     height: float | None = None
-    """Of the hips' midpoint [m]. None: as high as legs with a place reach with their knees bent by `bend`;
+    """Height of the hips' midpoint [m]. None: as high as legs with a position reach, knees bent by `bend`;
     where both legs have angles, so that the lower sole is `lift` above the floor."""
     bend: float = 6.0
-    """Least flexion of the knees of legs with a place [degrees], where they decide the height."""
+    """Least flexion of the knees of legs with a position [degrees], where they determine the height."""
     lift: float = 0.0
-    """Height of the lower sole [m], where the legs' angles decide the height."""
+    """Height of the lower sole [m], where the legs' angles determine the height."""
     pelvis: Turn = Turn()
     waist: Turn = Turn()
     neck: Turn = Turn()
@@ -138,7 +138,7 @@ def moment(
     legs: AnyLeg | None = None,
     **others: Any,
 ) -> Moment:
-    """A moment with limbs told by side, or both alike (`arms`, `legs`; places are mirrored for the right)."""
+    """A moment with limbs given by side, or both alike (`arms`, `legs`; mirrored positions on the right)."""
     both_arms, both_legs = arms or Arm(), legs or Leg()
     return Moment(
         arms={"L": left_arm or both_arms, "R": right_arm or _other_side(both_arms)},
@@ -148,7 +148,7 @@ def moment(
 
 
 def mirrored(moment: Moment) -> Moment:
-    """Left and right exchanged."""
+    """The moment with left and right exchanged."""
     return replace(
         moment,
         x=-moment.x,
@@ -165,7 +165,7 @@ def _other_turn(turn: Turn) -> Turn:
 
 
 def _other_side(limb: Any) -> Any:
-    """The same limb of the other side: angles are told alike for both, places are mirrored."""
+    """The same limb of the other side: angles are defined alike for both, positions are mirrored."""
     if isinstance(limb, Hand):
         return replace(limb, x=-limb.x)
     return replace(limb, x=-limb.x, turn=-limb.turn) if isinstance(limb, Foot | Ankle) else limb

@@ -1,4 +1,4 @@
-"""A moment elsewhere on the floor, and feet that turn on the spot."""
+"""Moments moved over the floor, and feet that pivot."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from .solving import BALL, BODY
 
 
 def moved(moment: Moment, x: float = 0.0, y: float = 0.0) -> Moment:
-    """The moment elsewhere on the floor, with its hands and feet."""
+    """The moment moved over the floor, with its hands and feet."""
 
     def along(limb: AnyArm | AnyLeg) -> AnyArm | AnyLeg:
         return limb if isinstance(limb, Arm | Leg) else replace(limb, x=limb.x + x, y=limb.y + y)
@@ -24,7 +24,7 @@ def moved(moment: Moment, x: float = 0.0, y: float = 0.0) -> Moment:
 
 
 def pivoted(foot: Foot, turn: float, pitch: float) -> Foot:
-    """The foot turned on its ball, which stays where it is [degrees]."""
+    """The foot turned on its ball, which stays in place [degrees]."""
     ahead = BODY.actor.segments_m["foot.L"] * -BALL[1]
     before, after = np.radians(foot.turn), np.radians(turn)
     return replace(

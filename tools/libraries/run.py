@@ -23,28 +23,28 @@ GRAVITY_MPS2 = 9.81
 
 @dataclass(frozen=True)
 class Pace:
-    """How someone runs."""
+    """Parameters of a run."""
 
     stride_m: float
     stride_s: float
     stance: float
-    """Share of the cycle for which a foot is on the floor; less than half."""
+    """Share of the cycle during which a foot is on the floor; less than half."""
     ahead_m: float
-    """How far the ankle is before the hips when it lands [m]."""
+    """Distance of the ankle before the hips at landing [m]."""
     hip: Keys
     """Flexion of the hip by share of the swing, from toe off to strike [degrees]."""
     knee: Keys
     landing_deg: float
-    """The knee's flexion where the foot lands."""
+    """Flexion of the knee at landing."""
     bow: float
-    """Of the trunk, forward [degrees]."""
+    """Bow of the trunk, forward [degrees]."""
     arms: float
-    """How far they swing to either side of where they hang [degrees]."""
+    """Amplitude of the arms' swing from hanging [degrees]."""
     elbow: float = 88.0
     push_deg: float = 60.0
-    """The foot's pitch where it leaves."""
+    """Pitch of the foot at toe off [degrees]."""
     toes_up: float = 8.0
-    """The foot's pitch where it lands, on the heel [degrees]."""
+    """Pitch of the foot at landing, on the heel [degrees]."""
     apart_m: float = 0.05
     """Half the distance between the feet, side by side [m]."""
 
@@ -56,7 +56,7 @@ class Run:
     pace: Pace
 
     def at(self, phase: float) -> Moment:
-        """The runner at a phase of the cycle."""
+        """The moment at a phase of the cycle."""
         trunk = self._trunk(phase)
         cycle = 2.0 * np.pi * phase
         return Moment(
@@ -83,7 +83,7 @@ class Run:
         )
 
     def _rise(self, phase: float) -> float:
-        """Height against that of landing [m]: a spring while a foot bears, a throw while none does."""
+        """Height relative to that of landing [m]: a spring in stance, ballistic in flight."""
         since, stance = phase % 0.5, self.pace.stance
         flight_s = (0.5 - stance) * self.pace.stride_s
         speed = 0.5 * GRAVITY_MPS2 * flight_s
@@ -95,7 +95,7 @@ class Run:
 
     @cached_property
     def _height_landing(self) -> float:
-        """The hips' height when a foot lands [m]."""
+        """Height of the hips at landing [m]."""
         foot = self._planted("L", 0.0, 0.0)
         bow = Turn(0.7 * self.pace.bow)
         return hips_height(Moment(bend=self.pace.landing_deg, pelvis=bow, legs={"L": foot}))
@@ -129,14 +129,14 @@ class Run:
         return Ankle(*(float(value) for value in place), 6.0 if side == "L" else -6.0)
 
     def _free(self, side: str, swing: float, trunk: Moment) -> Array:
-        """(3,) where angles alone take the ankle [m]."""
+        """(3,) position of the ankle by angles alone [m]."""
         hip, knee = (_through(keys, swing) for keys in (self.pace.hip, self.pace.knee))
         hips = np.array([trunk.x, trunk.y, trunk.height])
         leg = Leg(flexion=hip, abduction=1.0, knee=knee)
         return swinging_ankle(side, leg, hips, pelvis_rotation(trunk))[0]
 
     def _arm(self, cycle: float) -> Arm:
-        """The arm of the side whose foot lands at 0: it is back then."""
+        """The arm of the side whose foot lands at 0, when the arm is back."""
         forward = -float(np.cos(cycle - 0.25))
         return swung_arm(
             -5.0 + self.pace.arms * forward,

@@ -1,4 +1,4 @@
-"""From a moment in words to a posture of the body: joints from angles, limbs that reach for places.
+"""Postures of the body from moments: joints from angles, limbs that reach for positions.
 
 The skeleton's foot is rigid with its shin; a person's is not. Heights are those of a person: the sole's heel
 or ball is on the floor, and the foot as drawn with the skeleton may reach a little below.
@@ -17,11 +17,12 @@ from studio.limbs import MIRROR, STRAIGHTEST, X, Y, Z, arm_rotations, leg_rotati
 from .moment import SIDES, Ankle, Arm, Foot, Leg, Moment
 
 BODY = Body(Actor.from_stature(1.75))
-"""Whom the libraries are posed on."""
+"""The body on which the libraries are posed."""
 STRETCHED = 0.98
-"""Share of its length that an arm reaches without effort."""
+"""Effortless reach as a share of an arm's length."""
 HEEL, BALL = (0.0, 0.29, -0.36), (0.0, -0.66, -0.36)
-"""Of the sole, from the ankle, in lengths of the foot; the skeleton's own foot ends at (0, -0.93, -0.36)."""
+"""Points of the sole relative to the ankle, in lengths of the foot; the skeleton's own foot ends at
+(0, -0.93, -0.36)."""
 
 
 def posture_of(moment: Moment, body: Body = BODY) -> Posture:
@@ -50,7 +51,7 @@ def posture_of(moment: Moment, body: Body = BODY) -> Posture:
 
 
 def hips_height(moment: Moment, body: Body = BODY) -> float:
-    """Height of the hips' midpoint [m]: the moment's own, or what its legs make of it.
+    """Height of the hips' midpoint [m]: the moment's own, or the one its legs determine.
 
     Raises:
         ValueError: A foot is out of reach.
@@ -77,7 +78,7 @@ def hips_height(moment: Moment, body: Body = BODY) -> float:
 
 
 def ankle_of(foot: Foot | Ankle, body: Body = BODY) -> Array:
-    """(3,) where the ankle of a foot with a place is [m]: it rolls about the heel or the ball."""
+    """(3,) ankle of a foot with a position [m]: it rolls about the heel or the ball."""
     if isinstance(foot, Ankle):
         return np.array([foot.x, foot.y, foot.z])
     pivot = _sole(BALL if foot.pitch > 0.0 else HEEL, body)
@@ -86,7 +87,7 @@ def ankle_of(foot: Foot | Ankle, body: Body = BODY) -> Array:
 
 
 def swinging_ankle(side: str, leg: Leg, hips: Array, pelvis: Array, body: Body = BODY) -> tuple[Array, Array]:
-    """(3,) the ankle of a leg by angles [m] and the foot's rotation (3, 3)."""
+    """Ankle (3,) of a leg by angles [m], and the foot's rotation (3, 3)."""
     hip, knee = _leg_angles(side, leg)
     lengths = body.actor.segments_m
     shin = hinge(X, np.asarray(knee))
@@ -96,7 +97,7 @@ def swinging_ankle(side: str, leg: Leg, hips: Array, pelvis: Array, body: Body =
 
 
 def lowest_sole(side: str, limb: Leg | Foot | Ankle, hips: Array, pelvis: Array, body: Body = BODY) -> float:
-    """Height of the lowest place of a sole [m]; of an ankle with a place it is that below a level foot."""
+    """Height of the lowest point of a sole [m]; for an ankle with a position, that of a level foot."""
     if isinstance(limb, Foot):
         return limb.height
     if isinstance(limb, Ankle):
@@ -106,13 +107,13 @@ def lowest_sole(side: str, limb: Leg | Foot | Ankle, hips: Array, pelvis: Array,
 
 
 def pelvis_rotation(moment: Moment) -> Array:
-    """(3, 3) of the pelvis in the world."""
+    """(3, 3) rotation of the pelvis in the world."""
     return _turn(moment.pelvis.turn, moment.pelvis.bow, moment.pelvis.lean)
 
 
-@lru_cache(maxsize=4096)  # a moment is solved a dozen times while its hips are moved, and turns nothing else
+@lru_cache(maxsize=4096)  # a moment is solved a dozen times with the same turns while its hips are moved
 def _turn(yaw: float, pitch: float = 0.0, roll: float = 0.0) -> Array:
-    """(3, 3) of angles [degrees]; it may not be written to."""
+    """(3, 3) read-only rotation by angles [degrees]."""
     rotation = turned(np.array(yaw), np.array(pitch), np.array(roll))
     rotation.setflags(write=False)
     return rotation
@@ -202,6 +203,6 @@ def _reach(
     first = along * np.cos(at_shoulder) + hint * np.sin(at_shoulder)
     bent = along - first * (along @ first)
     bent /= np.linalg.norm(bent)
-    # The upper arm lies along out * x; the forearm bends towards -y.
+    # The upper arm lies along out * x; the forearm bends toward -y.
     axes = np.stack([out * first, -bent, np.cross(out * first, -bent)], axis=-1)
     return axes, float(np.pi - elbow)

@@ -16,7 +16,7 @@ from .limbs import turned
 from .performance import SIDES, STEPS_PER_FRAME, Choreography, Performance, compose, stored_times
 
 Step = tuple[float, float, tuple[float, float], float]
-"""Frames of lifting and landing, where it lands (x, y) [m], how high it rises on the way [m]."""
+"""Frames of lifting and landing, landing position (x, y) [m], height of the path [m]."""
 
 FRAME_COUNT = 118
 SMOOTHING_FRAMES = 1.6
@@ -51,7 +51,7 @@ STEPS: dict[str, list[Step]] = {
 }
 STANDING = {"L": (0.11, 0.0), "R": (-0.11, 0.01)}
 KNEE_LIFT_FORWARD_M = 0.16
-"""How far before its place a foot is carried at the top of a knee lift."""
+"""Forward offset of the lifted foot at the top of a knee lift."""
 KNEE_LIFT_FROM_M = 0.2
 
 PELVIS: dict[str, Keys] = {
@@ -131,7 +131,7 @@ ARMS: dict[str, dict[str, Keys]] = {
 
 
 def perform(seed: int) -> Performance:
-    """Compose the performance; `seed` chooses the small sway that no living person is without."""
+    """Compose the performance; `seed` determines its small natural sway."""
     times = stored_times(FRAME_COUNT)
     random = np.random.default_rng(seed)
     pelvis = {name: _curve(keys, times) for name, keys in PELVIS.items()}

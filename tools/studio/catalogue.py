@@ -1,4 +1,4 @@
-"""The takes there are: the demonstration, and others that share as little as possible with it."""
+"""All takes: the demonstration, and others that share as little as possible with it."""
 
 from . import aerobic
 from .described import Described, actor, lifted_onto_a_stand, performed
@@ -19,7 +19,7 @@ DEMONSTRATION = Described(
     postures=True,
     samples=3,
 )
-"""Its keyframes are what an animator would pose: ends of movements, and halfway where these are far apart."""
+"""Its keyframes are an animator's choice: ends of movements, and midpoints where these are far apart."""
 
 JOG = Described(
     name="jog",
@@ -175,7 +175,7 @@ DANCE = Described(
     samples=1,
     noise=2.0,
 )
-"""Red and orange are near, and so are the blues; the light is rosy."""
+"""Red and orange are similar colors, and so are the blues; the light is rosy."""
 
 STROLL = Described(
     name="stroll",
@@ -203,7 +203,7 @@ STROLL = Described(
     seed=108,
     samples=1,
 )
-"""Past behind a pillar and a low table."""
+"""The performer walks past behind a pillar and a low table."""
 
 THROW = Described(
     name="throw",

@@ -1,4 +1,4 @@
-"""Curves of time that motions are composed of: keys, cycles, springs, flight, and what is irregular in them.
+"""Curves of time for composing motions: keys, cycles, springs, flight, and irregularities.
 
 Times are seconds unless a docstring says frames; angles are whatever unit the values have.
 """
@@ -17,16 +17,16 @@ GRAVITY_MPS2 = 9.81
 
 
 def keyed(keys: Keys, times: Array) -> Array:
-    """A curve through keys that does not overshoot them and stays at the outermost beyond them."""
+    """A curve through keys without overshoot, constant beyond the outermost ones."""
     curve = PchipInterpolator(list(keys), list(keys.values()), extrapolate=False)
     return np.asarray(curve(np.clip(times, min(keys), max(keys))))
 
 
 def sprung(targets: Array, times: Array, hertz: float, damping: float) -> Array:
-    """What follows its target as a mass on a spring does: late, then past it, then settling.
+    """Response of a mass on a spring to its target: late, then past it, then settling.
 
     Args:
-        targets: (T,) where the spring pulls to.
+        targets: (T,) targets of the spring.
         times: (T,) evenly spaced.
         hertz: The spring's natural frequency; a limb's is 2 to 6.
         damping: Share of the critical damping; below 1 it overshoots.
@@ -39,7 +39,7 @@ def sprung(targets: Array, times: Array, hertz: float, damping: float) -> Array:
 
 
 def driven(keys: Keys, times: Array, hertz: float = 4.5, damping: float = 0.62) -> Array:
-    """Keys as aims that muscles drive a limb to: each is overshot a little and reached a little late."""
+    """Keys as targets of muscles: each is reached a little late and overshot a little."""
     return sprung(keyed(keys, times), times, hertz, damping)
 
 
@@ -51,7 +51,7 @@ def cyclic(phases: Array, keys: Keys) -> Array:
 
 
 def uneven_phases(times: Array, period_s: float, unevenness: float, random: np.random.Generator) -> Array:
-    """Cycles (T,) counted from 0 at time 0, each as long as the period but for a share of `unevenness`."""
+    """Cycles (T,) counted from 0 at time 0, each of the period's length within a share of `unevenness`."""
     first, last = np.floor(times[0] / period_s) - 2, np.ceil(times[-1] / period_s) + 2
     count = int(last - first)
     lengths = period_s * np.clip(1.0 + unevenness * random.standard_normal(count), 0.7, 1.3)
@@ -60,7 +60,7 @@ def uneven_phases(times: Array, period_s: float, unevenness: float, random: np.r
 
 
 def burst(times: Array, start: float, peak: float, end: float) -> Array:
-    """Rises smoothly from 0 at `start` to 1 at `peak` and falls back to 0 at `end`."""
+    """A smooth pulse: 0 until `start`, 1 at `peak`, 0 from `end`."""
     rise = np.clip((times - start) / (peak - start), 0.0, 1.0)
     fall = np.clip((end - times) / (end - peak), 0.0, 1.0)
     share = np.minimum(rise, fall)

@@ -1,4 +1,4 @@
-"""What a take is made from: the motion, who performs it, where, seen and lit how."""
+"""Description of a take: motion, performer, room, camera and light."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -20,7 +20,7 @@ HANDS_TO_BOX_M = 0.13
 BOX_M = (0.34, 0.24, 0.20)
 CARDBOARD, PAINTED = (0.34, 0.24, 0.13), (0.26, 0.26, 0.28)
 KEYFRAME_LATENESS = 0.38
-"""How far a keyframe lies from an even spacing, at most, as a share of it."""
+"""Largest deviation of a keyframe from even spacing, as a share of it."""
 
 
 def nothing(performance: Performance) -> tuple[Thing, ...]:
@@ -33,47 +33,47 @@ class Described:
     """One take."""
 
     name: str
-    """The take's and its folder's."""
+    """Name of the take and of its folder."""
     perform: Callable[[int], Performance]
-    """From the seed to the motion."""
+    """Maps the seed to the motion."""
     camera: Camera
-    """The clip's."""
+    """The clip's camera."""
     look: Look = field(default_factory=Look)
-    """The performer's."""
+    """The performer's appearance."""
     room: Room = field(default_factory=Room)
-    """What surrounds the performer."""
+    """The performer's surroundings."""
     props: Callable[[Performance], tuple[Thing, ...]] = nothing
-    """Further things, whose places depend on the performance."""
+    """Further things, positioned by the performance."""
     seed: int = 34
-    """Of the sway, the sensor noise, the hand that poses keyframes, and their frames."""
+    """Seed of the sway, the sensor noise, the posing errors, and the frames of keyframes."""
     keyframes: tuple[int, ...] = ()
-    """Indices of frames posed; chosen by the seed where empty."""
+    """Indices of the posed frames; chosen by the seed if empty."""
     postures: bool = False
-    """Whether keyframes.json says the whole posture too, or its thirteen points only."""
+    """Whether keyframes.json has the whole postures, or only their thirteen points."""
     moments: int = 3
-    """Renders while the shutter is open."""
+    """Renders per frame while the shutter is open."""
     samples: int = 2
-    """Light paths a pixel of each."""
+    """Light paths per pixel of each render."""
     noise: float = 1.5
-    """The sensor's, in eight-bit steps."""
+    """Sensor noise, in eight-bit steps."""
     quality: str = "HIGH"
-    """Of the encoding, in Blender's words."""
+    """Quality of the encoding, one of Blender's constants."""
     side: Camera | None = None
     """A second camera, for reference only."""
     shadow_per_height: tuple[float, float, float] = SHADOW_CLOSE_BY
-    """How far a point's shadow falls beside it on the floor, for each meter of height."""
+    """Offset of a point's shadow on the floor, per meter of height."""
 
     def surroundings(self, performance: Performance) -> Room:
         """The room with everything in it."""
         return replace(self.room, things=self.room.things + self.props(performance))
 
     def posed_frames(self, frame_count: int) -> tuple[int, ...]:
-        """Indices of the frames posed, rising, the first and the last among them."""
+        """Indices of the posed frames, rising, including the first and the last."""
         return self.keyframes or posed_frames(frame_count, np.random.default_rng(self.seed))
 
 
 def posed_frames(frame_count: int, random: np.random.Generator) -> tuple[int, ...]:
-    """About ten frames of a hundred, spread as people spread them: evenly but for some of the distance."""
+    """About ten frames of a hundred, spread roughly evenly, as people do."""
     gaps = max(round((frame_count - 1) / KEYFRAME_EVERY), 1)
     distance = (frame_count - 1) / gaps
     lateness = KEYFRAME_LATENESS * distance * random.uniform(-1.0, 1.0, gaps - 1)
@@ -84,14 +84,14 @@ def posed_frames(frame_count: int, random: np.random.Generator) -> tuple[int, ..
 def performed(
     plan: Plan, actor: Actor, frame_count: int, heading_deg: float = 0.0, tempo: float = 1.0
 ) -> Callable[[int], Performance]:
-    """From a seed to an actor's performance of a plan.
+    """Map from a seed to an actor's performance of a plan.
 
     Args:
         plan: The motion, in seconds from the take's start.
-        actor: Who performs it.
+        actor: The performer.
         frame_count: Frames of the take.
-        heading_deg: How far the whole is turned left about the world's origin.
-        tempo: How fast it goes; gravity knows only 1.
+        heading_deg: Rotation of the whole motion to the left about the world's origin.
+        tempo: Speed factor; gravity is right only at 1.
     """
 
     def perform(seed: int) -> Performance:
@@ -103,16 +103,13 @@ def performed(
 
 
 def actor(stature_m: float, **changed: float) -> Actor:
-    """An actor of a height [m] whose parts differ from the average by factors; `thigh` changes both."""
+    """An actor of a height [m] whose segments differ from the average by factors; `thigh` changes both."""
     average = Actor.from_stature(stature_m).segments_m
     return Actor({name: length * changed.get(name.split(".")[0], 1.0) for name, length in average.items()})
 
 
 def lifted_onto_a_stand(performance: Performance, first: int, last: int) -> tuple[Thing, ...]:
-    """A box that stands where hands grasp it and goes with them from a first to a last frame, and a stand.
-
-    The stand is where the hands leave the box.
-    """
+    """A box that moves with the hands from a first to a last frame, and the stand on which they leave it."""
     indices = performance.middles[first : last + 1]
     names = performance.body.skeleton.point_names
     points = dict(zip(names, np.swapaxes(principal_points(performance, indices), 0, 1), strict=True))

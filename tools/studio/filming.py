@@ -22,11 +22,11 @@ ROOM_SAMPLES = 24
 MARGIN_PX = 16
 SIXTEEN_BITS = 65535.0
 GAMMA = 2.2
-"""Exposures add up in linear light; near enough to the sRGB curve for blur and noise."""
+"""Gamma of display values, in place of the sRGB curve: exposures add up in linear light."""
 
 
 def place_camera(camera: Camera) -> None:
-    """Make the scene's camera the one described."""
+    """Set the scene's camera to the described one."""
     scene = bpy.context.scene
     data = bpy.data.cameras.new("Camera")
     data.lens, data.sensor_width, data.sensor_fit = camera.lens_mm, camera.sensor_width_mm, "HORIZONTAL"
@@ -39,7 +39,7 @@ def place_camera(camera: Camera) -> None:
 
 
 def prepare_cycles(seed: int, threads: int | None = None) -> None:
-    """Render by path tracing on the processor, the same on every machine, with so many threads or all."""
+    """Set up path tracing on the processor, the same on every machine, with the given threads or all."""
     scene = bpy.context.scene
     if threads is not None:
         scene.render.threads_mode, scene.render.threads = "FIXED", threads
@@ -78,20 +78,19 @@ def film(
     samples: int,
     shadow_per_height: Array,
 ) -> list[Array]:
-    """All frames of the performance as one camera sees them, without sensor noise.
+    """All frames of the performance from one camera, without sensor noise.
 
-    The empty room is rendered once; each frame renders only where the performer, the shadow and whatever
-    moves are, and the seam is blended.
+    The empty room is rendered once; each frame renders only the neighborhood of the performer, the shadow and
+    the moving things, and the seam is blended.
 
     Args:
-        performer: Who is filmed.
+        performer: The mesh that is filmed.
         performance: The motion.
-        room: Where.
-        camera: The scene's camera is made this one.
-        moments: Renders while the shutter is open, whose mean is the frame.
-        samples: Light paths a pixel of each render.
-        shadow_per_height: (3,) how far the shadow of a point falls beside it on the floor, for each meter of
-            its height.
+        room: The surroundings.
+        camera: Becomes the scene's camera.
+        moments: Renders while the shutter is open; the frame is their mean.
+        samples: Light paths per pixel of each render.
+        shadow_per_height: (3,) offset of a point's shadow on the floor, per meter of its height.
     """
     place_camera(camera)
     for thing in (performer.thing, *room.moving):
@@ -122,7 +121,7 @@ def film(
 
 
 def _neighborhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom pixel bounds of places (N, 3) before the camera, and a margin."""
+    """Left, top, right and bottom pixel bounds of points (N, 3) before the camera, with a margin."""
     pixels, depth = camera.project(places)
     pixels = pixels[depth > 0.0]
     width, height = camera.resolution
@@ -133,10 +132,10 @@ def _neighborhood(places: Array, camera: Camera) -> tuple[int, int, int, int]:
 
 @contextmanager
 def _border(camera: Camera, left: int, top: int, right: int, bottom: int) -> Iterator[None]:
-    """While open, only these pixels are rendered."""
+    """Context manager that restricts rendering to these pixels."""
     render_settings = bpy.context.scene.render
     width, height = camera.resolution
-    inside = 0.01  # of a pixel, against rounding to a neighbor
+    inside = 0.01  # share of a pixel, against rounding to a neighbor
     render_settings.use_border = render_settings.use_crop_to_border = True
     render_settings.border_min_x, render_settings.border_max_x = (
         (left + inside) / width,
@@ -151,7 +150,7 @@ def _border(camera: Camera, left: int, top: int, right: int, bottom: int) -> Ite
 
 
 def _seam(shape: tuple[int, int], bounds: tuple[int, int, int, int], resolution: tuple[int, int]) -> Array:
-    """Share of the new render in each pixel: rising from its edges, except where those are the image's."""
+    """Weight of the new render in each pixel: rising from its edges, except at the image's own edges."""
     rows, columns = shape
     left, top, right, bottom = bounds
     x, y = np.arange(columns) + 1.0, np.arange(rows) + 1.0
@@ -199,7 +198,7 @@ def encode(images: list[Image], path: Path, quality: str) -> None:
 
 @contextmanager
 def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[int]]:
-    """While open, renders are flat: each marker in a gray of its own, all else black; yields those grays."""
+    """Context manager for flat renders: each marker in its own gray, all else black; yields the grays."""
     scene = bpy.context.scene
     kept_visible = (performer, *room.things)
     others = [
@@ -230,7 +229,7 @@ def only_markers(performer: bpy.types.Object, room: BuiltRoom) -> Iterator[list[
 
 
 def marker_masks(grays: list[int]) -> BoolArray:
-    """(M, height, width) the pixels in whose center each marker is seen, from one flat render."""
+    """(M, height, width) masks of the pixels whose center shows each marker, from one flat render."""
     image = np.rint(255.0 * render(1)[..., 0])
     return np.stack([image == gray for gray in grays])
 

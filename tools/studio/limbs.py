@@ -1,4 +1,4 @@
-"""From the angles and places that describe an exercise to the skeleton's joint rotations."""
+"""Joint rotations of the skeleton from the angles and positions that describe an exercise."""
 
 from dataclasses import dataclass
 
@@ -9,31 +9,31 @@ from keymark.core.body.rotations import exponential, hinge, logarithm
 
 X, Y, Z = np.eye(3)
 MIRROR = np.diag([-1.0, 1.0, 1.0])
-"""Takes left to right, the sagittal plane being x = 0."""
+"""Reflection in the sagittal plane x = 0."""
 STRAIGHTEST = 0.9985
-"""Share of a leg's length it may reach: a leg stretched to the last has no knee direction."""
+"""Largest reach as a share of a leg's length: a fully stretched leg has no knee direction."""
 STRETCHING = 0.975
-"""Share of its length from which on a leg resists being stretched."""
+"""Share of its length above which a leg resists stretching."""
 SOLE = np.array([[0.0, 0.065, -0.082], [0.0, -0.145, -0.082], [0.0, -0.19, -0.078]])
 """Heel, ball and tip of a foot, from its ankle [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class FreeLeg:
-    """A leg that swings by angles instead of reaching for a place; all (T,), degrees but for `share`."""
+    """A leg that swings by angles instead of reaching for a position; all (T,), degrees except `share`."""
 
     flexion: Array
-    """Of the hip, forward."""
+    """Flexion of the hip, forward."""
     outward: Array
-    """Angle of the plane of flexion beside straight ahead; at 90 flexion lifts the leg sideways."""
+    """Angle of the plane of flexion from straight ahead; at 90 flexion lifts the leg sideways."""
     twist: Array
-    """Of the thigh, toes outward."""
+    """Twist of the thigh, toes outward."""
     knee: Array
-    """Flexion."""
+    """Flexion of the knee."""
     ankle: Array
-    """Toes downward."""
+    """Plantar flexion, toes downward."""
     share: Array
-    """How much of the leg is free, from 0 to 1."""
+    """Weight of these angles against the reached position, from 0 to 1."""
 
 
 def turned(yaw: Array, pitch: Array, roll: Array) -> Array:
@@ -59,7 +59,7 @@ def arm_rotations(side: str, elevation: Array, forward: Array, twist: Array) -> 
 def leg_rotations(
     body: Body, side: str, pelvis: Array, pelvis_rotation: Array, ankle: Array, foot: Array
 ) -> tuple[Array, Array]:
-    """Hip rotation (T, 3, 3) in the pelvis and knee flexion (T,) [rad] that put the ankle in its place.
+    """Hip rotation (T, 3, 3) in the pelvis and knee flexion (T,) [rad] that put the ankle at its position.
 
     The knee points where the toes do.
 
@@ -68,11 +68,11 @@ def leg_rotations(
         side: `L` or `R`.
         pelvis: (T, 3) hips' midpoint [m].
         pelvis_rotation: (T, 3, 3).
-        ankle: (T, 3) where the ankle shall be [m].
+        ankle: (T, 3) target of the ankle [m].
         foot: (T, 3, 3) rotation of the foot.
 
     Raises:
-        ValueError: A place is out of reach.
+        ValueError: A target is out of reach.
     """
     lengths = body.actor.segments_m
     thigh, shin = lengths[f"thigh.{side}"], lengths[f"shin.{side}"]
@@ -106,7 +106,7 @@ def free_leg(side: str, swing: FreeLeg, pelvis_rotation: Array) -> tuple[Array, 
 
 
 def within_reach(body: Body, side: str, pelvis: Array, pelvis_rotation: Array, ankle: Array) -> Array:
-    """(T, 3) ankles drawn towards the hip where the leg is too short: the heel leaves the floor."""
+    """(T, 3) ankles moved toward the hip where the leg is too short: the heel leaves the floor."""
     lengths = body.actor.segments_m
     longest = lengths[f"thigh.{side}"] + lengths[f"shin.{side}"]
     hip = pelvis + pelvis_rotation @ (0.5 * lengths["hip_width"] * (X if side == "L" else -X))
@@ -119,10 +119,10 @@ def within_reach(body: Body, side: str, pelvis: Array, pelvis_rotation: Array, a
 
 
 def foot_clearance(foot: Array) -> Array:
-    """(T,) how high an ankle is over the lowest place of its sole [m], for foot rotations (T, 3, 3)."""
+    """(T,) height of an ankle above the lowest point of its sole [m], for foot rotations (T, 3, 3)."""
     return -np.asarray((foot[:, 2, None, :] * SOLE).sum(axis=-1).min(axis=-1))
 
 
 def blended(first: Array, second: Array, share: Array) -> Array:
-    """Rotations (T, 3, 3) on the shortest way from `first` to `second`, by shares (T,)."""
+    """Rotations (T, 3, 3) interpolated on the shortest arc from `first` to `second`, by shares (T,)."""
     return np.asarray(first @ exponential(share[:, None] * logarithm(np.swapaxes(first, -1, -2) @ second)))

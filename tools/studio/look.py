@@ -1,4 +1,4 @@
-"""How a performer looks: colors worn, girths, and how the clothes hang."""
+"""Appearance of a performer: colors, girths and garments."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ CLOTHES: dict[str, Color] = {
     "shoe": (206, 206, 202),
     "eye": (40, 30, 28),
 }
-"""Colors as painted (sRGB); light and camera change them."""
+"""Painted colors (sRGB), before light and camera."""
 MARKERS = tuple(CLOTHES)[:5]
 CLOTH_M = {"trunk": 0.005, "forearm": 0.003, "shin": 0.006}
 
@@ -27,13 +27,13 @@ class Look:
     """A performer's appearance."""
 
     colors: Mapping[str, Color] = field(default_factory=dict)
-    """Those that differ from `CLOTHES`, by name."""
+    """Colors that differ from `CLOTHES`, by name."""
     girths: Mapping[str, float] = field(default_factory=dict)
-    """Factors of the limbs' and the trunk's thickness, by kind of segment, where they are not 1."""
+    """Factors of the limbs' and the trunk's thickness other than 1, by kind of segment."""
     cloth_m: Mapping[str, float] = field(default_factory=lambda: CLOTH_M)
-    """How far each garment stands off, by kind of segment."""
+    """Distance of each garment from the skin, by kind of segment."""
     folds: float = 0.0
-    """Share by which a garment's distance from the body varies: its wrinkles."""
+    """Relative variation of a garment's distance from the skin: its wrinkles."""
 
     @property
     def painted(self) -> dict[str, Color]:

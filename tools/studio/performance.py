@@ -1,4 +1,4 @@
-"""From the channels a coach would name to a performance: the posture at any time of a take.
+"""Performances, the posture at any time of a take, from channels in a coach's terms.
 
 Frames count from 0 and may be fractional; angles are degrees here.
 """
@@ -29,12 +29,12 @@ FPS = 30
 STEPS_PER_FRAME = 8
 SIDES = ("L", "R")
 SOFT_LANDING_FRAMES = 0.5
-"""Over which the load passes from one foot to the other."""
+"""Frames over which the load passes from one foot to the other."""
 
 
 @dataclass(frozen=True, eq=False)
 class Choreography:
-    """Everything that moves, over T times."""
+    """All channels of a motion, over T times."""
 
     pelvis: Channels
     """Hips' midpoint x, y, z [m]; yaw turns left, pitch bows, roll raises the right side."""
@@ -43,18 +43,17 @@ class Choreography:
     arms: dict[str, Channels]
     """By side: elevation, forward, twist, flexion, pronation, girdle."""
     feet: dict[str, tuple[Array, Array]]
-    """By side: the ankle's place (T, 3) [m] and the foot's world rotation (T, 3, 3), for which the leg
-    reaches."""
+    """By side: the leg's target, ankle position (T, 3) [m] and world rotation of the foot (T, 3, 3)."""
     free: dict[str, FreeLeg] = field(default_factory=dict)
-    """By side: legs that for a share of the time swing by their own angles instead."""
+    """By side: legs that swing by their own angles for a share of the time."""
     grounded: Array | None = None
-    """(T,) height [m] of the lowest sole over the floor; the hips then follow the feet. None where the
-    hips' height is as given."""
+    """(T,) height [m] of the lowest sole above the floor, which then determines the hips' height. None keeps
+    the given one."""
     exact_reach: bool = False
-    """Whether a foot beyond the leg's reach is an error; else its heel lifts."""
+    """Whether a foot beyond the leg's reach is an error; otherwise its heel lifts."""
 
     def turned(self, heading_deg: float) -> "Choreography":
-        """The same, turned left about the world's origin."""
+        """The choreography turned left about the world's origin."""
         turn = hinge(np.array([0.0, 0.0, 1.0]), np.radians(heading_deg))
         x, y, _ = turn @ np.stack([self.pelvis["x"], self.pelvis["y"], 0.0 * self.pelvis["x"]])
         pelvis = {**self.pelvis, "x": x, "y": y, "yaw": self.pelvis["yaw"] + heading_deg}
@@ -64,19 +63,19 @@ class Choreography:
 
 @dataclass(frozen=True, eq=False)
 class Performance:
-    """The motion at any time."""
+    """A motion at stored times."""
 
     body: Body
     """The performer."""
     frame_count: int
     """Frames of the take."""
     times: Array
-    """(T,) frames, from 0, an even fraction of a frame apart."""
+    """(T,) times [frames], from 0, evenly spaced by a fraction of a frame."""
     postures: Posture
     """A batch of T postures."""
     feet: dict[str, Array]
-    """The world rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with the
-    shins, a person's are not."""
+    """World rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with the shins, a
+    person's are not."""
 
     def at(self, times: Array) -> IndexArray:
         """Indices of the stored times nearest to `times` [frames]."""
@@ -90,7 +89,7 @@ class Performance:
 
 
 def stored_times(frame_count: int) -> Array:
-    """The times [frames] at which a performance is composed: a frame more at both ends, for the shutter."""
+    """The times [frames] at which a performance is composed: one more frame at both ends, for the shutter."""
     return np.arange(-STEPS_PER_FRAME, (frame_count + 1) * STEPS_PER_FRAME) / STEPS_PER_FRAME
 
 
@@ -146,7 +145,7 @@ def _leg(
 
 
 def _height_of_hips(body: Body, plan: Choreography, place: Array, pelvis_rotation: Array) -> Array:
-    """(T,) the hips' height that puts the lowest sole of freely swinging legs where the plan wants it."""
+    """(T,) height of the hips that puts the lowest sole of freely swinging legs at the planned height."""
     lowest = []
     for side in SIDES:
         hip, knee, foot = free_leg(side, plan.free[side], pelvis_rotation)
@@ -157,7 +156,7 @@ def _height_of_hips(body: Body, plan: Choreography, place: Array, pelvis_rotatio
 
 
 def _ankle(body: Body, side: str, pelvis_rotation: Array, hip: Array, knee: Array) -> Array:
-    """(T, 3) an ankle's place relative to the hips' midpoint [m]."""
+    """(T, 3) position of an ankle relative to the hips' midpoint [m]."""
     lengths = body.actor.segments_m
     x, _, z = np.eye(3)
     shin = np.stack([0.0 * knee, np.sin(knee), -np.cos(knee)], axis=-1) * lengths[f"shin.{side}"]

@@ -20,28 +20,28 @@ from .performer_shape import body_parts, movers, part_mesh
 VOXEL_M = 0.009
 SMOOTHING_PASSES = 5
 BLEND_M = 0.016
-"""How far one part's hold on the skin reaches beyond its own surface."""
+"""Falloff distance of a part's skinning weights from its surface."""
 WEIGHT_PASSES = 10
 FOLD_M = 0.035
-"""From one fold of a garment to the next."""
+"""Wavelength of a garment's folds."""
 NECKLINE_M = 0.075
 ARMS_OUT_DEG, LEGS_APART_DEG = 52.0, 14.0
 
 
 @dataclass(frozen=True, eq=False)
 class Performer:
-    """The mesh and what moves it."""
+    """The mesh and its movers."""
 
     thing: bpy.types.Object
     """The Blender object, placed at the world's origin."""
     places: Array
-    """(V, 3) vertices at the posture it was modelled in."""
+    """(V, 3) vertices in the modeling posture."""
     weights: Array
-    """(V, N) share of each mover in every vertex."""
+    """(V, N) skinning weight of each mover for every vertex."""
     names: tuple[str, ...]
-    """The N movers."""
-    modelled: tuple[Array, Array]
-    """Rotations (N, 3, 3) and origins (N, 3) of the movers when modelled."""
+    """Names of the N movers."""
+    modeled: tuple[Array, Array]
+    """Rotations (N, 3, 3) and origins (N, 3) of the movers in the modeling posture."""
 
     def bend(self, performance: Performance, index: int) -> None:
         """Move the mesh to a stored time of the performance."""
@@ -50,20 +50,20 @@ class Performer:
         placed = movers(performance.body, pose, {s: r[one] for s, r in performance.feet.items()})
         bent = np.zeros_like(self.places)
         for column, name in enumerate(self.names):
-            rotation = placed[name][0][0] @ self.modelled[0][column].T
-            moved = (self.places - self.modelled[1][column]) @ rotation.T + placed[name][1][0]
+            rotation = placed[name][0][0] @ self.modeled[0][column].T
+            moved = (self.places - self.modeled[1][column]) @ rotation.T + placed[name][1][0]
             bent += self.weights[:, column, None] * moved
         self.thing.data.vertices.foreach_set("co", bent.astype(np.float32).ravel())
         self.thing.data.update()
 
     def world_places(self) -> Array:
-        """(V, 3) where the vertices are now [m]."""
+        """(V, 3) current positions of the vertices [m]."""
         return _read(self.thing.data.vertices, "co")
 
 
 def build_performer(body: Body, look: Look) -> Performer:
-    """Model the performer with arms and legs apart, find out what moves each vertex, and paint it."""
-    pose = body.pose(_modelling_posture(body))
+    """Model the performer with arms and legs apart, compute skinning weights, and assign materials."""
+    pose = body.pose(_modeling_posture(body))
     placed = movers(body, pose, {side: np.eye(3)[None] for side in ("L", "R")})
     parts = body_parts(body, look.girths)
     meshes = [part_mesh(part, placed[part.mover][0][0], placed[part.mover][1][0]) for part in parts]
@@ -92,7 +92,7 @@ def _folds(places: Array) -> Array:
     )
 
 
-def _modelling_posture(body: Body) -> Posture:
+def _modeling_posture(body: Body) -> Posture:
     posture = Posture.rest(body.skeleton, (1,))
     rotation = posture.rotations.copy()
     for column, index in enumerate(body.skeleton.ball_joints):
@@ -130,7 +130,7 @@ def _one_surface(meshes: list[tuple[Array, list[list[int]]]]) -> bpy.types.Objec
 
 
 def _weights(mesh: bpy.types.Mesh, places: Array, samples: list[Array]) -> Array:
-    """Shares (V, N) by distance to each mover's parts, blended along the surface."""
+    """Skinning weights (V, N) by distance to each mover's parts, blended along the surface."""
     distance = np.stack([cKDTree(sample).query(places)[0] for sample in samples], axis=-1)
     distance -= distance.min(axis=1, keepdims=True)
     weights = np.exp(-((distance / BLEND_M) ** 2))
@@ -155,7 +155,7 @@ def _paint(
     names: tuple[str, ...],
     placed: dict[str, tuple[Array, Array]],
 ) -> NDArray[np.str_]:
-    """Give every face a material; returns each vertex's."""
+    """Give every face a material; return the material of each vertex."""
     holder = np.array(names)[weights.argmax(axis=1)]
     dressed = np.full(len(places), "cloth", dtype="<U12")
     for name in set(names):
@@ -173,7 +173,7 @@ def _paint(
 
 
 def _dress(name: str, body: Body, local: Array) -> NDArray[np.str_]:
-    """What vertices (V, 3), in their mover's frame, are covered with."""
+    """Material names of vertices (V, 3) in their mover's frame."""
     lengths = body.actor.segments_m
     kind, _, side = name.partition(".")
     worn = np.full(len(local), "cloth", dtype="<U12")

@@ -1,8 +1,8 @@
 """The performer's outer shape at one posture: limbs as stacks of rings with calves, hips, cuffs and a face.
 
-The shape is drawn by eye, and on purpose not by the estimator's tapered cylinders: muscles bulge,
-cloth stands off, the trunk is one curved form. Sizes are meters. Each part moves with one joint; where
-parts meet the skin blends.
+The shape is drawn by eye and deliberately differs from the estimator's tapered cylinders: muscles bulge,
+cloth stands off, the trunk is one curved form. Sizes are meters. Each part moves with one joint; the skin
+blends where parts meet.
 """
 
 from collections.abc import Mapping
@@ -60,7 +60,7 @@ LIMBS: dict[str, list[Ring]] = {
     ],
     "girdle": [(0.25, 0.052, 0.052, 0.01), (0.7, 0.056, 0.056, 0.004), (1.05, 0.052, 0.052, 0.0)],
 }
-"""Along the segment; for arms sideways is the rest posture's y and front to back its z."""
+"""Rings along the segment; for arms, sideways is y of the rest posture and front to back its z."""
 
 TRUNK: list[Ring] = [
     (-0.17, 0.100, 0.075, 0.006),
@@ -75,7 +75,7 @@ TRUNK: list[Ring] = [
     (1.03, 0.105, 0.070, 0.012),
     (1.09, 0.070, 0.060, 0.012),
 ]
-"""Along the trunk from the hips' midpoint; those below `WAIST_SHARE` move with the pelvis."""
+"""Rings along the trunk from the hips' midpoint; those below `WAIST_SHARE` move with the pelvis."""
 WAIST_SHARE = 0.4
 NECK: list[Ring] = [(0.0, 0.060, 0.062, 0.012), (0.4, 0.056, 0.060, 0.010), (0.75, 0.056, 0.062, 0.004)]
 HEAD: list[Ring] = [
@@ -88,13 +88,13 @@ HEAD: list[Ring] = [
     (0.105, 0.054, 0.072, 0.012),
     (0.122, 0.024, 0.034, 0.012),
 ]
-"""Height above the head's center [m] instead of a share."""
+"""Rings with the height above the head's center [m] instead of a share."""
 SHOE: list[Ring] = [
     (-0.075, 0.026, 0.030, -0.042), (-0.055, 0.036, 0.046, -0.034), (0.0, 0.040, 0.060, -0.026),
     (0.06, 0.043, 0.048, -0.036), (0.12, 0.047, 0.034, -0.048), (0.165, 0.043, 0.027, -0.054),
     (0.195, 0.028, 0.020, -0.060)
 ]  # fmt: skip
-"""Distance before the ankle [m], half-width sideways, half-height, height over the ankle [m]."""
+"""Distance before the ankle, half-width sideways, half-height, height above the ankle [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,15 +102,15 @@ class Part:
     """A closed stack of rings."""
 
     name: str
-    """What it is."""
+    """Kind of the part."""
     mover: str
-    """Name of the joint, or of the shoe, that it moves with."""
+    """Name of the joint or shoe that it moves with."""
     rings: Array
-    """(R, S, 3) places in the mover's frame [m]."""
+    """(R, S, 3) points in the mover's frame [m]."""
 
 
 def body_parts(body: Body, girths: Mapping[str, float]) -> list[Part]:
-    """All parts in their joints' frames; `girths` are factors of thickness by kind, 1 where not given."""
+    """All parts in their joints' frames; `girths` are factors of thickness by kind, 1 by default."""
     parts = [*_trunk_parts(body, girths.get("trunk", 1.0)), *_head_parts(body)]
     for segment in body.skeleton.segments:
         kind = segment.name.split(".")[0]
@@ -178,7 +178,7 @@ def _stack(start: Array, along: Array, rings: list[Ring], girth: float = 1.0) ->
 
 
 def _denser(rings: list[Ring]) -> Array:
-    """Rings at even distances through the given ones, so that nothing is coarser than a few centimeters."""
+    """The rings resampled at even distances, at most a few centimeters apart."""
     table = np.array(rings)
     share = np.linspace(table[0, 0], table[-1, 0], 4 * len(rings))
     columns = [np.interp(share, table[:, 0], table[:, i]) for i in range(1, 4)]

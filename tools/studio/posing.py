@@ -1,4 +1,4 @@
-"""Keyframes as a person poses them: better on the screen than in depth, and with habits."""
+"""Posing errors of a person: smaller on the screen than in depth, and partly systematic."""
 
 import numpy as np
 from keymark.core.arrays import Array
@@ -7,9 +7,9 @@ from keymark.core.body.posture import Posture
 
 ERROR_RMS_M = 0.025
 HABIT_SHARE = 0.4
-"""Share of the error's variance that is the same in all keyframes: people err the same way again."""
+"""Share of the error's variance common to all keyframes, the systematic part."""
 ACROSS_M, ALONG_M = 0.008, 0.020
-"""The hips' midpoint, across the line of sight and along it."""
+"""Standard deviations of the hips' midpoint, across the line of sight and along it."""
 ANGLES_DEG = {
     "pelvis": 2.5,
     "waist": 3.5,
@@ -46,7 +46,7 @@ def pose_by_hand(body: Body, exact: Posture, sight: Array, random: np.random.Gen
 
 
 def _scale(body: Body, exact: Posture, error: Array) -> float:
-    """The factor with which the errors reach the RMS wanted, by bisection: the RMS grows with it."""
+    """The factor that scales the errors to the RMS wanted, by bisection, since the RMS grows with it."""
     truth = body.points(body.pose(exact))
     lower, upper = 0.0, 4.0
     for _ in range(SCALINGS):

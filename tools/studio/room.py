@@ -1,4 +1,4 @@
-"""A room: a wooden floor, two walls, some furniture, lamps, and what else stands or moves in it."""
+"""A room: a wooden floor, two walls, furniture, lamps, and other things that stand or move."""
 
 from dataclasses import dataclass
 
@@ -24,22 +24,22 @@ class BuiltRoom:
     things: tuple[bpy.types.Object, ...]
     """Blender's objects for the room's things."""
     room: Room
-    """What they were made from."""
+    """The description they were made from."""
 
     @property
     def moving(self) -> list[bpy.types.Object]:
-        """Blender's objects for those that do not stand still."""
+        """Blender's objects for the moving things."""
         return [
             thing for thing, described in zip(self.things, self.room.things, strict=True) if described.moves
         ]
 
     def move(self, frame: float) -> None:
-        """Put all things where they are at a frame."""
+        """Move all things to their positions at a frame."""
         for thing, described in zip(self.things, self.room.things, strict=True):
             thing.location = described.place(frame)
 
     def moving_places(self, frame: float) -> Array:
-        """(N, 3) corners of all that moves [m]."""
+        """(N, 3) corners of the moving things [m]."""
         corners = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         moving = [thing for thing in self.room.things if thing.moves]
         return np.concatenate(
@@ -135,7 +135,7 @@ def _box(name: str, place: Triple, size: Triple, material: bpy.types.Material) -
 
 
 def _matt(name: str, color: Triple, uneven: float = 0.0, scale: float = 1.5) -> bpy.types.Material:
-    """A matt material; `uneven` is how much its brightness varies from place to place."""
+    """A matte material; `uneven` is the spatial variation of its brightness."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links

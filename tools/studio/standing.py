@@ -1,4 +1,4 @@
-"""What every motion starts from: a standing person, poses to mix, and feet that step.
+"""Building blocks of motions: a standing person, poses to mix, and feet that step.
 
 Times are seconds; angles are degrees.
 """
@@ -25,7 +25,7 @@ ANKLE_M = 0.082
 SLOW_M, SLOW_DEG = 0.004, 1.2
 QUICK_FRAMES = (3.0, 9.0)
 QUICK_M, QUICK_DEG = 0.0006, 0.3
-"""What no living person is without, slow and quick."""
+"""Amplitudes of a living body's sway, slow and quick."""
 
 
 def tall_m(body: Body) -> float:
@@ -35,7 +35,7 @@ def tall_m(body: Body) -> float:
 
 
 def mixed(names: Sequence[str], times: Array, rest: Pose, *poses: tuple[Array, Pose]) -> Channels:
-    """Channels that lie at `rest` and go to each pose by its amount (T,); what a pose leaves out stays."""
+    """Channels blended from `rest` to each pose by its amount (T,); channels missing in a pose stay."""
     channels = {name: np.full(len(times), float(rest.get(name, 0.0))) for name in names}
     for amount, pose in poses:
         for name, value in pose.items():
@@ -61,10 +61,10 @@ def foot(
     """An ankle's path (T, 3) and the foot's rotations (T, 3, 3).
 
     Args:
-        place: (T, 2) where the ankle is over the floor [m].
-        yaw: (T,) where the toes point, to the left of -Y.
+        place: (T, 2) position of the ankle over the floor [m].
+        yaw: (T,) direction of the toes, to the left of -Y.
         pitch: (T,) toes downward.
-        height: (T,) of the lowest place of the sole [m].
+        height: (T,) height of the lowest point of the sole [m].
     """
     zero = np.zeros(len(place))
     rotation = turned(zero + yaw, zero + pitch, zero)
@@ -74,7 +74,7 @@ def foot(
 def stepped(
     times: Array, start: tuple[float, float], steps: Sequence[tuple[float, float, tuple[float, float]]]
 ) -> tuple[Array, Array]:
-    """A foot's places (T, 2) [m] over steps (lifting, landing, where), and its lift (T,) from 0 to 1."""
+    """A foot's positions (T, 2) [m] over steps (lifting, landing, target), and its lift (T,) from 0 to 1."""
     places = np.tile(np.array(start), (len(times), 1))
     lifted = np.zeros(len(times))
     for lifts, lands, there in steps:
@@ -95,7 +95,7 @@ def choreography(
     free_legs: dict[str, FreeLeg] | None = None,
     grounded: Array | None = None,
 ) -> Choreography:
-    """A plan with the channels left out at zero and the restlessness of a living body on all of them."""
+    """A plan with missing channels at zero and natural sway on all of them."""
     frames = FPS * times
     zero = np.zeros(len(times))
 

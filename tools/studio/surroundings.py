@@ -1,4 +1,4 @@
-"""What surrounds a performer, described: lamps, walls, and things that stand or move about."""
+"""Description of a performer's surroundings: lamps, walls, and things that stand or move."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Lamp:
-    """A square window of light that shines on the performer's chest."""
+    """A square area light aimed at the performer's chest."""
 
     place: Triple
-    """Its middle [m]."""
+    """Its center [m]."""
     size: float
-    """Of an edge [m]; small ones throw hard shadows."""
+    """Length of an edge [m]; small lamps cast hard shadows."""
     power: float
     """Watts."""
     color: Triple
@@ -26,31 +26,31 @@ class Lamp:
 
 @dataclass(frozen=True)
 class Thing:
-    """A box or a ball that is no part of the room."""
+    """A box or a ball that is not part of the room."""
 
     size: Triple
     """Edges [m]; a ball has three equal ones and is `round`."""
     color: Triple
     """Red, green and blue, linear."""
     path: Mapping[float, Triple]
-    """Its place [m] by frame, through which it moves evenly; a single one stands still."""
+    """Its positions [m] by frame, with even motion between; with a single one it stands still."""
     round: bool = False
     """Whether it is a ball."""
 
     @property
     def moves(self) -> bool:
-        """Whether it does not stand still."""
+        """Whether it moves."""
         return len(self.path) > 1
 
     def place(self, frame: float) -> Array:
-        """(3,) where its middle is at a frame [m]."""
+        """(3,) position of its center at a frame [m]."""
         frames, places = np.array(list(self.path)), np.array(list(self.path.values()))
         return np.array([np.interp(frame, frames, places[:, axis]) for axis in range(3)])
 
 
 @dataclass(frozen=True)
 class Room:
-    """What surrounds a performer."""
+    """A performer's surroundings."""
 
     lamps: tuple[Lamp, ...] = (
         Lamp((-0.6, -4.0, 3.3), 2.4, 215.0, (1.0, 0.96, 0.90)),
@@ -64,6 +64,6 @@ class Room:
     planks: tuple[Triple, Triple, Triple] = ((0.36, 0.27, 0.19), (0.31, 0.23, 0.16), (0.2, 0.15, 0.1))
     """Colors of the floor's planks and of the gaps between them, linear."""
     furnished: bool = True
-    """Whether wall bars, pictures, a bench and a ball are there."""
+    """Whether the room has wall bars, pictures, a bench and a ball."""
     things: tuple[Thing, ...] = ()
-    """What else is there and may move or hide the performer."""
+    """Further things, which may move or hide the performer."""

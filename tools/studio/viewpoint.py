@@ -1,4 +1,4 @@
-"""Where a camera stands."""
+"""Camera poses by viewpoint and target."""
 
 import numpy as np
 from keymark.core.footage.camera import Camera
@@ -35,7 +35,7 @@ def look_from(
     size: tuple[int, int],
     tilt_deg: float = 0.0,
 ) -> Camera:
-    """A camera at a height, that far from its target and turned about it from -Y towards +X."""
+    """A camera at a height and a distance from its target, turned about it from -Y toward +X."""
     azimuth = np.radians(azimuth_deg)
     x, y = target[0] + distance_m * np.sin(azimuth), target[1] - distance_m * np.cos(azimuth)
     return look_at((float(x), float(y), height_m), target, lens_mm, size, tilt_deg)

@@ -64,7 +64,10 @@ def test_every_overlay_can_be_handed_to_blender() -> None:
         draw = import_module(f"keymark.operators.overlays.{overlay.module}").draw
         space = getattr(bpy.types, overlay.space)
         handler = space.draw_handler_add(guarded(overlay, draw), (), overlay.region, overlay.phase)
+        assert handler is not None, overlay
         space.draw_handler_remove(handler, overlay.region)
+        with pytest.raises(ValueError):  # it is gone
+            space.draw_handler_remove(handler, overlay.region)
 
 
 def test_without_a_screen_no_handler_is_added() -> None:

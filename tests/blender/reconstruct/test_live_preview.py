@@ -80,6 +80,8 @@ def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tin
     preview.show(Preview(0, type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     preview.end()
+    assert not bpy.data.armatures and bpy.context.scene.frame_current == 1
+    assert not any(getattr(handler, "__self__", None) is preview for handler in bpy.app.handlers.save_pre)
 
 
 @pytest.mark.parametrize("method", ["map", "ekf"])

@@ -1,4 +1,4 @@
-"""Where the benchmarks look for takes."""
+"""The benchmarks' search for takes."""
 
 import importlib.util
 import os
@@ -21,14 +21,14 @@ def takes(repository: Path) -> ModuleType:
 def test_folders_named_in_the_environment_are_found(
     takes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each folder of KEYMARK_TAKES adds its takes with truth, and none without."""
+    """Each folder of KEYMARK_TAKES adds its takes with truth, and only those."""
     for name in ("first/hop", "second/skip", "second/untrue"):
         (tmp_path / name).mkdir(parents=True)
         if "untrue" not in name:
             (tmp_path / name / "truth.json").write_text("{}", encoding="utf-8")
     before = takes.take_names()
-    places = [str(tmp_path / "first"), str(tmp_path / "second")]
-    monkeypatch.setenv("KEYMARK_TAKES", os.pathsep.join(places))
+    folders = [str(tmp_path / "first"), str(tmp_path / "second")]
+    monkeypatch.setenv("KEYMARK_TAKES", os.pathsep.join(folders))
     found = takes.take_names()
     assert {name for name in found if name not in before} == {"hop", "skip"}
     assert found["skip"] == tmp_path / "second" / "skip"

@@ -1,4 +1,4 @@
-"""What the benchmarks compute before they print it."""
+"""The computations of the benchmarks."""
 
 import sys
 from pathlib import Path
@@ -36,16 +36,16 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
     return read_trial(write_synthetic_take(tmp_path_factory.mktemp("benchmarks") / "take", FRAMES))
 
 
-def test_the_density_that_is_needed_lies_where_the_curve_crosses_the_limit() -> None:
-    """Straight over the logarithm between measured densities, behind the last one beyond the limit."""
+def test_the_needed_density_is_where_the_curve_crosses_the_limit() -> None:
+    """Linear over the logarithm between measured densities, after the last one beyond the limit."""
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 50.0, 30.0]) == pytest.approx(np.sqrt(8.0 * 16.0))
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 35.0, 45.0]) is None
     assert needed_for(40.0, [4.0, 8.0, 16.0], [39.0, 30.0, 20.0]) == 4.0
     assert needed_for(40.0, [3.0, 4.0, 5.0, 6.0], [50.0, 30.0, 40.1, 30.1]) == pytest.approx(5.0, abs=0.02)
 
 
-def test_keyframes_of_any_frames_stand_where_the_truth_does(trial: Trial) -> None:
-    """Exact ones within a millimeter; hand-posed ones by as much off as asked, the same in every run."""
+def test_generated_keyframes_match_the_truth(trial: Trial) -> None:
+    """Exact ones within a millimeter; hand-posed ones with the given error, the same in every run."""
     frames = spread_frames(trial, 5)
     assert frames[0] == 0 and frames[-1] == FRAMES - 1 and set(np.diff(frames)) <= {5, 6}
     body, exact = trial.take.body, exact_postures(trial)
@@ -60,21 +60,21 @@ def test_keyframes_of_any_frames_stand_where_the_truth_does(trial: Trial) -> Non
     assert few.best_interpolation().keyframes == 5
 
 
-def test_the_best_interpolation_is_none_of_the_worse(trial: Trial) -> None:
-    """It is the nearest to the truth of those that are tried."""
+def test_the_best_interpolation_has_the_smallest_error(trial: Trial) -> None:
+    """It has the smallest error of all interpolations tried."""
     every = [trial.score(points).mpjpe for points in trial.interpolated().values()]
     assert len(every) == 3 and trial.best_interpolation().mpjpe == min(every) < max(every)
 
 
 def test_shifted_frames_stay_in_the_clip_and_in_order() -> None:
-    """Each moves as far as it may; neighbors that would meet stay apart."""
+    """Each moves as far as possible; neighbors that would meet stay apart."""
     assert shifted([0, 8, 16, 23], [2, -2, 1, -1], FRAMES).tolist() == [2, 6, 17, 22]
     assert shifted([0, 8, 16, 23], [-2, 2, 2, 2], FRAMES).tolist() == [0, 10, 18, 23]
     assert shifted([0, 1, 22, 23], [2, -2, 2, 1], FRAMES).tolist() == [2, 3, 22, 23]
 
 
 def test_mistimed_keyframes_keep_their_postures_and_the_frames_that_are_scored(trial: Trial) -> None:
-    """Only the frames at which the postures stand are other ones."""
+    """Only the frames of the postures change."""
     late = mistimed(trial, [1, 1, 1, 1])
     assert late.take.keyframe_indices == (1, 9, 17, 23) and late.unscored == (0, 8, 16, 23)
     for before, after in zip(trial.take.keyframes, late.take.keyframes, strict=True):
@@ -94,7 +94,7 @@ def test_keyframes_posed_over_a_wrong_lens_look_the_same_in_the_picture(trial: T
     assert depth[1] == pytest.approx(1.1 * depth[0])
 
 
-def test_other_segments_leave_the_posed_points_about_where_they_were(trial: Trial) -> None:
+def test_other_segments_nearly_keep_the_posed_points(trial: Trial) -> None:
     """Lengths are scaled, and no point of a keyframe moves further than lengths force it to."""
     other = with_segments(trial, {"forearm.L": 1.05})
     lengths = [one.take.body.actor.segments_m for one in (trial, other)]
@@ -106,15 +106,15 @@ def test_other_segments_leave_the_posed_points_about_where_they_were(trial: Tria
     assert 1e-4 < np.abs(points[1] - points[0]).max() < 0.05 * lengths[0]["forearm.L"]
 
 
-def test_a_hidden_marker_is_nowhere_and_the_others_are_where_they_were(trial: Trial) -> None:
-    """For as long as it is hidden."""
+def test_only_the_hidden_marker_disappears(trial: Trial) -> None:
+    """It is invisible in the hidden frames only."""
     gone = hidden(trial, 1, slice(4, 9)).tracks
     assert not gone.visible[4:9, 1].any() and not gone.quality[4:9, 1].any()
     assert np.array_equal(gone.visible[:4], trial.tracks.visible[:4]) and gone.visible[5, 2]
 
 
 def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> None:
-    """With the true postures of the frames that are left as keyframes."""
+    """Keyframes have the true postures of the remaining frames."""
     fast = doubled_speed(trial)
     assert len(fast.truth) == fast.tracks.frame_count == fast.take.frame_count == FRAMES // 2
     assert fast.tracks.time_s[-1] == pytest.approx(11 / 30.0)
@@ -125,7 +125,7 @@ def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> Non
 
 
 def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with truth is a take; what is neither that nor a known name is refused in a sentence."""
+    """A folder with truth is a take; any other unknown name is refused with a sentence."""
     folder = str(trial.take.folder)
     assert chosen_takes([folder]) == {"take": trial.take.folder}
     with pytest.raises(SystemExit):
@@ -133,7 +133,7 @@ def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixtu
     assert "nowhere is neither" in capsys.readouterr().err
 
 
-def test_a_point_is_as_far_off_as_all_points_are_on_average(trial: Trial) -> None:
+def test_the_mean_of_the_points_errors_is_the_score(trial: Trial) -> None:
     """The errors of the points have the score as their mean, and the table has a row a method."""
     found = measure(trial)
     for one in found.values():

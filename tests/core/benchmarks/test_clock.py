@@ -1,4 +1,4 @@
-"""Clocks that are wrong, or are put back: no time of a file is ever compared with them."""
+"""Wrong or adjusted clocks: file times are never compared with the clock."""
 
 import os
 from pathlib import Path
@@ -15,8 +15,8 @@ FAST = ConversionSettings(method="interpolation", pictures=False)
 
 
 @pytest.mark.usefixtures("no_blender")
-def test_files_of_the_future_and_of_long_ago_are_like_others(tmp_path: Path) -> None:
-    """What is finished stays so whatever its files' times are; only a changed byte makes it anew."""
+def test_file_times_do_not_matter(tmp_path: Path) -> None:
+    """A finished take stays finished at any file times; only a changed byte converts it anew."""
     take = write_synthetic_take(tmp_path / "take", 8, 4)
     out = tmp_path / "out"
     console = Console(quiet=True, as_json=False)

@@ -1,4 +1,4 @@
-"""What the benchmark of keyframe libraries computes before it prints it."""
+"""The computations of the benchmark of keyframe libraries."""
 
 import sys
 from dataclasses import replace
@@ -17,23 +17,23 @@ from trials import Trial  # noqa: E402
 
 @pytest.fixture(scope="module")
 def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
-    """A small synthetic take, read as if nobody had posed anything."""
+    """A small synthetic take, read without its keyframes."""
     return bench.read_unposed(write_synthetic_take(tmp_path_factory.mktemp("libraries") / "take", 24))
 
 
 def test_every_library_that_fits_a_take_is_shipped() -> None:
-    """A wrong name would be noticed only when that take is measured."""
+    """Otherwise a wrong name would surface only when its take is measured."""
     shipped = {path.stem for path in SHIPPED.glob("*.json")}
     assert {name for names in bench.FITTING.values() for name in names} <= shipped
 
 
-def test_nothing_that_was_posed_is_used(trial: Trial) -> None:
-    """Neither as a keyframe nor to look for markers, and every frame is scored."""
+def test_posed_keyframes_are_not_used(trial: Trial) -> None:
+    """Neither as a keyframe nor for tracking markers, and every frame is scored."""
     assert trial.take.keyframes == () and trial.unscored == ()
 
 
 def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None:
-    """The frames that are posed exactly do not count, and the table has the shares that it names."""
+    """Exactly posed frames are not scored, and the table has the ratios in its header."""
     found = bench.measure("waves", trial, read_library(SHIPPED / "waving.json"))
     assert (found.unposed.keyframes, found.two.keyframes, found.both.keyframes) == (0, 2, 2)
     assert found.unposed.coverage95 is not None and found.matching_ms > 0.0
@@ -42,7 +42,7 @@ def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None
 
 
 def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
-    """A take that shows something known must be recognized; others may go without a library."""
+    """A take with a fitting library must be recognized; others may have none chosen."""
     found = bench.choose("walk", trial, [read_library(SHIPPED / "walking.json")])
     assert found.right is True and found.chosen == "walking"
     assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]

@@ -1,4 +1,4 @@
-"""What the benchmarks of the workflow compute before they print it."""
+"""The computations of the workflow's benchmarks."""
 
 import sys
 
@@ -28,7 +28,7 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
 
 
 def test_a_pose_is_as_far_off_as_it_was_moved(trial: Trial) -> None:
-    """Across the line of sight and along it."""
+    """Distances across the line of sight and along it."""
     exact = exact_postures(trial)[9]
     sideways, deeper = np.zeros((2, trial.take.body.skeleton.dof_count))
     sideways[0], deeper[1] = 0.05, 0.05
@@ -38,7 +38,7 @@ def test_a_pose_is_as_far_off_as_it_was_moved(trial: Trial) -> None:
 
 
 def test_every_keyframe_is_fitted_from_each_start_that_it_has(trial: Trial) -> None:
-    """The first has none before it, and neither end lies between two; markers come nearer."""
+    """The first has no earlier keyframe, and neither end lies between two; the markers' distance falls."""
     found = posing.measure(trial)
     assert [len(fits) for fits in found.values()] == [4, 3, 2]
     means = {start: posing.summary(fits) for start, fits in found.items()}
@@ -49,8 +49,8 @@ def test_every_keyframe_is_fitted_from_each_start_that_it_has(trial: Trial) -> N
     assert posing.table({"take": means}).count("| take |") == 1 + len(means)
 
 
-def test_what_a_keyframe_gains_is_what_the_error_falls_by(trial: Trial) -> None:
-    """A keyframe where there is one already changes nothing; confidence is held against the truth."""
+def test_the_gain_of_a_keyframe_is_the_decrease_of_the_error(trial: Trial) -> None:
+    """A keyframe in a posed frame changes nothing; confidence is compared with the truth."""
     postures = exact_postures(trial)
     judged = suggestions.judge(trial, postures, 2)
     more = suggestions.error_with(trial, postures, np.array([0, FRAMES - 1]), 11)
@@ -61,8 +61,8 @@ def test_what_a_keyframe_gains_is_what_the_error_falls_by(trial: Trial) -> None:
     assert -1.0 <= judged.rank <= 1.0
 
 
-def test_calibration_holds_what_is_claimed_against_what_is_true() -> None:
-    """Frames fall into the stretch of what is claimed of them."""
+def test_calibration_compares_claims_with_the_truth() -> None:
+    """Frames are binned by their claimed confidence."""
     judged = suggestions.Judged(10.0, {}, 0, 0.0, [0.2, 0.4, 0.95], [0.5, 0.7, 1.0])
     low, *between, high = suggestions.calibration([judged])
     assert low == (2, pytest.approx(0.3), pytest.approx(0.6)) and high == (1, 0.95, 1.0)
@@ -71,7 +71,7 @@ def test_calibration_holds_what_is_claimed_against_what_is_true() -> None:
 
 
 def test_random_frames_lie_as_far_from_keyframes_as_suggested_ones(trial: Trial) -> None:
-    """And are the same in every run."""
+    """Random frames are the same in every run."""
     frames = np.array([0, 12, FRAMES - 1])
     found = suggestions.random_frames(trial, frames)
     assert len(set(found)) == suggestions.RANDOM_FRAMES
@@ -81,7 +81,7 @@ def test_random_frames_lie_as_far_from_keyframes_as_suggested_ones(trial: Trial)
 
 
 def test_a_tighter_tolerance_costs_more_keys(trial: Trial) -> None:
-    """The looser the tolerance, the fewer; keys within a tolerance leave the error within it."""
+    """A looser tolerance needs fewer keys; keys within a tolerance keep the error within it."""
     row = finishing.finished(trial, exact_postures(trial))
     assert row["keyframes"] <= row["reduced 20"] <= row["reduced 5"]
     assert row["keyframes"] <= row["even 20"] <= row["even 5"]
@@ -105,14 +105,14 @@ def test_changes_of_a_take_are_one_keyframe_each(trial: Trial) -> None:
     assert same == [True, True, False, True]
 
 
-def test_what_has_not_changed_is_not_estimated_again(trial: Trial) -> None:
-    """The same take once more is the same motion."""
+def test_an_unchanged_take_is_not_estimated_again(trial: Trial) -> None:
+    """Reconstructing an unchanged take again gives the same motion."""
     first = run(reconstruct(trial.take, "map", trial.reading))
     once_more = again.compared(trial.take, first)
     assert once_more.largest_mm == once_more.moved_mm == 0.0 and once_more.cost < 1.0
 
 
-def test_takes_are_told_apart_by_where_they_lie(trial: Trial) -> None:
-    """The demonstration's is one that methods were made with."""
+def test_takes_are_grouped_by_folder(trial: Trial) -> None:
+    """The demonstration belongs to the takes with which methods are tuned."""
     assert group_of(ROOT / "presets" / "demo" / "aerobic") == "given"
     assert group_of(trial.take.folder) == "studio"

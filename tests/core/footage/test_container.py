@@ -82,8 +82,10 @@ def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.Mo
     ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
 )
 def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
-    """What OpenCV itself writes."""
-    check_container(write_video(tmp_path / name, code))
+    """Containers that OpenCV itself writes pass, and open."""
+    path = write_video(tmp_path / name, code)
+    check_container(path)
+    assert Clip.open(path).size == SIZE
 
 
 @pytest.mark.parametrize(
@@ -100,9 +102,12 @@ def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
     ],
 )
 def test_containers_that_opencv_cannot_write_are_known(beginning: bytes, tmp_path: Path) -> None:
-    """Transport and program streams, MXF and their like."""
+    """Transport and program streams, MXF and their like; the same bytes further on in a file are none."""
     (tmp_path / "clip").write_bytes(beginning)
     check_container(tmp_path / "clip")
+    (tmp_path / "shifted").write_bytes(b"x" + beginning)
+    with pytest.raises(InputError, match="shifted: cannot be decoded; it holds"):
+        check_container(tmp_path / "shifted")
 
 
 @pytest.mark.parametrize(

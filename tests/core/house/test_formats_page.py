@@ -1,4 +1,4 @@
-"""The page on files tells the truth: limits are the readers', and every schema has its row."""
+"""docs/formats.md agrees with the code: its limits are the readers', and every schema has its row."""
 
 import json
 import re
@@ -33,8 +33,8 @@ LIMITS = {
     f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
-    f"{posture_fields.FARTHEST_M:.0f} m": "places of keyframes, from the origin",
-    f"{camera_fields.FARTHEST_M:.0f} m": "places of cameras, from the origin",
+    f"{posture_fields.FARTHEST_M:.0f} m": "distance of keyframes from the origin",
+    f"{camera_fields.FARTHEST_M:.0f} m": "distance of cameras from the origin",
 }
 
 
@@ -46,12 +46,12 @@ def page(repository: Path) -> str:
 
 @pytest.mark.parametrize(("limit", "what"), LIMITS.items())
 def test_limits_are_those_of_the_readers(page: str, limit: str, what: str) -> None:
-    """A limit that changes there changes here."""
+    """Every limit of the page is a constant of a reader."""
     assert f"| {what} | {limit.strip()} |" in page
 
 
 def test_every_schema_has_its_row(page: str, repository: Path) -> None:
-    """And no row is without a schema."""
+    """The table of files names all schemas and no others."""
     rows = page.split("## What is refused")[0]
     named = set(re.findall(r"\| `([a-z]+)`(?:, each line)? \|", rows))
     there = {
@@ -60,8 +60,8 @@ def test_every_schema_has_its_row(page: str, repository: Path) -> None:
     assert named == there
 
 
-def test_the_settings_of_the_editor_name_schemas_that_are_there(page: str, repository: Path) -> None:
-    """By their ways in the repository."""
+def test_editor_settings_name_existing_schemas(page: str, repository: Path) -> None:
+    """Paths in the example lead to files of the repository."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     for entry in json.loads(example)["json.schemas"]:
         assert (repository / entry["url"].removeprefix("./keymark/")).is_file()

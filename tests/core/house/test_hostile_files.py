@@ -1,4 +1,4 @@
-"""Files from strangers, of every format: whatever is in them, they are read or one sentence says why not."""
+"""Hostile files of every format: each is read, or refused with one sentence."""
 
 import json
 import os
@@ -30,7 +30,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
+    """A take that tests must not modify."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES, 3)
 
 
@@ -38,10 +38,8 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.fuzz
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_whatever_a_file_holds_it_is_read_or_refused(
-    known: dict[str, Format], name: str, data: st.DataObject
-) -> None:
-    """Values and bytes changed at random: no other error, no second line, no warning of numbers."""
+def test_any_content_is_read_or_refused(known: dict[str, Format], name: str, data: st.DataObject) -> None:
+    """Random changes of values and bytes raise no other error, no second line and no NumPy warning."""
     content = data.draw(files(known[name].valid))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -52,7 +50,7 @@ def test_whatever_a_file_holds_it_is_read_or_refused(
 
 
 def tree(folder: Path) -> dict[str, bytes | None]:
-    """Every path below a folder, with what is in the files, but not behind links."""
+    """Contents by path of all files below a folder; links are not followed."""
     return {
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() and not path.is_symlink() else None
         for path in sorted(folder.rglob("*"))
@@ -60,7 +58,7 @@ def tree(folder: Path) -> dict[str, bytes | None]:
 
 
 def converts(take: Path, output: Path, capfd: pytest.CaptureFixture[str]) -> bool:
-    """Convert, and hold what was said and left to the rules; whether it converted."""
+    """Convert, assert the rules for messages and files left behind, and return whether it succeeded."""
     output.mkdir(exist_ok=True)
     (output / "mine.txt").write_text("mine", encoding="utf-8")
     before, inputs = tree(output), tree(take) if take.is_dir() else {}
@@ -80,7 +78,7 @@ def converts(take: Path, output: Path, capfd: pytest.CaptureFixture[str]) -> boo
 
 
 def changed_take(pristine: Path, take: Path, data: st.DataObject) -> None:
-    """A take with one of its files changed, in place of the last example's."""
+    """Replace the last example's take by one with a changed file."""
     shutil.rmtree(take, ignore_errors=True)
     shutil.copytree(pristine, take)
     name = data.draw(st.sampled_from(["take.json", "keyframes.json"]))
@@ -92,10 +90,10 @@ def changed_take(pristine: Path, take: Path, data: st.DataObject) -> None:
 @pytest.mark.fuzz
 @settings(max_examples=10 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_a_changed_take_converts_or_says_why_not(
+def test_a_mutated_take_converts_or_is_refused(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
-    """From outside: one line, a status, and an output folder that is whole or as it was."""
+    """A conversion prints at most one line, and its output folder is complete or unchanged."""
     changed_take(pristine, tmp_path / "take", data)
     shutil.rmtree(tmp_path / "out", ignore_errors=True)
     converts(tmp_path / "take", tmp_path / "out", capfd)
@@ -104,10 +102,10 @@ def test_a_changed_take_converts_or_says_why_not(
 @pytest.mark.fuzz
 @settings(max_examples=10 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_commands_that_only_look_say_what_is_wrong(
+def test_reading_commands_report_errors(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
-    """A status and one line on standard error; what they looked at is as it was."""
+    """They return a status and print one line on standard error; their input is unchanged."""
     changed_take(pristine, tmp_path / "shoot" / "take", data)
     command = data.draw(st.sampled_from(["check", "propose", "library check"]))
     path = {
@@ -128,7 +126,7 @@ def test_commands_that_only_look_say_what_is_wrong(
 @pytest.mark.parametrize("name", ["clip", "keyframes.json", "take.json", "frames/0002.png"])
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "folder", "outside", "loop"])
 @pytest.mark.usefixtures("no_blender")
-def test_what_is_no_file_is_not_waited_for(
+def test_special_files_do_not_block(
     pristine: Path,
     tmp_path: Path,
     name: str,
@@ -136,29 +134,29 @@ def test_what_is_no_file_is_not_waited_for(
     capfd: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A pipe would never begin, a device never end; a link may lead to what is nobody's business."""
+    """Reading a pipe may never begin, a device never end, and a link may lead to private files."""
     take = Path(shutil.copytree(pristine, tmp_path / "take"))
-    place = take / name
+    path = take / name
     if name == "clip":
-        place = take / "clip.mp4"
+        path = take / "clip.mp4"
         said = json.loads((take / "take.json").read_text(encoding="utf-8"))
         (take / "take.json").write_text(json.dumps(said | {"clip": "clip.mp4"}), encoding="utf-8")
-    place.unlink(missing_ok=True)
-    secret = tmp_path / "secret" / place.name
+    path.unlink(missing_ok=True)
+    secret = tmp_path / "secret" / path.name
     secret.parent.mkdir()
     if (pristine / name).is_file():
         shutil.copyfile(pristine / name, secret)
     try:
         if kind == "pipe":
-            os.mkfifo(place)
+            os.mkfifo(path)
         elif kind == "socket":
-            monkeypatch.chdir(place.parent)  # its path may be no longer than a hundred letters
+            monkeypatch.chdir(path.parent)  # its path may be no longer than a hundred letters
             with socket.socket(socket.AF_UNIX) as one:
-                one.bind(place.name)
+                one.bind(path.name)
         elif kind == "folder":
-            place.mkdir()
+            path.mkdir()
         else:
-            place.symlink_to({"device": Path("/dev/zero"), "outside": secret, "loop": place}[kind])
+            path.symlink_to({"device": Path("/dev/zero"), "outside": secret, "loop": path}[kind])
     except (OSError, AttributeError, NotImplementedError):
         pytest.skip("this system has no such thing")
     monkeypatch.chdir(tmp_path)
@@ -180,8 +178,8 @@ HUGE: dict[str, bytes] = {
 
 
 @pytest.mark.parametrize("kind", HUGE)
-def test_what_no_file_needs_is_refused(tmp_path: Path, kind: str) -> None:
-    """Deep, many, large: one short sentence, before room is made."""
+def test_excessive_json_is_refused(tmp_path: Path, kind: str) -> None:
+    """Deep, numerous or large content is refused with one short sentence before memory is allocated."""
     path = tmp_path / "huge.json"
     path.write_bytes(HUGE[kind])
     with pytest.raises(InputError, match=r"huge\.json") as caught:
@@ -189,8 +187,8 @@ def test_what_no_file_needs_is_refused(tmp_path: Path, kind: str) -> None:
     assert is_sentence(str(caught.value), 400 + len(str(path)))
 
 
-def test_brackets_in_texts_are_no_depth() -> None:
-    """Only lists and objects count."""
+def test_brackets_in_strings_are_not_nesting() -> None:
+    """Brackets within strings do not count as nesting."""
     text = json.dumps({"a": "[" * 500 + '"\\' + "{" * 500, "b": [[1]]})
     assert parse_json(text, "here")["b"] == [[1]]
     assert parse_json('{"a": "\\ud83c\\udfac"}', "here")["a"] == "\U0001f3ac"

@@ -1,4 +1,4 @@
-"""What the package must never be able to do: talk to a network, or run what a file says."""
+"""Forbidden abilities of the package: network access, and running the contents of files."""
 
 import ast
 import json
@@ -15,15 +15,15 @@ from _synthetic_take import write_synthetic_take
 NETWORK = {"ftplib", "http", "imaplib", "nntplib", "poplib", "requests", "smtplib", "socket", "socketserver"}
 NETWORK |= {"ssl", "telnetlib", "urllib", "webbrowser", "wsgiref", "xmlrpc"}
 CODE_FROM_DATA = {"code", "codeop", "dbm", "dill", "joblib", "marshal", "pickle", "runpy", "shelve", "yaml"}
-CODE_FROM_DATA |= {"multiprocessing"}  # whose processes pickle what they say to each other
+CODE_FROM_DATA |= {"multiprocessing"}  # its processes exchange pickles
 ONLY_IN = {
     "ctypes": ("operators.cli.blender_silence", "core.files"),
     "subprocess": ("operators.cli.batch",),
     "asyncio": ("operators.cli.batch",),
 }
-"""Modules that have an innocent use, and where."""
+"""Modules with a harmless use, and the files that have it."""
 HARMLESS = {"urllib.parse"}
-"""Parts of a forbidden module that only take text apart."""
+"""Parts of a forbidden module that only parse text."""
 CALLS = {"eval", "exec", "compile", "__import__"}
 CALLS |= {
     "os.system",
@@ -38,7 +38,7 @@ METHODS |= {"as_module", "use_scripts_auto_execute"}
 
 
 def dotted(node: ast.AST) -> str:
-    """`np.load` of the expression that says so; empty for others."""
+    """The dotted name of an expression, as `np.load`; empty if it is none."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
@@ -48,7 +48,7 @@ def dotted(node: ast.AST) -> str:
 
 
 def imported(node: ast.AST) -> list[str]:
-    """Names of the modules from elsewhere that a statement loads, up to the first dot."""
+    """Top-level names of the external modules that a statement imports."""
     names: list[str] = []
     if isinstance(node, ast.Import):
         names = [alias.name for alias in node.names]
@@ -58,7 +58,7 @@ def imported(node: ast.AST) -> list[str]:
 
 
 def faults(module: str, source: str) -> Iterator[str]:
-    """What in one module could reach a network or run data, as sentences."""
+    """Sentences on each use in one module that could reach a network or run data."""
     for node in ast.walk(ast.parse(source)):
         for name in imported(node):
             if name in NETWORK | CODE_FROM_DATA or not module.startswith(ONLY_IN.get(name, (module,))):
@@ -81,7 +81,7 @@ def _says(node: ast.AST | None, value: object) -> bool:
 
 
 def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path) -> None:
-    """Neither core nor operators load, call or name what could; processes are started in one place."""
+    """Neither core nor operators import, call or name such modules; one module starts processes."""
     found = []
     for folder in ("core", "operators"):
         for file in sorted((repository / folder).rglob("*.py")):
@@ -108,24 +108,24 @@ def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path)
         "curve.driver_add('location')",
     ],
 )
-def test_what_could_is_found(source: str) -> None:
-    """The check above can fail: each of these lines is named."""
+def test_forbidden_code_is_found(source: str) -> None:
+    """The check above can fail: it reports each of these lines."""
     assert len(list(faults("core.take.take", source))) == 1
 
 
-def test_what_is_innocent_passes() -> None:
-    """Processes where the batch starts them, arrays without pickles, patterns, own modules."""
+def test_allowed_code_passes() -> None:
+    """Processes in the batch's own module, arrays without pickles, patterns and own modules are allowed."""
     assert list(faults("operators.cli.batch.pool", "import subprocess\nimport asyncio")) == []
     source = "np.load(path, allow_pickle=False)\nre.compile(text)\nfrom .code import x\nimport json"
     assert list(faults("core.take.take", source)) == []
 
 
-def test_the_extension_asks_for_files_only(repository: Path) -> None:
-    """Neither network, clipboard, camera nor microphone; and it says in few words what the files are for."""
+def test_the_extension_requests_file_permission_only(repository: Path) -> None:
+    """No permission but files, with a short reason: no network, clipboard, camera or microphone."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert set(manifest["permissions"]) == {"files"}
     reason = manifest["permissions"]["files"]
-    assert 0 < len(reason) <= 64 and not reason.endswith(".")  # what Blender's own check asks for
+    assert 0 < len(reason) <= 64 and not reason.endswith(".")  # Blender's own check requires it
 
 
 WATCHED = """
@@ -155,7 +155,7 @@ print(json.dumps({"status": status, "seen": seen, "blender": blender}), file=sys
 
 
 def watched(repository: Path, *words: str) -> dict[str, object]:
-    """Run a command in a process that may neither open a socket nor start a process; what it tried."""
+    """Run a command where sockets and processes are forbidden; return its status, attempts and writes."""
     command = [sys.executable, "-B", "-c", WATCHED, str(repository), *words]
     done = subprocess.run(command, capture_output=True, text=True)
     answer: dict[str, object] = json.loads(done.stderr.splitlines()[-1])
@@ -163,7 +163,7 @@ def watched(repository: Path, *words: str) -> dict[str, object]:
 
 
 def test_a_command_opens_no_socket_and_writes_only_where_it_is_told(repository: Path, tmp_path: Path) -> None:
-    """Converting a take, or where there is no Blender, looking into it, tries nothing of the kind."""
+    """Converting a take, or without Blender inspecting it, makes no such attempt."""
     take, output = write_synthetic_take(tmp_path / "take", 8), tmp_path / "out"
     said = watched(repository, "convert", str(take), "--output", str(output / "take"), "--quiet")
     if not said["blender"]:
@@ -171,7 +171,7 @@ def test_a_command_opens_no_socket_and_writes_only_where_it_is_told(repository: 
     assert said["status"] == 0
     seen = said["seen"]
     assert isinstance(seen, list)
-    places = [path for event, path in seen if event == "write" and path != os.path.realpath(os.devnull)]
+    written = [path for event, path in seen if event == "write" and path != os.path.realpath(os.devnull)]
     assert [event for event, _ in seen if event != "write"] == []
-    assert [path for path in places if not Path(path).is_relative_to(os.path.realpath(output))] == []
-    assert bool(places) == said["blender"]
+    assert [path for path in written if not Path(path).is_relative_to(os.path.realpath(output))] == []
+    assert bool(written) == said["blender"]

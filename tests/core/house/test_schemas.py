@@ -1,4 +1,4 @@
-"""The schemas say what the readers read: what a reader takes its schema takes, and both see mistakes."""
+"""Schemas agree with readers: a schema accepts what its reader accepts, and both refuse mistakes."""
 
 import json
 from collections.abc import Callable
@@ -35,7 +35,7 @@ def schemas() -> dict[str, Any]:
 
 @cache
 def validator(name: str, whole: bool = False) -> Draft202012Validator:
-    """What holds a value to a schema."""
+    """The validator of a schema, or of its part `complete`."""
     resources = [(file, Resource.from_contents(schema)) for file, schema in schemas().items()]
     part = "#/$defs/complete" if whole else ""
     schema = {"$ref": f"{name}.schema.json{part}"}
@@ -43,7 +43,7 @@ def validator(name: str, whole: bool = False) -> Draft202012Validator:
 
 
 def test_there_is_a_schema_for_every_format() -> None:
-    """Each is one of the draft, with a title and a description."""
+    """Each is valid in its draft and has a title and a description."""
     assert set(schemas()) == {f"{name}.schema.json" for name in NAMES}
     for schema in schemas().values():
         Draft202012Validator.check_schema(schema)
@@ -51,7 +51,7 @@ def test_there_is_a_schema_for_every_format() -> None:
 
 
 def fields_of(schema: Any) -> list[tuple[str, Any]]:
-    """Every field that a schema names, with its own schema."""
+    """Every field named in a schema, with its own schema."""
     found: list[tuple[str, Any]] = []
     if isinstance(schema, dict):
         for name, one in schema.get("properties", {}).items():
@@ -66,7 +66,7 @@ def fields_of(schema: Any) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_numbers_and_texts_have_limits(name: str) -> None:
-    """No number without a range, no text without a longest."""
+    """Every number has a range, every text a largest length or a pattern."""
     for field, schema in fields_of(schemas()[f"{name}.schema.json"]):
         kinds = schema.get("type", ())
         kinds = {kinds} if isinstance(kinds, str) else set(kinds)
@@ -77,17 +77,20 @@ def test_numbers_and_texts_have_limits(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_valid_file_is_valid_to_both(known: dict[str, Format], name: str) -> None:
-    """The file from which all tests of the format begin."""
+def test_schema_and_reader_accept_a_valid_file(known: dict[str, Format], name: str) -> None:
+    """Both accept the file from which all tests of the format begin."""
     one = known[name]
-    validator(name, one.whole).validate(one.valid)
-    one.read(json.dumps(one.valid).encode())
+    assert list(validator(name, one.whole).iter_errors(one.valid)) == []
+    assert not refused_by_reader(one, one.valid)
 
 
-def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
-    """Every library, the demonstration, and the takes to develop with."""
-    for path in (repository / "presets" / "keyframes").glob("*.json"):
-        validator("library").validate(json.loads(path.read_text(encoding="utf-8")))
+def test_shipped_files_are_valid(repository: Path, shared_takes: Path) -> None:
+    """Every library, the demonstration, and the development takes."""
+    libraries = sorted((repository / "presets" / "keyframes").glob("*.json"))
+    assert libraries
+    for path in libraries:
+        value = json.loads(path.read_text(encoding="utf-8"))
+        assert list(validator("library").iter_errors(value)) == [], path
     for take in [repository / "presets" / "demo" / "aerobic", *shared_takes.iterdir()]:
         files = {
             "take.json": ("take", True),
@@ -97,7 +100,8 @@ def test_what_is_shipped_is_valid(repository: Path, shared_takes: Path) -> None:
         files["keyframes_noisy.json"] = ("keyframes", False)
         for file, (name, whole) in files.items():
             if (take / file).exists():
-                validator(name, whole).validate(json.loads((take / file).read_text(encoding="utf-8")))
+                value = json.loads((take / file).read_text(encoding="utf-8"))
+                assert list(validator(name, whole).iter_errors(value)) == [], take / file
 
 
 def refused_by_reader(one: Format, value: Any) -> bool:
@@ -110,7 +114,7 @@ def refused_by_reader(one: Format, value: Any) -> bool:
 
 
 def as_read(value: Any) -> Any:
-    """A value as it comes out of a file, or None where it is none that JSON has."""
+    """A value after a round trip through JSON, or None if JSON cannot express it."""
     try:
         return parse_json(json.dumps(value), "here")
     except InputError:
@@ -121,10 +125,8 @@ def as_read(value: Any) -> Any:
 @pytest.mark.fuzz
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_what_a_schema_refuses_the_reader_refuses(
-    known: dict[str, Format], name: str, data: st.DataObject
-) -> None:
-    """From a valid file outwards; so whatever the reader takes, the schema takes."""
+def test_readers_refuse_what_schemas_refuse(known: dict[str, Format], name: str, data: st.DataObject) -> None:
+    """Random changes of a valid file that a schema refuses are refused by its reader too."""
     one = known[name]
     value = as_read(data.draw(changed(one.valid, 2)))
     if value is not None and not validator(name, one.whole).is_valid(value):
@@ -135,7 +137,7 @@ Change = Callable[[Any], object]
 
 
 def at(*way: Any, to: Any) -> Change:
-    """A change of one value."""
+    """A change that sets one value."""
 
     def change(value: Any) -> None:
         for key in way[:-1]:
@@ -190,8 +192,8 @@ MISTAKES: list[tuple[str, Change]] = [
 
 
 @pytest.mark.parametrize(("name", "change"), MISTAKES)
-def test_a_mistake_is_seen_by_both(known: dict[str, Format], name: str, change: Change) -> None:
-    """An editor that knows the schema marks what Keymark will refuse."""
+def test_schema_and_reader_refuse_a_mistake(known: dict[str, Format], name: str, change: Change) -> None:
+    """Schema and reader refuse each mistake, so editors mark it."""
     one = known[name]
     value = json.loads(json.dumps(one.valid))
     change(value)
@@ -199,8 +201,8 @@ def test_a_mistake_is_seen_by_both(known: dict[str, Format], name: str, change: 
     assert refused_by_reader(one, value)
 
 
-def test_a_part_of_a_take_is_valid_where_a_shoot_says_the_rest(known: dict[str, Format]) -> None:
-    """`take.json` may hold as little as nothing; only a take that inherits nothing must be complete."""
+def test_a_partial_take_is_valid_below_a_shoot(known: dict[str, Format]) -> None:
+    """`take.json` may be empty; only a take that inherits nothing must be complete."""
     assert validator("take").is_valid({}) and validator("take").is_valid({"camera": {"lens_mm": None}})
     assert not validator("take", True).is_valid({})
     assert validator("shoot").is_valid({"$schema": "shoot.schema.json", "//": 1})

@@ -1,4 +1,4 @@
-"""docs/shoots.md: every file in it is read, and every command in it runs."""
+"""docs/shoots.md: every file in it is readable, and every command in it runs."""
 
 import re
 import shlex
@@ -24,21 +24,21 @@ def page(repository: Path) -> str:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory, page: str) -> Path:
-    """The page's tree, with the files as they stand in it."""
-    place = tmp_path_factory.mktemp("page")
+    """The page's tree, with the page's files in it."""
+    root = tmp_path_factory.mktemp("page")
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     for name in CLIPS:
-        (place / "shoot" / name).parent.mkdir(parents=True, exist_ok=True)
-        write_video(place / "shoot" / f"{name}.mp4", posture)
+        (root / "shoot" / name).parent.mkdir(parents=True, exist_ok=True)
+        write_video(root / "shoot" / f"{name}.mp4", posture)
     for name in POSED:
-        write_keyframes(place / "shoot" / f"{name}.keyframes.json", points, 5)
-    jump = place / "shoot" / "day2" / "jump"
+        write_keyframes(root / "shoot" / f"{name}.keyframes.json", points, 5)
+    jump = root / "shoot" / "day2" / "jump"
     write_images(jump / "frames", posture)
     write_keyframes(jump / "keyframes.json", points, 5)
     for name, text in re.findall(r"^```jsonl? (\S+)\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL):
-        (place / name).write_text(text, encoding="utf-8")
-    return place
+        (root / name).write_text(text, encoding="utf-8")
+    return root
 
 
 def test_its_commands_run(
@@ -49,7 +49,7 @@ def test_its_commands_run(
     lines = re.findall(r"^keymark (.*)$", page, flags=re.MULTILINE)
     said = {}
     for line in lines:
-        if not line.startswith("batch"):  # which tests of its own run
+        if not line.startswith("batch"):  # which has tests of its own
             said[line] = main(shlex.split(line)), "".join(capsys.readouterr())
     assert said["new shoot"][0] == 2 and "never replaced" in said["new shoot"][1]
     status, text = said["check shoot"]
@@ -59,7 +59,7 @@ def test_its_commands_run(
 
 
 def test_fields_come_from_the_nearest_file(folder: Path) -> None:
-    """As the page says of its example."""
+    """The page's example inherits as the page describes."""
     first = read_take(folder / "shoot" / "day1" / "clip01.mp4")
     moved = read_take(folder / "shoot" / "day2" / "clip01.mp4", keyframes_required=False)
     assert first.camera.matrix_world[0, 3] == 0.0 and moved.camera.matrix_world[0, 3] == 0.2

@@ -29,7 +29,7 @@ HANGING = Arm(elevation=10, plane=25, rotation=12, elbow=16)
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "aerobic",
         "Aerobic Exercise",

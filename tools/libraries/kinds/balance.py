@@ -29,12 +29,12 @@ CARRYING = Foot(-0.06, 0.0, -6.0)
 OTHER = replace(CARRYING, x=-CARRYING.x, turn=-CARRYING.turn)
 HANGING = Arm(9, 35, 12, 16)
 ALONG_FOOT_M = -0.04
-"""Weight over a foot that carries it alone, from the ankle."""
+"""Position of the weight along a foot that carries it alone, from the ankle."""
 HOLD_S = 1.0
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "balance",
         "Balance",
@@ -194,20 +194,20 @@ class Swing:
 
     name: str
     share: float
-    """When, as a share of the step."""
+    """Time, as a share of the step."""
     foot: Foot
     come: float
-    """How far the weight has come, in steps from the rear foot."""
+    """Position of the weight, in steps from the rear foot."""
     aside: float
-    """How far the weight is to the left of the line [m]."""
+    """Offset of the weight to the left of the line [m]."""
     left_arm: Arm
     right_arm: Arm
     lean: float = 0.0
-    """Of the trunk, to the left [degrees]."""
+    """Lean of the trunk, to the left [degrees]."""
 
 
 def _along_a_beam(work: Composer) -> None:
-    """Steps of half a metre on a line, the free foot swinging out around the other."""
+    """Steps of half a meter on a line, the free foot swinging out around the other."""
     off, around, there = (
         Foot(0.0, 0.02, -6.0, 26.0, 0.02),
         Foot(-0.2, -0.4, -8.0, 16.0, 0.1),

@@ -20,11 +20,11 @@ SOURCES = (
     "Winter, D. A. (2009). Biomechanics and Motor Control of Human Movement, 4th ed.",
 )
 APART_M = 0.11
-"""Half the distance between the feet of someone about to jump."""
+"""Half the distance between the feet before a jump."""
 HIGH_S, FAR_S, ASTRIDE_S, SMALL_S, FORWARD_S = 0.50, 0.46, 0.48, 0.30, 0.38
 """Times of flight: half a second is a jump of 31 cm."""
 FAR_M, AHEAD_M = 1.25, 0.55
-"""How far the mass flies in the long jump, and in one without much ado."""
+"""Flight distance of the mass in the long jump and in a casual one."""
 
 HANGING = swung_arm(2.0, 9.0, rotation=10.0, elbow=15.0)
 BACK = swung_arm(-48.0, 12.0, rotation=0.0, elbow=14.0)
@@ -34,7 +34,7 @@ OPEN = Arm(elevation=78.0, plane=48.0, rotation=20.0, elbow=32.0, girdle=8.0)
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     made = Composer(
         "jumping",
         "Jumping",
@@ -63,7 +63,7 @@ def feet(pitch: float = 0.0, y: float = 0.0) -> Foot:
 def crouched(
     bend: float, pelvis: float, waist: float, arms: Arm, pitch: float = 0.0, y: float = 0.0
 ) -> Moment:
-    """Someone on both feet with bent knees; angles of bending forward [degrees]."""
+    """A crouch on both feet; angles of bending forward [degrees]."""
     return balanced(
         moment(
             legs=feet(pitch, y),
@@ -283,7 +283,7 @@ def _small(made: Composer) -> None:
 
 
 def _forward(made: Composer) -> None:
-    """A jump ahead without much ado, arms to the height of the chest, landing on flat feet."""
+    """A casual jump ahead, arms to the height of the chest, landing on flat feet."""
     off = balanced(
         moment(
             legs=feet(54.0),

@@ -25,7 +25,7 @@ SOURCES = (
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     made = Composer(
         "kicking",
         "Kicking",

@@ -27,7 +27,7 @@ Path = tuple[tuple[str, float], ...]
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "punching",
         "Punching",
@@ -43,7 +43,7 @@ def library() -> Library:
     work.pose("guard, hands low", boxing(low, low, turn=6, bow=-4, bend=18), "guard")
     _bent_punches(work)
     _straight_punches(work)
-    _defence(work)
+    _defense(work)
     _footwork(work)
     _from_an_easy_stance(work)
     _from_a_wide_stance(work)
@@ -165,7 +165,7 @@ def _bent_punches(work: Composer) -> None:
         _from_guard(work, name, ((first, 0.26), (name, 0.44), ("guard", 0.86)))
 
 
-def _defence(work: Composer) -> None:
+def _defense(work: Composer) -> None:
     """The head leaves the line of a punch to either side or below, or goes behind the arms."""
     high = Arm(56, 72, 24, 142, 30, 10)
     for name, posed in (

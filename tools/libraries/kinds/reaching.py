@@ -26,12 +26,12 @@ SOURCES = (
 LEFT_FOOT, RIGHT_FOOT = Foot(0.12, 0.0, 9.0), Foot(-0.12, 0.0, -9.0)
 HANGING = Arm(9, 35, 12, 16)
 OUT_S, HOLD_S, BACK_S = 0.75, 0.25, 0.8
-"""Of a reach at arm's length: out, at the place, and back."""
+"""Durations of a reach at arm's length: out, hold, and back."""
 FLOOR_S = 1.15
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "reaching",
         "Reaching",
@@ -86,7 +86,7 @@ def _reaching(
 
 
 def _at(x: float, ahead: float, height: float, swivel: float = 20.0, girdle: float = 4.0) -> Hand:
-    """The right hand at a place, or as near as it gets."""
+    """The right hand at a position, or as near as it can reach."""
     return Hand(x, -ahead, height, swivel, 30.0, girdle, short=0.4)
 
 

@@ -81,7 +81,7 @@ PACES = {
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     made = Composer(
         "running",
         "Running",

@@ -30,11 +30,11 @@ FEET = Foot(0.15, 0.0, turn=12.0)
 NARROW = Foot(0.11, 0.0, turn=8.0)
 HANGING = Arm(9, 40, 10, 14)
 BESIDE_BOX_M = 0.17
-"""The wrists from the middle of a box."""
+"""Distance of the wrists from the center of a box."""
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "squatting_lifting",
         "Squatting and Lifting",

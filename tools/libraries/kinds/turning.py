@@ -41,13 +41,13 @@ SMALL_STEPS = (
 )
 ON_THE_SPOT = Style(arms=0.5, elbow=18.0, bow=3.0, toes_out=6.0, apart_m=0.085)
 SPOT_S, SPOT_DEG = 1.16, 90.0
-"""A cycle of two steps on the spot, and how far it turns."""
+"""Duration and turn of a cycle of two steps on the spot."""
 BEND = Style(lean=2.5)
 BEND_S, BEND_M, BEND_DEG = 1.10, 1.20, 50.0
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     made = Composer(
         "turning",
         "Turning",
@@ -82,7 +82,7 @@ def planted(
     heel: float = 0.1,
     push: float = 0.45,
 ) -> Footfall:
-    """A foot beside the place of the hips, for someone who faces `heading` there [degrees]."""
+    """A foot beside the hips' position, for a body that faces `heading` there [degrees]."""
     sign = 1.0 if side == "L" else -1.0
     facing, aside = np.radians(heading), sign * style.apart_m
     return Footfall(
@@ -144,7 +144,7 @@ def _about(made: Composer) -> None:
 
 
 def _along_a_bend(made: Composer) -> None:
-    """Walking around a place on the left."""
+    """Walking around a point on the left."""
     radius = BEND_M / np.radians(BEND_DEG)
     falls = []
     for step in range(-4, 5):

@@ -46,13 +46,13 @@ GAITS = {
     "slow walk": (1.06, 1.28, Style(arms=0.4, elbow=12.0), FEWER_PHASES),
     "brisk walk": (1.72, 0.94, Style(elbow=22.0, bow=3.0), FEWER_PHASES),
 }
-"""Stride [m], its time [s], how, and where in the cycle there is a posture."""
+"""Stride [m], duration of a stride [s], style, and the phases that have a posture, by gait."""
 FIRST_STEP_M = 0.5
-"""Between the ankles, from standing; the next is a usual step."""
+"""Distance between the ankles after the first step from standing; the next is a usual step."""
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     made = Composer(
         "walking",
         "Walking",
@@ -75,7 +75,7 @@ def library() -> Library:
 
 
 def _set_out(made: Composer) -> None:
-    """From standing to the walk's right heel strike, whose place it ends at."""
+    """From standing to the walk's right heel strike, at whose position it ends."""
     stride_m, stride_s, style = WALK
     strikes = {"L": 0.0, "R": 0.5 * stride_s, "L again": stride_s}
     ahead = {name: (strike / stride_s + LEADS) * stride_m for name, strike in strikes.items()}
@@ -100,7 +100,7 @@ def _set_out(made: Composer) -> None:
 
 
 def _come_to_rest(made: Composer) -> None:
-    """From the walk's left heel strike, whose place it begins at, to standing."""
+    """From the walk's left heel strike, at whose position it begins, to standing."""
     stride_m, stride_s, style = WALK
     aside, toes = style.apart_m, style.toes_out
     left_m = LEADS * stride_m

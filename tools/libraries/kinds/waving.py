@@ -26,7 +26,7 @@ Waves = tuple[str, str]
 
 
 def library() -> Library:
-    """Compose it."""
+    """Compose the library."""
     work = Composer(
         "waving",
         "Waving",
@@ -155,7 +155,7 @@ def _beckoning_and_hailing(work: Composer) -> None:
 
 
 def _turned_away(work: Composer) -> None:
-    """Looking over the right shoulder at whom the hand waves to."""
+    """Looking over the right shoulder toward the person waved to."""
     for name, right, turn in (
         ("turned: standing", HANGING, 8.0),
         ("turned: hand rising", Arm(44, 12, -30, 84, 20, 2), -4.0),

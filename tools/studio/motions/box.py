@@ -19,7 +19,7 @@ LOADED = {"elevation": 12, "forward": 20, "rotation": 14, "flexion": 104, "prona
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     hops = np.sin(2.0 * np.pi * uneven_phases(times, 0.42, 0.12, random))
     jab, cross = _punch(times, JAB_S), _punch(times, CROSS_S)
     last_jab, last_cross = _punch(times, LAST_JAB_S), _punch(times, LAST_CROSS_S)
@@ -84,7 +84,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
 
 
 def _punch(times: Array, at: float) -> Array:
-    """Out in a sixth of a second, back in a quarter."""
+    """A punch: out in a sixth of a second, back in a quarter."""
     return burst(times, at - 0.16, at, at + 0.24)
 
 

@@ -21,7 +21,7 @@ FORWARD_M, ASIDE_M = 0.16, 0.15
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it; the poses and the steps on each beat are the random source's choice."""
+    """Compose the motion; the random source chooses the poses and steps on each beat."""
     phases = uneven_phases(times, BEAT_S, UNEVENNESS, random)
     first, last = int(np.floor(phases[0])) - 1, int(np.ceil(phases[-1])) + 1
     beats = {beat: float(np.interp(beat, phases, times)) for beat in range(first + 2, last - 1)}
@@ -30,7 +30,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     strength = sprung(_on_beats(beats, times, random.uniform(0.6, 1.3, len(beats)), 0.3), times, 3.0, 0.8)
 
     def thrown(size: float, hertz: float = 4.2) -> Array:
-        """A new random value on each beat, reached with a swing."""
+        """A new random value on each beat, reached with overshoot."""
         return sprung(
             _on_beats(beats, times, random.uniform(-size, size, len(beats)), 0.35), times, hertz, 0.55
         )
@@ -66,7 +66,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
 
 
 def _on_beats(beats: dict[int, float], times: Array, values: Array, glide: float) -> Array:
-    """(T,) holds each beat's value and moves to the next in the last `glide` seconds at most before it."""
+    """(T,) each beat's value, held until a transition of at most `glide` seconds before the next beat."""
     at = np.array(list(beats.values()))
     keys: dict[float, float] = {}
     for number, value in enumerate(values):

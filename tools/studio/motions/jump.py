@@ -19,7 +19,7 @@ WIDE = {"elevation": 78, "forward": 22, "flexion": 38, "rotation": 24, "girdle":
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     (off, on), (off_again, on_again) = FIRST_S, SECOND_S
     height = flight(times, off, on) + flight(times, off_again, on_again)
     drop = keyed(

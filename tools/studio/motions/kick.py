@@ -10,14 +10,14 @@ from ..performance import Choreography
 from ..standing import arm, choreography, foot, free, stepped, tall_m
 
 FRONT_S, SIDE_S = 0.98, 2.24
-"""When the legs are stretched."""
+"""Times of full extension."""
 GUARD = {"elevation": 32, "forward": 58, "rotation": 28, "flexion": 122, "pronation": 30, "girdle": 3}
 FLUNG = {"elevation": 38, "forward": -28, "rotation": 5, "flexion": 34, "girdle": 0}
 REACHING = {"elevation": 74, "forward": 70, "rotation": 30, "flexion": 58, "girdle": 9}
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     front, side = FRONT_S, SIDE_S
     off = {"R": (front - 0.42, front + 0.52), "L": (side - 0.44, side + 0.56)}
     landings = {"R": (-0.17, -0.30), "L": (0.20, -0.44)}

@@ -15,7 +15,7 @@ PUSHED = {"elevation": 108, "forward": 86, "rotation": 18, "flexion": 28, "prona
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     stoop = driven({0.25: 0, 0.62: 0.62, 0.92: 1.0, GRASP_S + 0.1: 1.0, 1.28: 0.62, UP_S: 0.05, 1.8: -0.04,
                     2.3: 0.08,
                     PUT_S: -0.02, 3.7: 0.02}, times, 3.6, 0.7)  # fmt: skip

@@ -18,7 +18,7 @@ HIGH = {"elevation": 142, "forward": 40, "rotation": 10, "flexion": 48, "girdle"
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     yaw = driven(
         {0.0: 4, 0.20: 2, 0.46: -48, START_S: -44, 0.80: 62, 1.0: 196, 1.18: 312, END_S: 372, 1.6: 366,
          BACK_S[0] - 0.12: 384, BACK_S[0]: 372, 2.2: 268, BACK_S[1]: 192, 3.0: 198},

@@ -31,9 +31,9 @@ ELBOW = {0.0: 14, 0.16: 48, 0.30: 34, 0.46: 16, 0.60: 42, 0.74: 58, 0.9: 20}
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     phases = uneven_phases(times, PERIOD_S, UNEVENNESS, random)
-    vigour = 1.0 + 0.09 * sway(FPS * times, random, (20.0, 60.0))
+    vigor = 1.0 + 0.09 * sway(FPS * times, random, (20.0, 60.0))
     height, landings = np.zeros(len(times)), []
     for cycle in np.arange(np.floor(phases[0]), np.ceil(phases[-1])):
         for off, on in FLIGHTS:
@@ -63,12 +63,12 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     for side, out, late in (("L", 1.0, 0.0), ("R", -1.0, 0.025)):
         own = phases - late + 0.012 * sway(FPS * times, random, (12.0, 40.0))
         channels = arm(times, {"forward": 16.0, "rotation": 10.0, "pronation": 10.0})
-        channels["elevation"] = sprung(vigour.clip(None, 1.03) * cyclic(own, ELEVATION), times, 6.0, 0.7)
-        channels["flexion"] = sprung(vigour * cyclic(own, ELBOW), times, 6.0, 0.7)
+        channels["elevation"] = sprung(vigor.clip(None, 1.03) * cyclic(own, ELEVATION), times, 6.0, 0.7)
+        channels["flexion"] = sprung(vigor * cyclic(own, ELBOW), times, 6.0, 0.7)
         channels["girdle"] = 0.15 * channels["elevation"]
         channels["forward"] = channels["forward"] + 10.0 * sway(FPS * times, random, (15.0, 40.0))
         arms[side] = channels
-        place = np.stack([wander + out * (0.085 + 0.27 * vigour * cyclic(own, APART)), 0.0 * times], axis=-1)
+        place = np.stack([wander + out * (0.085 + 0.27 * vigor * cyclic(own, APART)), 0.0 * times], axis=-1)
         place[:, 1] += 0.03 * sway(FPS * times, random, (14.0, 30.0))
         feet[side] = foot(place, out * 10.0 + pelvis["yaw"], cyclic(phases, ON_TOES_DEG), 0.92 * height)
     return choreography(times, random, pelvis, trunk, arms, feet)

@@ -25,7 +25,7 @@ SWINGING = {"elevation": 3, "forward": 80, "rotation": 12, "flexion": 22, "prona
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it; the way leads along -X."""
+    """Compose the motion, along -X."""
     phases = uneven_phases(times, STRIDE_S, UNEVENNESS, random)
     turn = 2.0 * np.pi * phases
     walked = STRIDE_M * phases - START_M

@@ -18,7 +18,7 @@ TUCKED = {"elevation": 30, "forward": 10, "rotation": 16, "flexion": 104, "girdl
 
 
 def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
-    """Compose it."""
+    """Compose the motion."""
     plant, release = PLANT_S, RELEASE_S
     ring = shock(times, [0.34, 0.66, plant], 6.0, 0.08)
     pelvis = {
