@@ -17,7 +17,8 @@ from pathlib import Path
 from .fsync import fsync_path
 
 STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
-"""Endings of the hidden names; version 0.1.0 wrote the same ones, and the same fields in the journal."""
+"""Endings of the hidden names. They and the journal's fields never change, so that a run that was interrupted
+before an update of Keymark is recovered after it."""
 
 Moves = list[tuple[Path, Path]]
 

@@ -80,9 +80,7 @@ def _library(description: Fields, folders: dict[str, Path]) -> str | None:
         return None
     name = description.text("library", LIBRARY_VALID)
     if not name.lower().endswith(".json"):  # a name, which must not look like a path
-        if len(name) > LONGEST_NAME or any(
-            letter in "/\\" or is_control_character(letter) for letter in name
-        ):
+        if len(name) > LONGEST_NAME or any(char in "/\\" or is_control_character(char) for char in name):
             raise InputError(
                 f"{description.source_of('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
             )

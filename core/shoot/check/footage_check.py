@@ -82,7 +82,7 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     missing = _missing_markers(check, samples)
     if len(missing) == len(take.markers) > 1:
         findings.problem(
-            f"{take.clip}: the color of no marker is in any of {len(samples.images)} frames looked at; "
+            f"{take.clip}: the color of no marker is in any of {len(samples.images)} sampled frames; "
             + ("there is too little light" if dark else "is it a clip of this performer?")
         )
         return check.readouts
@@ -99,7 +99,7 @@ def _check_light(samples: ClipSamples, findings: Findings) -> bool:
         count = int(np.count_nonzero(bright < limit))
         if count >= max(DARK_SHARE * len(bright), 1):
             findings.warn(
-                f"{count} of {len(bright)} frames looked at are {word}; colors are hard to tell there, more "
+                f"{count} of {len(bright)} sampled frames are {word}; colors are hard to tell there, more "
                 "light is worth most"
             )
             return True

@@ -1,4 +1,4 @@
-"""The check of a take's keyframes: fit to the actor, place in clip and picture, gaps between them."""
+"""The check of a take's keyframes: fit to the actor, inside clip and picture, gaps between them."""
 
 from collections.abc import Sequence
 

@@ -1,15 +1,15 @@
-"""A new `shoot.json`: what clips tell filled in, and comments on what a person must say."""
+"""A new `shoot.json`: fields filled in from the clips, null and a comment for those a person must give."""
 
 from typing import Any
 
 from ...files.fields import listed
-from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
+from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize
 from .clip_survey import ClipSurvey
 
 MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
-"""The five that Keymark is made for."""
+"""The paper's five markers."""
 MOST_NAMED = 5
 AUTO = "auto"
 
@@ -18,8 +18,8 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
     """The fields of a new `shoot.json`, in the order they are read in.
 
     Args:
-        survey: What the clips tell; at least one can be opened.
-        below_another: Whether a folder above has a `shoot.json`, from which this one then inherits.
+        survey: The survey of the clips; at least one can be opened.
+        below_another: Whether a parent folder has a `shoot.json`, from which this one then inherits.
     """
     fields: dict[str, Any] = {
         "//": [
@@ -44,7 +44,7 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
 
 
 def clip_lines(survey: ClipSurvey) -> list[str]:
-    """What the clips have in common and where they differ, one line each."""
+    """Sizes, rates and described clips with their numbers, one line each."""
     frames = sum(clip.frames for clip in survey.clips)
     lines = [f"{pluralize(len(survey.clips), 'clip')}, {pluralize(frames, 'frame')} in all"]
     lines += [
@@ -73,56 +73,56 @@ def _rate(survey: ClipSurvey) -> dict[str, Any]:
         return {"fps": int(rate) if rate.is_integer() else rate}
     if not rates:
         return {"//fps": "frames per second, which images cannot tell", "fps": None}
-    told = "left out, for the clips differ: each tells its own"
+    comment = "left out, for the clips differ: each tells its own"
     if not images:
-        return {"//fps": told}
-    said = f"{told}, but for images, beside which NAME.take.json must say it"
-    return {"//fps": f"{said}: {listed(images, MOST_NAMED)}"}
+        return {"//fps": comment}
+    comment += ", but for images, beside which NAME.take.json must say it"
+    return {"//fps": f"{comment}: {listed(images, MOST_NAMED)}"}
 
 
 def _camera(survey: ClipSurvey) -> dict[str, Any]:
     size = survey.sizes.most_common(1)[0][0]
     lens = guess_lens(size)
-    distance = -default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
-    said: dict[str, Any] = {
+    distance = -first_stand(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
+    camera: dict[str, Any] = {
         "//lens_mm": f"a guess, as of {lens.reason}; state the one you filmed with, and its sensor's width",
         "lens_mm": lens.lens_mm,
         "sensor_width_mm": lens.sensor_width_mm,
     }
     if len(survey.sizes) == 1:
-        said["resolution"] = list(size)
+        camera["resolution"] = list(size)
     else:
-        said["//resolution"] = [
+        camera["//resolution"] = [
             "left out, for the clips differ: each tells its own; say so nearer to those that were filmed",
             "with another lens or from elsewhere",
         ]
-    said["//matrix_world"] = [
+    camera["//matrix_world"] = [
         "where the camera stood, in meters, as four rows. Blender's Python console tells that of a camera:",
         "[list(row) for row in bpy.context.scene.camera.matrix_world]",
         "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
         "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",
         f"With this lens a whole person fits the picture from D = {distance:.1f} on at H = {EYE_HEIGHT_M:g}.",
     ]
-    said["matrix_world"] = None
-    return said
+    camera["matrix_world"] = None
+    return camera
 
 
 def _markers(survey: ClipSurvey) -> dict[str, Any]:
-    said: dict[str, Any] = {
+    markers: dict[str, Any] = {
         "//": [
             "red, green and blue from 0 to 255, as an eyedropper gives them on the marker in a clip; .L is",
             "the performer's own left. Take out markers that were not worn.",
         ]
     }
     if survey.colors:
-        said["//seen"] = [
+        markers["//seen"] = [
             "Strong colors that some of the clips show; which is on which limb is for you to say:",
             *(
                 f"{color.hue} {list(color.color_srgb)}, {100.0 * color.share:.2f} % of the picture"
                 for color in survey.colors
             ),
         ]
-    return said | {name: {"color_srgb": None} for name in MARKERS}
+    return markers | {name: {"color_srgb": None} for name in MARKERS}
 
 
 def _library(survey: ClipSurvey) -> dict[str, Any]:
@@ -148,7 +148,7 @@ def _at(fps: float | None) -> str:
 def _examples(
     survey: ClipSurvey, size: tuple[int, int] | None = None, fps: float | None | bool = False
 ) -> str:
-    """Which clips differ from most, by name."""
+    """Names of the clips with this size or rate, unless they are half of all or more."""
     names = [
         clip.name
         for clip in survey.clips

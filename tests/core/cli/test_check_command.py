@@ -170,7 +170,7 @@ def half_dark(shoot: Path) -> None:
         (elsewhere, "seen outside the picture for the most part"),
         (few, "2 keyframes for 10 frames are few: from frame 1 to 10, 1.8 s"),
         (few, "take01.take.json says 5 frames per second"),
-        (half_dark, "4 of 10 frames looked at are black"),
+        (half_dark, "4 of 10 sampled frames are black"),
         (said_of_take(actor={"height_m": 1.2}), "the points of 4 of 4 keyframes are up to"),
     ],
 )

@@ -1,5 +1,6 @@
 """Result folders: written completely or not at all."""
 
+import json
 import os
 from pathlib import Path
 
@@ -22,6 +23,12 @@ def fill(folder: Path, text: str) -> None:
     (folder / "motion.json").write_text(text, encoding="utf-8")
     (folder / "report").mkdir()
     (folder / "report" / "speed.png").write_text(text, encoding="utf-8")
+
+
+def made(folder: Path) -> Path:
+    """A folder that was made."""
+    folder.mkdir()
+    return folder
 
 
 def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
@@ -114,3 +121,23 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
     with output_folder(tmp_path / "out") as staging_folder:
         fill(staging_folder, "new")
     assert (tmp_path / "out").is_symlink() and (tmp_path / "disk" / "motion.json").read_text() == "new"
+
+
+def test_a_run_interrupted_before_an_update_is_recovered(tmp_path: Path) -> None:
+    """The hidden names and the journal's fields are those of every version."""
+    out, stem = tmp_path / "out", tmp_path / ".keymark-762069bc07a6e1b5"
+    fill(made(out), "old")
+    fill(made(stem.with_name(f"{stem.name}-new")), "new")
+    journal = {"target": "out", "seal": "conversion.json", "made": ["motion.json", "report/speed.png"]}
+    journal |= {"gone": ["motion.bvh"], "aside": {"motion.json": "motion (changed).json"}}
+    stem.with_name(f"{stem.name}.json").write_text(json.dumps(journal), encoding="utf-8")
+    (out / "motion.bvh").write_text("old", encoding="utf-8")
+    with output_folder(out):
+        pass
+    assert tree(tmp_path) == {
+        "out": "(folder)",
+        "out/motion (changed).json": "old",
+        "out/motion.json": "new",
+        "out/report": "(folder)",
+        "out/report/speed.png": "new",
+    }

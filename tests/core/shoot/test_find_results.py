@@ -1,4 +1,4 @@
-"""The results below a folder, as `merge` finds them."""
+"""Discovery of conversion results below a folder, as for `merge`."""
 
 import os
 import sys
@@ -20,8 +20,8 @@ def add(folder: Path) -> Path:
     return folder
 
 
-def test_results_are_named_by_their_way_and_others_passed_over(tmp_path: Path) -> None:
-    """Hidden folders, folders without a record, and what lies below a result."""
+def test_results_are_named_by_their_path_and_other_folders_skipped(tmp_path: Path) -> None:
+    """Hidden folders, folders without a record, and folders below a result are skipped."""
     for name in ("b", "a/two", "a/one", ".keymark/x", "a/one/inner", "a/.one-1f"):
         add(tmp_path / name)
     (tmp_path / "half").mkdir()
@@ -37,21 +37,21 @@ def test_a_single_result_is_named_after_its_folder(tmp_path: Path) -> None:
 
 
 def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
-    """They may lead in a circle."""
+    """They may form a cycle."""
     add(tmp_path / "a")
     (tmp_path / "again").symlink_to(tmp_path, target_is_directory=True)
     assert [result.name for result in find_results(tmp_path).sound] == ["a"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are valid text")
-def test_names_that_are_no_text_are_spelt_out(tmp_path: Path) -> None:
+def test_names_that_are_no_text_are_escaped(tmp_path: Path) -> None:
     """Else no file could name them."""
     add(Path(os.fsdecode(os.fsencode(tmp_path) + b"/na\xefve")))
     assert [result.name for result in find_results(tmp_path).sound] == ["na\\udcefve"]
 
 
 def test_folders_that_cannot_be_read_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Among others as damaged; the one that is asked for is refused."""
+    """One below counts as damaged; the searched folder itself is refused."""
     add(tmp_path / "a")
     (tmp_path / "shut").mkdir()
     through = Path.iterdir

@@ -1,4 +1,4 @@
-"""Finding the takes of a shoot: folders, bare clips, lists; what is no take, and names that clash."""
+"""Discovery of a shoot's takes: folders, bare clips and lists; folders that are no takes; name collisions."""
 
 import json
 import os
@@ -12,9 +12,9 @@ from keymark.core.shoot.discovery.find_takes import find_takes, open_shoot
 from keymark.core.shoot.discovery.take_names import check_output
 
 
-def make(folder: Path, *ways: str) -> Path:
-    """Make files, empty but for JSON; a way that ends with a slash is a folder."""
-    for way in ways:
+def make(folder: Path, *paths: str) -> Path:
+    """Make files, empty but for JSON; a path that ends with a slash is a folder."""
+    for way in paths:
         path = folder / way
         if way.endswith("/"):
             path.mkdir(parents=True)
@@ -25,12 +25,12 @@ def make(folder: Path, *ways: str) -> Path:
 
 
 def names(folder: Path, without: Path | None = None) -> list[str]:
-    """The names of the takes found."""
+    """The names of the takes that are found."""
     return [take.name for take in find_takes(folder, without).takes]
 
 
 @pytest.mark.parametrize(
-    ("ways", "found"),
+    ("paths", "found"),
     [
         (["b/take.json", "b/deeper/take.json", "a/take.json"], ["a", "b"]),
         (["take.json", "clip.mp4"], ["."]),
@@ -54,13 +54,13 @@ def names(folder: Path, without: Path | None = None) -> list[str]:
         "images itself",
     ],
 )
-def test_takes_are_found(ways: list[str], found: list[str], tmp_path: Path) -> None:
-    """By way from the folder, in order, without a clip's ending."""
-    assert names(make(tmp_path / "shoot", *ways)) == found
+def test_takes_are_found(paths: list[str], found: list[str], tmp_path: Path) -> None:
+    """Named by their paths from the folder, in order, without a clip's ending."""
+    assert names(make(tmp_path / "shoot", *paths)) == found
 
 
 def test_the_results_are_left_out(tmp_path: Path) -> None:
-    """Whatever lies in the folder for them, however it is named."""
+    """With all files in their folder, under any name of the folder."""
     shoot = make(tmp_path / "shoot", "shoot.json", "x.mp4", "out/y.mp4", "out/z/take.json")
     assert names(shoot, shoot / "day" / ".." / "out") == ["x"]
 
@@ -73,7 +73,7 @@ def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("ways", "sentence"),
+    ("paths", "sentence"),
     [
         (["shoot.json", "x.mp4", "x.mov"], "have one name, 'x'"),
         (["shoot.json", "x.mp4", "x/1.png", "x/2.png"], "have one name, 'x'"),
@@ -85,17 +85,17 @@ def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
     ],
     ids=["endings", "folder", "case", "accents", "below", "summary", "none"],
 )
-def test_takes_that_cannot_be_told_apart_are_refused(ways: list[str], sentence: str, tmp_path: Path) -> None:
-    """On every file system, whether it minds case and accents or not; the sentence names them."""
-    if len({way.casefold() for way in ways}) < len(ways):
+def test_takes_that_cannot_be_told_apart_are_refused(paths: list[str], sentence: str, tmp_path: Path) -> None:
+    """On every file system, with or without case and accents; the sentence names both."""
+    if len({path.casefold() for path in paths}) < len(paths):
         pytest.skip("this file system cannot hold both")
     with pytest.raises(InputError, match=sentence):
-        find_takes(make(tmp_path / "shoot", *ways))
+        find_takes(make(tmp_path / "shoot", *paths))
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="nothing is closed to root")
 def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -> None:
-    """It may hold takes: it is not passed over."""
+    """It may hold takes, so it is not skipped."""
     shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
     (shoot / "closed").chmod(0)
     try:
@@ -105,7 +105,7 @@ def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -
 
 
 def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The shoot's own folder must be readable; one below becomes a take, whose failure will be told."""
+    """The shoot's own folder must be readable; one below becomes a take that will fail."""
     shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
     listing = Path.iterdir
 
@@ -123,7 +123,7 @@ def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytes
 
 
 def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A sentence, not a long search."""
+    """One sentence instead of a long search."""
     shoot = make(tmp_path / "shoot", "/".join(["d"] * 6) + "/take.json", "a/take.json", "b/take.json")
     monkeypatch.setattr(discovery, "DEEPEST", 4)
     with pytest.raises(InputError, match="more than 4 folders deep"):
@@ -153,7 +153,7 @@ def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
     ],
 )
 def test_results_may_not_lie_over_takes(output: str, sentence: str | None, tmp_path: Path) -> None:
-    """Beside and below is right; what holds takes is refused."""
+    """Beside the takes or below them; a folder that holds takes is refused."""
     folder = make(tmp_path / "shoot", "day/x/take.json", "x/take.json")
     make(tmp_path, "file")
     shoot = find_takes(folder)
@@ -171,8 +171,8 @@ def write_list(path: Path, *lines: object) -> Path:
     return path
 
 
-def test_a_list_names_takes_and_says_more(tmp_path: Path) -> None:
-    """In the order of names; each with its fields, and where these stand."""
+def test_a_list_names_takes_and_overrides_their_fields(tmp_path: Path) -> None:
+    """In the order of names; each with its overrides and their location."""
     make(tmp_path, "shoot.json", "day/x.mp4", "a/take.json")
     listed = write_list(
         tmp_path / "night.jsonl", {"take": "day/x.mp4", "method": "ekf", "//": "\u2028"}, "", {"take": "a"}

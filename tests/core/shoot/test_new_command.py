@@ -1,4 +1,4 @@
-"""`keymark new`: what clips tell is filled in, what a person must say is left open, nothing is replaced."""
+"""`keymark new`: fields known from the clips are filled in, others left null; no file is replaced."""
 
 import json
 import re
@@ -17,7 +17,7 @@ FRAMES = 8
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot that nobody has described but for one take; tests must not change it."""
+    """A shoot without `shoot.json`, one take described; tests must not change it."""
     folder = write_shoot(tmp_path_factory.mktemp("new") / "shoot", 3, FRAMES)
     (folder / "shoot.json").unlink()
     return folder
@@ -25,7 +25,7 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """One of the test's own."""
+    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -35,13 +35,13 @@ def new(*words: object) -> int:
 
 
 def written(folder: Path) -> dict[str, Any]:
-    """The description, as any reader of JSON has it."""
+    """The fields of the new `shoot.json`."""
     value: dict[str, Any] = json.loads((folder / "shoot.json").read_text(encoding="utf-8"))
     return value
 
 
 def fill_in(folder: Path) -> None:
-    """Say what only a person knows."""
+    """Fill in the fields that only a person knows."""
     fields, known = written(folder), shoot_fields()
     fields["camera"] |= {"matrix_world": known["camera"]["matrix_world"], "lens_mm": 40.0}
     for name, marker in fields["markers"].items():
@@ -54,7 +54,7 @@ def fill_in(folder: Path) -> None:
 
 @pytest.mark.usefixtures("no_blender")
 def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """What is open is said by `new` and by `check`, each field once; filled in, all of it converts."""
+    """`new` and `check` name each unfilled field once; when they are filled in, all takes convert."""
     assert new(folder) == 0
     said = capsys.readouterr().out
     open_fields = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
@@ -74,7 +74,7 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rate and size; a take's own description is left alone and named; all posed, no library is asked for."""
+    """Rate and size; a take with its own file is named; where all are posed, no library is asked for."""
     own = (folder / "day1" / "take03" / "take.json").read_bytes()
     assert new(folder, "--json") == 0
     said = json.loads(capsys.readouterr().out)
@@ -92,7 +92,7 @@ def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixtu
 def test_where_clips_differ_they_tell_themselves(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """The odd one is named, and so is what cannot be read; without keyframes a library is to be chosen."""
+    """The outlier and the unreadable clip are named; without keyframes a library is to be chosen."""
     larger = [image.repeat(2, axis=0).repeat(2, axis=1) for image in drawn_frames(true_postures(3))]
     write_frames(folder / "larger.mp4", larger)
     (folder / "text.mp4").write_text("no video", encoding="utf-8")
@@ -108,7 +108,7 @@ def test_where_clips_differ_they_tell_themselves(
 
 
 def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:
-    """It is to be filled in then; above another shoot's folder nothing is cut off."""
+    """The rate is left null; below another shoot's folder `root` is left out."""
     below = folder / "day1" / "take03"
     (below / "take.json").unlink()
     (folder / "shoot.json").write_text("{}", encoding="utf-8")
@@ -117,7 +117,7 @@ def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:
     assert fields["fps"] is None and "//fps" in fields and "root" not in fields
 
 
-def test_nothing_is_replaced_and_what_is_no_shoot_is_refused(
+def test_no_file_is_replaced_and_a_folder_without_clips_is_refused(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     """One sentence and status 2."""

@@ -1,4 +1,4 @@
-"""Clips unlike the rest of their shoot, and what a shoot asks for."""
+"""Outlier takes of a shoot, and estimates of a conversion's cost."""
 
 import pytest
 from keymark.core.shoot.check.cost_estimate import estimate_cost
@@ -11,20 +11,20 @@ def check(width: int | None, fps: float = 25.0) -> TakeCheck:
     return TakeCheck("take", (), (), None if width is None else (width, 240), fps)
 
 
-def test_the_odd_one_among_many_is_told() -> None:
-    """By size or rate; what is not known is neither usual nor odd."""
+def test_an_outlier_among_many_is_flagged() -> None:
+    """By size or rate; an unknown value is neither usual nor an outlier."""
     warned = flag_outliers([check(320), check(320), check(640), check(320), check(320, 30.0), check(None)])
     assert [len(one.warnings) for one in warned] == [0, 0, 1, 0, 1, 0]
     assert "640 x 240 pixels" in warned[2].warnings[0] and "25 frames per second" in warned[4].warnings[0]
 
 
 @pytest.mark.parametrize("widths", [(320, 320, 320, 640), (320, 320, 320, 640, 640, 640)])
-def test_where_none_is_usual_none_is_odd(widths: tuple[int, ...]) -> None:
-    """Too few to tell, or two cameras."""
+def test_without_a_usual_value_there_is_no_outlier(widths: tuple[int, ...]) -> None:
+    """Too few takes, or two cameras."""
     assert all(one.warnings == () for one in flag_outliers([check(width) for width in widths]))
 
 
-def test_longer_and_larger_clips_ask_for_more() -> None:
+def test_longer_and_larger_clips_cost_more() -> None:
     """And so does choosing a library."""
     small = estimate_cost(100, (320, 240), "map", None)
     assert estimate_cost(200, (320, 240), "map", None).seconds > small.seconds

@@ -1,4 +1,4 @@
-"""Numbers that are valid one by one and make no sense together: one sentence, or a motion."""
+"""Takes whose numbers are valid one by one and absurd together: one sentence, or a motion."""
 
 import json
 import shutil
@@ -22,17 +22,17 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def camera(**fields: Any) -> Change:
-    """Other values of the camera."""
+    """Change fields of the camera."""
     return lambda take, _: take["camera"].update(fields)
 
 
 def camera_at(y_m: float) -> list[list[float]]:
-    """The camera's pose, so far before or behind the performer."""
+    """Move the camera along its viewing axis."""
     return [MATRIX_WORLD[0], [*MATRIX_WORLD[1][:3], y_m], *MATRIX_WORLD[2:]]
 
 
 def moved(meters: float) -> Change:
-    """All keyframes so far aside."""
+    """Move all keyframes."""
 
     def change(_: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         for row in rows:
@@ -47,7 +47,7 @@ def lengths(meters: float) -> Change:
 
 
 def many_keyframes(count: int) -> Change:
-    """So many, where nothing says how long the clip is."""
+    """Give a frame count."""
 
     def change(take: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         take.pop("frame_count")
@@ -108,10 +108,10 @@ def convert(pristine: Path, folder: Path, change: Change, method: str) -> int:
 
 @pytest.mark.usefixtures("no_blender")
 @pytest.mark.parametrize("kind", REFUSED)
-def test_what_cannot_be_meant_is_refused(
+def test_contradictory_takes_are_refused(
     kind: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One line says what does not fit; nothing is made."""
+    """One line says what does not fit; no file is made."""
     change, sentence = REFUSED[kind]
     assert convert(pristine, tmp_path, change, "interpolation") == 2
     said = capsys.readouterr().err
@@ -122,7 +122,7 @@ def test_what_cannot_be_meant_is_refused(
 @pytest.mark.usefixtures("no_blender")
 @pytest.mark.parametrize("method", ["interpolation", "map", "ekf"])
 @pytest.mark.parametrize("kind", CONVERTED)
-def test_what_is_merely_odd_converts(
+def test_unusual_takes_convert(
     kind: str, method: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With every method, to finite numbers."""

@@ -1,4 +1,4 @@
-"""The digest by which a take is known as converted: it minds everything that counts, and nothing else."""
+"""The digest of a conversion's input: it changes with every input, and with nothing else."""
 
 import json
 import os
@@ -27,14 +27,14 @@ def shoot(pristine: Path, tmp_path: Path) -> Path:
 
 
 def digest(shoot: Path, libraries: tuple[str, ...] = (), version: str = "1", **chosen: Any) -> str:
-    """Of the shoot's clip."""
+    """The digest for the shoot's clip."""
     description = describe(shoot / "day1" / "take01.mp4")
     settings = effective_settings(description, ConversionSettings(**chosen))
     return conversion_digest(description, settings, libraries, shoot.parent / "out", version)
 
 
 def edit(name: str, **fields: Any) -> Callable[[Path], None]:
-    """A change of fields of one of the shoot's files, which may be new."""
+    """Change fields of one of the shoot's files, which may be new."""
 
     def change(shoot: Path) -> None:
         file = shoot / name
@@ -45,13 +45,13 @@ def edit(name: str, **fields: Any) -> Callable[[Path], None]:
 
 
 def lengthen(shoot: Path) -> None:
-    """One more byte of footage."""
+    """Append a byte to the footage."""
     with (shoot / "day1" / "take01.mp4").open("ab") as clip:
         clip.write(b"\0")
 
 
 def _turned_round(shoot: Path) -> dict[str, Any]:
-    """The shoot's markers in another order, which is that of the results."""
+    """Reorder the shoot's markers, and so the results."""
     markers = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
     return dict(reversed(markers.items()))
 
@@ -70,14 +70,14 @@ def _turned_round(shoot: Path) -> dict[str, Any]:
         lengthen,
     ],
 )
-def test_a_changed_input_gives_another(change: Callable[[Path], Any], shoot: Path) -> None:
-    """Each file that says anything of the take counts."""
+def test_a_changed_input_changes_the_digest(change: Callable[[Path], Any], shoot: Path) -> None:
+    """Every file that describes the take counts."""
     before = digest(shoot)
     change(shoot)
     assert digest(shoot) != before
 
 
-def test_settings_libraries_and_version_count(shoot: Path) -> None:
+def test_settings_libraries_and_version_change_the_digest(shoot: Path) -> None:
     """Each makes a digest of its own."""
     digests = [
         digest(shoot),
@@ -89,7 +89,7 @@ def test_settings_libraries_and_version_count(shoot: Path) -> None:
     assert len(set(digests)) == len(digests)
 
 
-def test_times_comments_and_other_files_do_not(shoot: Path) -> None:
+def test_times_comments_and_other_files_do_not_change_it(shoot: Path) -> None:
     """A copy with other times is the same take."""
     before = digest(shoot)
     for file in shoot.rglob("*.*"):
@@ -99,7 +99,7 @@ def test_times_comments_and_other_files_do_not(shoot: Path) -> None:
     assert digest(shoot) == before
 
 
-def test_what_is_said_but_changes_nothing_does_not(shoot: Path) -> None:
+def test_fields_without_effect_do_not_change_it(shoot: Path) -> None:
     """Defaults that are given, a floor without a library, a schema for the editor."""
     edit("shoot.json", method=None, pictures=None)(shoot)
     before = digest(shoot)

@@ -1,4 +1,4 @@
-"""`conversion.json`: read back as written, and never believed where it could not be true."""
+"""`conversion.json`: read back as written, and refused where it is damaged."""
 
 import json
 from collections.abc import Callable
@@ -53,8 +53,8 @@ def test_a_record_is_read_back_as_it_was_written(tmp_path: Path) -> None:
     assert (tmp_path / RECORD_FILE).read_bytes() == before
 
 
-def test_a_result_is_finished_with_its_digest_and_all_its_files(tmp_path: Path) -> None:
-    """And not with another digest, a file less, or no record."""
+def test_a_result_is_up_to_date_with_its_digest_and_all_its_files(tmp_path: Path) -> None:
+    """Not with another digest, a missing file, or no record."""
     made(tmp_path)
     assert is_up_to_date(tmp_path, RECORD.digest)
     assert not is_up_to_date(tmp_path, "cd" * 16)
@@ -64,7 +64,7 @@ def test_a_result_is_finished_with_its_digest_and_all_its_files(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff", b'{"schema_version": 1}'])
-def test_a_damaged_record_vouches_for_nothing(content: bytes, tmp_path: Path) -> None:
+def test_a_result_with_a_damaged_record_is_not_up_to_date(content: bytes, tmp_path: Path) -> None:
     """The take is converted anew."""
     made(tmp_path)
     (tmp_path / RECORD_FILE).write_bytes(content)
@@ -107,6 +107,6 @@ def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: st
 
 
 def test_what_is_written_can_be_read(tmp_path: Path) -> None:
-    """Also where there is neither confidence nor library."""
+    """Also without confidence and library."""
     bare = replace(RECORD, library=None, confidence=None, notes=(), files={}, keyframes=(), matched=())
     assert read_record(made(tmp_path, bare)) == bare

@@ -1,4 +1,4 @@
-"""What is said of a take: by its own file, by the shoots above, and by a list."""
+"""Descriptions of takes: their own file, `shoot.json` above, and the line of a list."""
 
 import json
 from pathlib import Path
@@ -18,13 +18,13 @@ FRAMES = 5
 
 @pytest.fixture
 def shoot(tmp_path: Path) -> Path:
-    """A folder above everything that the test makes."""
+    """A shoot's folder, root of all files of the test."""
     write_json(tmp_path / "shoot.json", {"root": True})
     return tmp_path
 
 
 def take_in(folder: Path, **fields: Any) -> Path:
-    """A take's folder that says so much."""
+    """A take's folder with these fields in `take.json`."""
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / "take.json", fields)
     return folder
@@ -36,7 +36,7 @@ def settings_of(path: Path, **overrides: Any) -> ConversionSettings:
 
 
 def test_the_nearest_file_counts(shoot: Path) -> None:
-    """Shoot, shoot below it, take, list."""
+    """A list before the take, the take before its shoot, a shoot before that above."""
     write_json(
         shoot / "shoot.json", {"root": True, "method": "map", "floor_m": 1.0, "pictures": True, "fps": 24}
     )
@@ -52,7 +52,7 @@ def test_the_nearest_file_counts(shoot: Path) -> None:
 
 
 def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
-    """Nor from folders beside."""
+    """Nor from sibling folders."""
     write_json(shoot / "shoot.json", {"root": True, "fps": 24, "method": "ekf"})
     (shoot / "day").mkdir()
     write_json(shoot / "day" / "shoot.json", {"root": True})
@@ -60,8 +60,8 @@ def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
     assert settings_of(take).method is None and not describe(take).fields.has("fps")
 
 
-def test_a_way_back_leads_through_no_other_shoot(shoot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The folder that `../day2` begins in is not above `day2`."""
+def test_a_path_with_dots_inherits_from_no_other_shoot(shoot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder that `../day2` starts in is no parent of `day2`."""
     (shoot / "day1").mkdir()
     write_json(shoot / "day1" / "shoot.json", {"method": "ekf"})
     take = take_in(shoot / "day2" / "take")
@@ -75,30 +75,30 @@ def test_a_way_back_leads_through_no_other_shoot(shoot: Path, monkeypatch: pytes
     assert describe(Path("..")).name == "take"
 
 
-def test_a_shoot_file_that_is_none_is_not_passed_over(shoot: Path) -> None:
-    """What it was to say of the takes is lacking, so they would convert in another way than was meant."""
+def test_a_shoot_file_that_is_no_file_is_refused(shoot: Path) -> None:
+    """Without its fields the takes would convert otherwise than meant."""
     take = take_in(shoot / "day" / "take")
     (shoot / "day" / "shoot.json").mkdir()
     with pytest.raises(InputError, match=r"shoot\.json: is a folder, no file"):
         describe(take)
 
 
-def test_what_a_person_says_on_the_command_line_comes_last_in_a_batch(shoot: Path) -> None:
-    """It counts where nothing nearer says anything."""
+def test_options_of_the_command_line_are_defaults_in_a_batch(shoot: Path) -> None:
+    """They count for settings that no file gives."""
     take = take_in(shoot / "take", method="ekf")
     chosen = effective_settings(describe(take), ConversionSettings(method="map", floor_m=0.5))
     assert chosen == ConversionSettings(method="ekf", floor_m=0.5)
 
 
-def test_a_library_is_used_beside_keyframes_that_are_there(shoot: Path) -> None:
-    """And alone where there are none."""
+def test_a_library_is_used_beside_existing_keyframes(shoot: Path) -> None:
+    """And alone without them."""
     take = take_in(shoot / "take", library="walking")
     assert effective_settings(describe(take)).keyframes is None
     write_json(take / "keyframes.json", {"keyframes": []})
     assert effective_settings(describe(take)).keyframes == take / "keyframes.json"
 
 
-def test_paths_are_relative_to_the_file_that_says_them(shoot: Path) -> None:
+def test_paths_are_relative_to_the_file_that_gives_them(shoot: Path) -> None:
     """A library of the shoot lies in the shoot's folder, a take's in its own, a list's in the take's."""
     write_json(shoot / "shoot.json", {"root": True, "library": "ours.json"})
     take = take_in(shoot / "take")
@@ -124,8 +124,8 @@ def test_paths_are_relative_to_the_file_that_says_them(shoot: Path) -> None:
         ({"floor_m": 1e9}, "floor_m is 1000000000.0; it must be a number from -1000 to 1000 m"),
     ],
 )
-def test_a_wrong_choice_is_named_with_its_file(fields: dict[str, Any], said: str, shoot: Path) -> None:
-    """Before anything is opened."""
+def test_a_wrong_setting_is_named_with_its_file(fields: dict[str, Any], said: str, shoot: Path) -> None:
+    """Before any file of the take is opened."""
     take = take_in(shoot / "take", **fields)
     with pytest.raises(InputError, match=said) as caught:
         describe(take)
@@ -134,8 +134,8 @@ def test_a_wrong_choice_is_named_with_its_file(fields: dict[str, Any], said: str
         describe(take_in(shoot / "other"), fields, "list.jsonl, line 1")
 
 
-def test_null_gives_a_choice_back(shoot: Path) -> None:
-    """A take of a shoot with a library may do without."""
+def test_null_removes_an_inherited_setting(shoot: Path) -> None:
+    """A take of a shoot with a library may be converted without."""
     write_json(shoot / "shoot.json", {"root": True, "library": "walking", "method": "ekf"})
     assert settings_of(take_in(shoot / "take", library=None)) == ConversionSettings(method="ekf")
 
@@ -151,15 +151,15 @@ def test_null_gives_a_choice_back(shoot: Path) -> None:
     ],
 )
 def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, tmp_path: Path) -> None:
-    """What it means would be lost."""
+    """It is not ignored in silence."""
     write_json(tmp_path / "shoot.json", content)
     with pytest.raises(InputError, match=said) as caught:
         shoot_fields(*find_shoot_files(tmp_path).popitem())
     assert str(caught.value).startswith(str(tmp_path / "shoot.json"))
 
 
-def test_what_a_shoot_file_says_of_itself_is_no_field_of_a_take(tmp_path: Path) -> None:
-    """Version, root, and where an editor finds the schema."""
+def test_fields_about_a_shoot_file_itself_are_not_inherited(tmp_path: Path) -> None:
+    """Version, root, and the schema for editors."""
     said = {"$schema": "shoot.schema.json", "schema_version": 1, "root": True, "fps": 24}
     write_json(tmp_path / "shoot.json", said)
     assert shoot_fields(*find_shoot_files(tmp_path).popitem()) == {"fps": 24}
@@ -170,8 +170,8 @@ def described(folder: Path, name: str) -> Description:
     return describe(folder / "day1" / name)
 
 
-def test_a_mere_clip_is_described_by_its_shoot_and_by_files_beside_it(tmp_path: Path) -> None:
-    """The clip tells rate and size; `NAME.take.json` says more, and its `clip` means nothing."""
+def test_a_bare_clip_is_described_by_its_shoot_and_its_sidecar_files(tmp_path: Path) -> None:
+    """Rate and size come from the clip; `NAME.take.json` overrides, but for `clip`."""
     folder = write_shoot(tmp_path / "shoot", 1, FRAMES)
     beside = folder / "day1" / "take01.take.json"
     write_json(beside, {"actor": {"height_m": 1.6}, "clip": "other.mp4"})
@@ -185,7 +185,7 @@ def test_a_mere_clip_is_described_by_its_shoot_and_by_files_beside_it(tmp_path: 
 
 
 def test_a_clip_that_nothing_describes_is_refused(tmp_path: Path) -> None:
-    """With the files that could."""
+    """The sentence names the files that could."""
     write_json(tmp_path / "shoot.json", {"root": True})
     (tmp_path / "clip.mp4").touch()
     (tmp_path / "shoot.json").unlink()
@@ -197,11 +197,11 @@ def test_a_clip_that_nothing_describes_is_refused(tmp_path: Path) -> None:
         describe(tmp_path / "clip.mp4")
 
 
-@pytest.mark.parametrize("place", ["none", "none/deeper", "x" * 300, "a\0b"])
-def test_a_place_that_cannot_be_is_refused(place: str, shoot: Path) -> None:
-    """In one sentence, however odd its name."""
+@pytest.mark.parametrize("path", ["none", "none/deeper", "x" * 300, "a\0b"])
+def test_an_impossible_path_is_refused(path: str, shoot: Path) -> None:
+    """In one sentence."""
     with pytest.raises(InputError, match=r"a take is a folder that holds take\.json"):
-        describe(shoot / place)
+        describe(shoot / path)
 
 
 def test_links_may_lead_anywhere_in_the_shoot_but_not_out_of_it(tmp_path: Path) -> None:

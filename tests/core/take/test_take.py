@@ -38,7 +38,7 @@ def changed(folder: Path, name: str, change: Callable[[Any], object]) -> None:
 
 
 def test_a_take_is_read_with_everything_in_it(folder: Path) -> None:
-    """Rate, frames, camera, actor, markers and keyframes come out as they stand in the files."""
+    """Rate, frames, camera, actor, markers and keyframes are those of the files."""
     take = read_take(folder)
     assert (take.fps, take.frame_start, take.frame_count) == (30.0, 1, FRAMES)
     assert take.camera.resolution == SIZE
@@ -120,7 +120,7 @@ def test_writing_into_its_own_folder_leaves_the_clip_alone(folder: Path) -> None
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
-def test_a_take_may_lack_keyframes_where_nobody_needs_them(folder: Path) -> None:
+def test_a_take_may_lack_keyframes_where_they_are_not_required(folder: Path) -> None:
     """Without the file, reading fails unless keyframes are not required; a file that is named must exist."""
     (folder / "keyframes.json").unlink()
     with pytest.raises(InputError, match=r"keyframes\.json"):
@@ -252,7 +252,7 @@ def test_a_mistake_in_keyframes_json_is_named(
     ids=["cut off", "NaN", "infinite", "too large", "digits", "twice", "list", "empty", "deep"],
 )
 def test_a_damaged_file_is_named(folder: Path, text: str, sentence: str) -> None:
-    """What is no strict JSON object is refused with the file's name."""
+    """Anything but a strict JSON object is refused with the file's name."""
     (folder / "take.json").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=sentence) as caught:
         read_take(folder)
@@ -267,7 +267,7 @@ def test_bytes_that_are_no_text_are_named(folder: Path) -> None:
 
 
 def test_a_clip_that_does_not_fit_is_named(folder: Path) -> None:
-    """Size, number of frames and keyframes are held against what the clip really is."""
+    """Size, frame count and keyframes are checked against the clip."""
     fits = read_take(folder)
     assert open_clip(fits).size == SIZE
     changed(folder, "take.json", lambda value: value["camera"].update(resolution=[320, 240]))

@@ -1,4 +1,4 @@
-"""Takes whose keyframes were matched: what is said of them, and where they go beside posed ones."""
+"""Takes with matched keyframes: their notes, and how matched keyframes move beside posed ones."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +29,7 @@ def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
 
 
 def said(confidence: float = 0.9) -> Matched:
-    """What a keyframe says of its match."""
+    """The match of a keyframe."""
     return Matched("waving", "wave", False, confidence)
 
 
@@ -41,21 +41,21 @@ def unposed(take: Take, confidence: float = 0.9) -> Take:
 
 
 def match(frames: list[int]) -> LibraryMatch:
-    """A match that says the true postures."""
+    """A match with the true postures."""
     matched = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
     library = SimpleNamespace(identifier="waving")
     return cast(LibraryMatch, SimpleNamespace(library=library, frames=matched, postures=TRUTH))
 
 
-def test_it_is_said_that_nothing_was_posed_and_what_the_motion_rests_on(take: Take) -> None:
-    """The library is named, and a doubtful frame as one to pose."""
+def test_the_notes_say_that_all_keyframes_are_matched_and_with_which_library(take: Take) -> None:
+    """They name the library, and an uncertain frame as one to pose."""
     sure, unsure = match_notes(unposed(take)), match_notes(unposed(take, 0.2))
     assert len(sure) == 1 and "no keyframe was posed" in sure[0] and "waving" in sure[0]
     assert len(unsure) == 2
     assert f"pose frame {take.keyframes[1].index + take.frame_start} " in unsure[1]
 
 
-def test_of_posed_keyframes_nothing_is_said_and_of_both_kinds_how_many(take: Take) -> None:
+def test_posed_keyframes_alone_need_no_note_and_both_kinds_are_counted(take: Take) -> None:
     """Posed keyframes are the usual way."""
     assert match_notes(take) == ()
     first, *others = take.keyframes
@@ -63,8 +63,8 @@ def test_of_posed_keyframes_nothing_is_said_and_of_both_kinds_how_many(take: Tak
     assert match_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes are posed")
 
 
-def test_it_is_said_what_is_left_out_and_what_the_filter_does_not_know(take: Take) -> None:
-    """Some matched keyframes or all of them; nothing where there is nothing to say."""
+def test_the_notes_name_keyframes_left_out_and_the_limits_of_the_filter(take: Take) -> None:
+    """Some matched keyframes or all of them; no note where none is left out."""
     every = unposed(take)
     assert left_out_notes(every, 0) == () == filter_notes(take)
     assert left_out_notes(every, len(take.keyframes))[0].startswith("the library was left out")
@@ -72,7 +72,7 @@ def test_it_is_said_what_is_left_out_and_what_the_filter_does_not_know(take: Tak
     assert "ekf" in filter_notes(every)[0]
 
 
-def test_a_reconstruction_tells_it_and_doubts_depth_where_nothing_was_posed(take: Take) -> None:
+def test_a_reconstruction_has_these_notes_and_a_larger_depth_variance(take: Take) -> None:
     """With the same postures, matched ones are stated to be farther off; posed ones as ever."""
     posed = run(reconstruct(take))
     matched = run(reconstruct(unposed(take), reading=posed.reading))
@@ -82,7 +82,7 @@ def test_a_reconstruction_tells_it_and_doubts_depth_where_nothing_was_posed(take
 
 
 def test_matched_keyframes_move_beside_posed_ones(take: Take) -> None:
-    """The posed one stays what it is; the matched one takes what the match says of its new frame."""
+    """The posed one stays; the matched one takes the match's posture of its new frame."""
     posed = replace(take, keyframes=(Keyframe(0, TRUTH[0]), Keyframe(12, TRUTH[12])))
     found = {keyframe.index: keyframe for keyframe in with_matches(posed, match([0, 6, 11, 23])).keyframes}
     assert sorted(found) == [0, NEAR_FRAMES + 1, 6, 12 - NEAR_FRAMES - 1, 12, 23]
