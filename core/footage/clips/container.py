@@ -38,7 +38,7 @@ BEGINNINGS = (
     b"BBCD",  # Dirac
     b"\x06\x0e\x2b\x34\x02\x05\x01\x01\x0d\x01\x02",  # MXF
 )
-_RIFF = (b"AVI ", b"AVIX")
+RIFF = (b"AVI ", b"AVIX")
 TRANSPORT = ((188, 0), (192, 4), (204, 0))
 """Packet lengths of MPEG transport streams, and the offset of the sync byte in a packet."""
 
@@ -83,7 +83,7 @@ def _begins_as_video(data: bytes) -> bool:
     return (
         data[4:8] in BOXES
         or data.startswith(BEGINNINGS)
-        or (data[:4] in (b"RIFF", b"RIFX") and data[8:12] in _RIFF)
+        or (data[:4] in (b"RIFF", b"RIFX") and data[8:12] in RIFF)
         or any(_is_transport(data[start::length]) for length, start in TRANSPORT)
     )
 
