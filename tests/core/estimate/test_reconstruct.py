@@ -81,7 +81,7 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
 
 
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
-    """A cancelled job writes no file and can be started anew."""
+    """A canceled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))
     job = reconstruct(take)
     for _ in range(5):
