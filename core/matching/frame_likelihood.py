@@ -113,7 +113,6 @@ def _frame_likelihood(
     noise_scales: NoiseScales,
     hips: Array | None,
 ) -> FrameLikelihood:
-    markers = len(deviation)
     visible = tracks.visible[frame] & (tracks.quality[frame] > LEAST_QUALITY)
     rotation, location = camera.pose(frame)
     right, up, backward = rotation.T
@@ -125,22 +124,10 @@ def _frame_likelihood(
     visible, x, y = visible & ~lost, np.where(lost, 0.0, x), np.where(lost, 0.0, y)
     image_axes = np.stack([right + x[:, None] * backward, up + y[:, None] * backward], axis=1)  # (M, 2, 3)
     weight = np.where(visible, np.sqrt(np.clip(tracks.quality[frame], LEAST_QUALITY, 1.0)) / deviation, 0.0)
-    rows = 2 * markers + 4
-    by_hips, by_posture = np.zeros((rows, 3)), np.zeros((rows, 3 * markers + 2))
-    for marker in range(markers):
-        pair = weight[marker] * image_axes[marker]
-        by_hips[2 * marker : 2 * marker + 2] = pair
-        by_posture[2 * marker : 2 * marker + 2, 3 * marker : 3 * marker + 3] = pair
-    if hips is not None:
-        by_hips[-4:-1] = np.eye(3) / HIPS_STD_M
-        by_posture[-4:-1, -1] = (location - hips) / HIPS_STD_M
-    if floor_m is not None:
-        by_hips[-1, 2] = 1.0 / floor_std_m
-        by_posture[-1, -2] = -1.0 / floor_std_m
-        by_posture[-1, -1] = (location[2] - floor_m) / floor_std_m
+    by_hips, by_posture = _linear_rows(weight, image_axes, location, floor_m, floor_std_m, hips)
     variants: list[slice | None] = [None, *(slice(2 * m, 2 * m + 2) for m in np.flatnonzero(visible))]
     if floor_m is not None:
-        variants.append(slice(rows - 1, None))  # for jumps higher than the library's
+        variants.append(slice(len(by_hips) - 1, None))  # for jumps higher than the library's
     hips_map = np.stack([_hips_map(by_hips, by_posture, rows) for rows in variants])
     residual_map = by_posture + by_hips @ hips_map
     hips_map[:, :, -1] += location
@@ -167,6 +154,32 @@ def _frame_likelihood(
         visible,
         unclipped,
     )
+
+
+def _linear_rows(
+    weight: Array,
+    image_axes: Array,
+    location: Array,
+    floor_m: float | None,
+    floor_std_m: float,
+    hips: Array | None,
+) -> tuple[Array, Array]:
+    """Jacobians of the residuals by the hips (2 M + 4, 3) and by a posture's features (2 M + 4, 3 M + 2)."""
+    markers = len(weight)
+    rows = 2 * markers + 4
+    by_hips, by_posture = np.zeros((rows, 3)), np.zeros((rows, 3 * markers + 2))
+    for marker in range(markers):
+        pair = weight[marker] * image_axes[marker]
+        by_hips[2 * marker : 2 * marker + 2] = pair
+        by_posture[2 * marker : 2 * marker + 2, 3 * marker : 3 * marker + 3] = pair
+    if hips is not None:
+        by_hips[-4:-1] = np.eye(3) / HIPS_STD_M
+        by_posture[-4:-1, -1] = (location - hips) / HIPS_STD_M
+    if floor_m is not None:
+        by_hips[-1, 2] = 1.0 / floor_std_m
+        by_posture[-1, -2] = -1.0 / floor_std_m
+        by_posture[-1, -1] = (location[2] - floor_m) / floor_std_m
+    return by_hips, by_posture
 
 
 def _hips_map(by_hips: Array, by_posture: Array, downweighted: slice | None) -> Array:

@@ -112,65 +112,81 @@ def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: f
         The fraction done.
     """
     tracks, sampled = match_input.tracks, prepared.sampled
-    sequences, states = prepared.sequences, prepared.states
-    time_s = tracks.time_s[sampled]
-    tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
-    table = SequenceTable(sequences, prepared.moments)
-    noise_scales = NoiseScales.unit(len(match_input.segments))
-    constraints, constraint_rows = (
-        match_input.constraints,
-        np.searchsorted(sampled, match_input.constraints.frames),
-    )
-    posed_cost = [
-        constraints.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled
-    ]
-    # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
-    posed = [None if cost is None else cost / np.float32(tempering) for cost in posed_cost]
-    for iteration in (0, 1):  # the second with the noise scales that the first has found
-        likelihoods = frame_likelihoods(
-            match_input.camera,
-            tracks,
-            match_input.segments,
-            sampled,
-            floor_m,
-            FLOOR_STD_M,
-            noise_scales,
-            constraints,
-        )
-        begun = 0.45 * iteration
-        emissions = yield from scaled(_evaluate_all(likelihoods, states, posed), begun, begun + 0.2)
-        model = HiddenMarkovModel(sequences, states, likelihoods, emissions, tempering, time_s)
-        yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
-        best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
-        path = StatePath(sequences, states, likelihoods, emissions, best, time_s)
-        refinement = Refinement(
-            table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, constraints, constraint_rows
-        )
-        refined = yield from scaled(refinement.refine(path.continuous()), begun + 0.35, begun + 0.45)
-        if iteration == 0:
-            noise_scales = refinement.noise_scales(refined)
-    posteriors, evidence = yield from scaled(model.forward_backward(), 0.9, 1.0)
+    tempering = min(1.0, float(np.median(np.diff(tracks.time_s[sampled]))) / CORRELATION_S)
+    table = SequenceTable(prepared.sequences, prepared.moments)
+    unit = NoiseScales.unit(len(match_input.segments))
+    first = yield from _solve(match_input, prepared, table, floor_m, tempering, unit, 0.0)
+    noise_scales = first.refinement.noise_scales(first.refined)
+    second = yield from _solve(match_input, prepared, table, floor_m, tempering, noise_scales, 0.45)
+    posteriors, evidence = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
+    refined = second.refined
     postures = _every_frame(table, refined, sampled, tracks.frame_count)
-    explained = _explained_share(refinement, refined, noise_scales)
+    explained = _explained_share(second.refinement, refined, noise_scales)
     log_evidence = evidence / (len(sampled) * tempering)
     nearest = table.nearest(refined.sequence, refined.values[:, 0])
     frames = []
-    for row in np.searchsorted(sampled, match_input.keyframes):
-        index, part = int(sampled[row]), float(explained[row])
-        chosen = postures[index]
-        frames.append(
-            frame_candidates(path, posteriors[row], int(row), index, chosen, int(nearest[row]), part)
+    for row in map(int, np.searchsorted(sampled, match_input.keyframes)):
+        index, share = int(sampled[row]), float(explained[row])
+        chosen = frame_candidates(
+            second.path, posteriors[row], row, index, postures[index], int(nearest[row]), share
         )
+        frames.append(chosen)
     fit = float(explained.mean())
     return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures, log_evidence)
 
 
+@dataclass(frozen=True, eq=False)
+class _Solution:
+    """The hidden Markov model with its Viterbi path, and the refinement of that."""
+
+    model: HiddenMarkovModel
+    path: StatePath
+    refinement: Refinement
+    refined: ContinuousPath
+
+
+def _solve(
+    match_input: MatchInput,
+    prepared: PreparedLibrary,
+    table: SequenceTable,
+    floor_m: float,
+    tempering: float,
+    noise_scales: NoiseScales,
+    begun: float,
+) -> Part[_Solution]:
+    """Find and refine the most probable path, given the noise scales; 0.45 of the work."""
+    tracks, sampled, states = match_input.tracks, prepared.sampled, prepared.states
+    time_s, posed = tracks.time_s[sampled], match_input.constraints
+    likelihoods = frame_likelihoods(
+        match_input.camera,
+        tracks,
+        match_input.segments,
+        sampled,
+        floor_m,
+        FLOOR_STD_M,
+        noise_scales,
+        posed,
+    )
+    costs = [posed.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled]
+    # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
+    posed_costs = [None if cost is None else cost / np.float32(tempering) for cost in costs]
+    emissions = yield from scaled(_evaluate_all(likelihoods, states, posed_costs), begun, begun + 0.2)
+    model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, tempering, time_s)
+    yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
+    best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
+    path = StatePath(prepared.sequences, states, likelihoods, emissions, best, time_s)
+    rows = np.searchsorted(sampled, posed.frames)
+    refinement = Refinement(table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, posed, rows)
+    refined = yield from scaled(refinement.refine(path.continuous()), begun + 0.35, begun + 0.45)
+    return _Solution(model, path, refinement, refined)
+
+
 def _evaluate_all(
-    likelihoods: Sequence[FrameLikelihood], states: StateFeatures, posed: Sequence[SingleArray | None]
+    likelihoods: Sequence[FrameLikelihood], states: StateFeatures, posed_costs: Sequence[SingleArray | None]
 ) -> Part[list[FrameEmissions]]:
     """Emissions of each frame."""
     emissions = []
-    for index, (likelihood, cost) in enumerate(zip(likelihoods, posed, strict=True)):
+    for index, (likelihood, cost) in enumerate(zip(likelihoods, posed_costs, strict=True)):
         emissions.append(evaluate_emissions(likelihood, states, cost))
         if index % FRAMES_A_YIELD == 0:
             yield index / len(likelihoods)

@@ -1,4 +1,4 @@
-"""The whole-clip estimate on keyframes that nobody posed."""
+"""The whole-clip estimate on matched keyframes."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ TRACKS = film(TRUTH, 0.3)
 
 
 def off(seed: int = 2) -> Posture:
-    """The true postures at the keyframes as a library has them: of another style, and each a little off."""
+    """The true postures at the keyframes as a library has them: another performer's, each a little off."""
     rng = np.random.default_rng(seed)
     covariance = match_covariance(TRUTH[INDEX], CAMERA, INDEX)
     factor = np.linalg.cholesky(covariance)
@@ -53,7 +53,7 @@ def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResu
 
 
 def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
-    """Believed as another performer's they end nearer to the truth, and more doubt is stated."""
+    """Believed as another performer's they end nearer to the truth, and the covariance is larger."""
     postures = off()
     as_posed, as_matched = estimate(postures, None), estimate(postures, np.ones(len(INDEX)))
     errors = [point_error_m(found.posture, TRUTH).mean() for found in (as_posed, as_matched)]
@@ -65,7 +65,7 @@ def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to(
     assert stated[1] > 1.25 * stated[0]
 
 
-def test_nothing_is_calibrated_on_keyframes_that_nobody_posed() -> None:
+def test_matched_keyframes_calibrate_nothing() -> None:
     """Markers sit as on an average performer, and the lens is as stated."""
     evidence = estimate(off(), np.ones(len(INDEX))).evidence
     np.testing.assert_array_equal(
@@ -75,7 +75,7 @@ def test_nothing_is_calibrated_on_keyframes_that_nobody_posed() -> None:
 
 
 def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
-    """The model found from posed keyframes is the same whatever else is matched."""
+    """The model found from posed keyframes does not depend on matched ones."""
     match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)

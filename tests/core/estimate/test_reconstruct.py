@@ -60,7 +60,7 @@ def test_a_misstated_lens_is_told_and_made_good(take: Take) -> None:
     stated = replace(take.camera, lens_mm=1.09 * take.camera.lens_mm)
     right, wrong = (run(reconstruct(replace(take, camera=camera))) for camera in (take.camera, stated))
     assert not any("lens" in note for note in right.notes)
-    assert any(f"not the {stated.lens_mm:.1f} mm stated" in note for note in wrong.notes)
+    assert any(f"not {stated.lens_mm:.1f} mm as stated" in note for note in wrong.notes)
     truth = BODY.points(BODY.pose(true_postures(24)))
     errors = [np.linalg.norm(result.motion.points - truth, axis=-1).mean() for result in (right, wrong)]
     assert errors[1] < errors[0] + 0.005
@@ -82,7 +82,7 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
 
 
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
-    """A cancelled job writes no file and can be started anew."""
+    """A canceled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))
     job = reconstruct(take)
     for _ in range(5):

@@ -7,6 +7,7 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.estimate.clip_state import ClipState
+from keymark.core.estimate.terms.belief import BeliefTerm
 from keymark.core.estimate.terms.depths import DepthTerm
 from keymark.core.estimate.terms.ground import GroundTerm
 from keymark.core.estimate.terms.limits import LimitTerm
@@ -14,7 +15,7 @@ from keymark.core.estimate.terms.quadratic import QuadraticBuilder
 from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
 from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
-from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight
+from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight, total_cost
 from keymark.core.observation import depths
 from keymark.core.prior.process_noise import process_noise_factor
 
@@ -91,6 +92,18 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
     push = gradient(LimitTerm(), replace(at, factor=np.eye(DOFS), variation=deviation))
     assert push[2, knee] < 0.0
     assert np.count_nonzero(push) == 1
+
+
+def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
+    """Belief and limits have the gradients of their costs, and the total is the sum in any order."""
+    at = state(seed=5, size=0.2)
+    belief = BeliefTerm.of(FRAMES, DOFS, np.ones((1, 0)))
+    ground = GroundTerm((11, 12), 0.12)
+    for term in (belief, LimitTerm()):
+        assert_gradient(term, lambda s, term=term: term.cost(s).sum(), at)
+    parts = np.sum([term.cost(at) for term in (belief, LimitTerm(), ground)], axis=0)
+    np.testing.assert_allclose(total_cost([ground, LimitTerm(), belief], at), parts, rtol=1e-12)
+    assert LimitTerm().cost(at).max() > 0.0
 
 
 def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:

@@ -86,7 +86,7 @@ def test_nothing_changed_costs_nothing_and_changes_nothing() -> None:
 
 
 def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> None:
-    """To what nobody could see, uncertainty included; and back again."""
+    """To invisible differences, uncertainty included; and back again."""
     fresh, all_shown = estimate(moved())
     again, shown = estimate(moved(), first())
     assert estimated_frames(all_shown) == FRAMES

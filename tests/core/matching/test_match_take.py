@@ -1,4 +1,4 @@
-"""Finding a library's postures in tracks that a performer of other proportions and habits leaves."""
+"""Matching a library with tracks of a performer of other proportions and another way of moving."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -105,7 +105,7 @@ def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, heading_deg: float) -> None:
-    """Another body and other habits leave a few centimeters; the wrong leg in front would be some fifteen."""
+    """Another body and performer leave a few centimeters; the wrong leg in front would be some fifteen."""
     truth = performed(walking, np.radians(heading_deg))
     choice = run(match_take(*filmed(truth, camera()), [walking], floor_m=0.0))
     rooted, absolute = errors_m(choice, truth)

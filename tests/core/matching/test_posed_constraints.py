@@ -1,4 +1,4 @@
-"""What posed keyframes say of a library's postures."""
+"""Constraints from posed keyframes on the states of a library."""
 
 import numpy as np
 import pytest
