@@ -119,8 +119,8 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "WARNING",
-                "The markers do not fit a performer who stands upright, so the lengths are little better than "
-                "average; go to a frame in which the performer stands, and check the height",
+                "The markers do not fit a performer who stands upright, so the lengths are little better "
+                "than average; go to a frame in which the performer stands, and check the height",
             )
         else:
             say(
