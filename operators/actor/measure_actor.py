@@ -14,11 +14,6 @@ from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
-NOT_STANDING = (
-    "The markers do not fit a performer who stands upright, so the lengths are little better than average; "
-    "go to a frame in which the performer stands, and check the height"
-)
-
 
 class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
@@ -121,7 +116,12 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         if not has_keyframes(take):
             write_posture(take.armature, measured.posture)
         if not measured.stands:
-            say(self, "WARNING", NOT_STANDING)
+            say(
+                self,
+                "WARNING",
+                "The markers do not fit a performer who stands upright, so the lengths are little better "
+                "than average; go to a frame in which the performer stands, and check the height",
+            )
         else:
             say(
                 self,
