@@ -36,17 +36,17 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
         """Read the motion and finish it; the settings are those of the moment it begins."""
-        from ..bridge.finish_motion import Wanted, finish_motion
+        from ..bridge.finish_motion import FinishOptions, finish_motion
 
         take = active_take(scene)
         settings, identifier = take.finish, take.identifier
-        wanted = Wanted(
+        options = FinishOptions(
             tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
             whole_pose=settings.shared == "WHOLE_POSE",
             stray_m=settings.stray_mm / 1000.0 if settings.plant_feet else None,
         )
         frame_s = scene.render.fps_base / scene.render.fps
-        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, wanted, frame_s)
+        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, options, frame_s)
         del take, settings  # Blender may move them while the job runs
         return FinishedTake(identifier, (yield from job))
 

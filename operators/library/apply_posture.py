@@ -51,16 +51,16 @@ class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Fit the posture to the actor and show it, over the keyframes."""
         from ..bridge.actor_lengths import read_body
-        from ..bridge.library.posture_transfer import named_posture, on_actor, standing_as
+        from ..bridge.library.posture_transfer import named_posture, placed_like, posture_for_actor
         from ..bridge.pose import read_posture, write_posture
 
         take = active_take(context.scene)
         body = read_body(take.armature, HUMAN)
         library, name = self._chosen(context)
         found = named_posture(library, name)
-        posture = on_actor(found, library.actor, body, mirror=self.mirrored)
+        posture = posture_for_actor(found, library.actor, body, mirror=self.mirrored)
         if self.place == "ACTOR":
-            posture = standing_as(posture, body, read_posture(take.armature, body).posture)
+            posture = placed_like(posture, body, read_posture(take.armature, body).posture)
         show_keyframes(take)
         write_posture(take.armature, posture)
         say(
