@@ -157,7 +157,7 @@ def discs(items: list) -> int:
 
 def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
     """The others are discs."""
-    places = CAMERA_VIEW.places(review, np.array([3]))[0]
+    places = CAMERA_VIEW.point_positions(review, np.array([3]))[0]
     meter = CAMERA_VIEW.pixels_per_meter(review, 3)
     items = skeleton(review, 3, places, meter, 0.05, STYLE)
     assert discs(items) == 12
@@ -208,7 +208,7 @@ def test_the_viewports_projection_is_blenders() -> None:
     at = view @ Vector((0.1, 0.2, -3.0))
     beside = view @ Vector((0.2, 0.2, -3.0))
     pair = SimpleNamespace(points=np.array([[at, beside]], dtype=float))
-    here, there = seen.places(pair, np.array([0]))[0]
+    here, there = seen.point_positions(pair, np.array([0]))[0]
     assert seen.pixels_per_meter(pair, 0)[0] == pytest.approx(10.0 * np.linalg.norm(there - here), rel=1e-4)
 
 

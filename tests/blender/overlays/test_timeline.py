@@ -11,7 +11,7 @@ from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.take.take import Take
 from keymark.operators.overlays.picture import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
-from keymark.operators.overlays.timeline_figures import believed_color, graph, in_view, joined, strip
+from keymark.operators.overlays.timeline_figures import confidence_color, graph, in_view, joined, strip
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import keep_reading, keep_review
 from keymark.operators.shell.takes import active_take
@@ -85,7 +85,7 @@ def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -
     ground, bars = items_of(take, Fill)
     heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
     assert heights == pytest.approx(ROOMY.strip * made_up_review().confidence)
-    (across, up), reach = ground.corners[0].T, (VIEW.places([0.5]), VIEW.places([13.5]))
+    (across, up), reach = ground.corners[0].T, (VIEW.frame_x([0.5]), VIEW.frame_x([13.5]))
     assert (across.min(), across.max()) == (pytest.approx(reach[0]), pytest.approx(reach[1]))
     assert np.ptp(up) == pytest.approx(ROOMY.strip)
     assert bars.color[0, 2] > bars.color[6, 2] and bars.color[6, 0] > bars.color[0, 0]
@@ -131,7 +131,7 @@ def test_figures_keep_gaps() -> None:
 
 def test_colors_and_heights_stay_in_range() -> None:
     """Also for values beyond what is usual."""
-    colors = believed_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
+    colors = confidence_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
     assert colors.min() >= 0.0 and colors.max() <= 1.0
     heights = relative(np.array([0.0, 1.0, 1.0, 50.0, np.nan]))
     assert np.nanmax(heights) <= 1.0 and np.isnan(heights[-1])
