@@ -30,7 +30,7 @@ def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple
     """Channels of every bone with degrees of freedom that show a batch of postures in the world.
 
     Args:
-        armature_object: An armature with the skeleton's bones, in any place, even scale and rest pose.
+        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
         postures: A batch of F.
 
     Raises:

@@ -18,7 +18,7 @@ def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
     `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels.
 
     Args:
-        armature_object: An armature with the skeleton's bones, in any place, even scale and rest pose.
+        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
         body: The skeleton, with the sizes that `read_body` finds in the armature.
 
     Raises:

@@ -35,7 +35,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        """Read the motion and finish it; the settings are those of the moment it begins."""
+        """Read the motion and finish it, with the options at the start of the job."""
         from ..bridge.finish_motion import FinishOptions, finish_motion
 
         take = active_take(scene)
@@ -51,7 +51,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         return FinishedTake(identifier, (yield from job))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        """Write the final Action and let it animate the actor."""
+        """Write the final Action and assign it to the actor."""
         take, finished = take_called(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:

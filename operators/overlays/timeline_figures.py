@@ -9,7 +9,7 @@ HALFWAY = np.array([0.93, 0.83, 0.35])
 SURE = np.array([0.22, 0.55, 0.90])
 """Colors of low, middle and high confidence, also for color-blind eyes."""
 DOUBTED = 0.5
-"""Confidence up to which a frame is wholly unsure: no better than chance whether a joint is in place."""
+"""Confidence up to which a frame has the lowest color: no better than chance that a joint is correct."""
 FINEST_PX = 1.5
 """Frames nearer than this are drawn as one."""
 

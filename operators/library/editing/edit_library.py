@@ -1,4 +1,4 @@
-"""Bring a library that is at hand into this file, to change it."""
+"""Bring a registered library into this file, to edit it."""
 
 import bpy
 
@@ -25,7 +25,7 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Make its postures pose assets of this file."""
+        """Add the library to the scene, its postures as pose assets."""
         from ..registry_files import registered_library
         from .library_to_scene import add_library
 
