@@ -82,7 +82,7 @@ def test_the_bvh_holds_every_frame_and_comes_back_right(
 
 
 def test_the_open_file_is_not_touched(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> None:
-    """What is open in Blender, its scene and its data, is the same afterwards."""
+    """The open file, its scene and its data are the same afterwards."""
     mine = bpy.data.objects.new("Actor", bpy.data.meshes.new("Actor"))
     bpy.context.collection.objects.link(mine)
     scene = bpy.context.scene
@@ -109,7 +109,7 @@ KINDS = [
 def test_a_failure_leaves_the_old_file_and_nothing_else(
     tmp_path: Path, tiny_take: Take, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Files are moved into place whole; the temporary scene is gone as well."""
+    """Files appear complete or not at all; the temporary scene is removed as well."""
     target = tmp_path / "motion.blend"
     target.write_bytes(b"old")
 
