@@ -15,7 +15,7 @@ from keymark.operators.bridge.library.library_blend import read_library_blend, w
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.conflicts import resolve_conflicts
 from keymark.operators.library.editing.library_to_scene import add_library
-from keymark.operators.library.registry_files import find_registered, registered_library
+from keymark.operators.library.registry_files import find_registered, load_registered
 from keymark.operators.shell.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -282,7 +282,7 @@ def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Li
     """Libraries are found by identifier, even where another library's title equals it."""
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
-    assert registered_library("small").title == "Zoo"
+    assert load_registered("small").title == "Zoo"
 
 
 def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library, tmp_path: Path) -> None:
