@@ -1,1 +1,1 @@
-"""The border between Blender's data and core's: no operators, no panels, no user interface."""
+"""Blender data to core data and back: no operators, no panels, no user interface."""

@@ -1,4 +1,4 @@
-"""An actor's sizes from an armature's bones, whatever the armature's rest pose."""
+"""Read an actor's lengths from an armature's bones, in any rest pose."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,7 +18,7 @@ from .object_space import object_space
 LARGEST_MISFIT = 0.01
 """Share of stature by which bones may lie off the skeleton before the armature counts as another one."""
 ANY_STATURE_M = 1.7
-"""Bones' axes do not depend on sizes; any actor yields them."""
+"""Stature of the actor from which bone axes are taken; they do not depend on it."""
 
 
 SAME_DIRECTION = 1e-3
@@ -30,8 +30,8 @@ LEAST_ROLL_RAD = 1e-4
 def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
     """The skeleton's bones, parents first, of an armature that has them all.
 
-    Bones of a T pose at rest may be rolled about their own length: their axes are then as they are. Of
-    another rest pose nothing tells roll from pose, and it counts as posed.
+    Where the rest pose is a T pose, bones may be rolled about their own length, and their axes are rolled
+    with them. In another rest pose a roll cannot be told from a posed bone, and counts as posed.
 
     Raises:
         InputError: The object is no armature, or lacks bones.
@@ -69,7 +69,7 @@ def _as_rolled(
 def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     """The sizes of an armature's bones in the world, the object's scale included.
 
-    Every bone's own vector and its head's place in its parent's axes are linear in the actor's lengths;
+    Every bone's own vector and its head's position in its parent's axes are linear in the actor's lengths;
     the lengths are their least-squares solution.
 
     Raises:
@@ -81,21 +81,21 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     segments = {segment.name: segment for segment in skeleton.segments}
     names = tuple(Actor.from_stature(ANY_STATURE_M).segments_m)
     rows: list[Array] = []
-    places: list[Array] = []
+    vectors: list[Array] = []
     for name, model in models.items():
         bone, segment = armature_object.data.bones[name], segments[name]
         rows.append(_factors(names, (1.0, segment.end), (-1.0, segment.start)))
-        places.append(model.axes[:, 1] * bone.length * scale)
+        vectors.append(model.axes[:, 1] * bone.length * scale)
         if model.parent is not None:
             joints = [(1.0, skeleton.joints[i].placement) for i in model.chain]
             above = segments[model.parent]
             rows.append(_factors(names, *joints, (1.0, segment.start), (-1.0, above.start)))
             local = bone.parent.matrix_local.inverted() @ bone.head_local
-            places.append(models[model.parent].axes @ np.array(local) * scale)
-    matrix, place = np.concatenate(rows), np.concatenate(places)
-    lengths = np.linalg.lstsq(matrix, place, rcond=None)[0]
+            vectors.append(models[model.parent].axes @ np.array(local) * scale)
+    matrix, vector = np.concatenate(rows), np.concatenate(vectors)
+    lengths = np.linalg.lstsq(matrix, vector, rcond=None)[0]
     body = Body(Actor(dict(zip(names, map(float, lengths), strict=True))), skeleton)
-    misfit = float(np.abs(matrix @ lengths - place).max())
+    misfit = float(np.abs(matrix @ lengths - vector).max())
     if misfit > LARGEST_MISFIT * body.actor.stature_m:
         raise InputError(
             f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's skeleton; "
@@ -105,7 +105,7 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
 
 
 def _factors(names: tuple[str, ...], *signed: tuple[float, Placement]) -> Array:
-    """A sum of placements as a matrix (3, lengths) that takes the actor's lengths to a place."""
+    """A sum of placements as a matrix (3, lengths) from the actor's lengths to a vector."""
     factors: dict[str, Array] = {name: np.zeros(3) for name in names}
     for sign, placement in signed:
         length: Mapping[str, tuple[float, float, float]] = placement

@@ -1,4 +1,4 @@
-"""The actor as an armature: built from a body's sizes, and a body's sizes read from an armature.
+"""Build the actor's armature from a body's lengths.
 
 At rest the actor stands in a T pose on the floor of the object's own space, the hips above its origin.
 A bone that stands for balls turns by quaternions. One that stands for hinges turns by Euler angles in the
@@ -28,7 +28,7 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
     """Add an armature for `body` to a scene and make it the active object of its first view layer.
 
     Args:
-        scene: Where to link it.
+        scene: The scene to link it to.
         body: Skeleton and sizes.
         name: Name of object and armature data; Blender makes it unique.
     """

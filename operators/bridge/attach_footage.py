@@ -1,4 +1,4 @@
-"""Putting a clip behind a camera of which nobody may have said anything yet."""
+"""Attach a clip to a camera, with a guessed lens where none is known."""
 
 from dataclasses import dataclass, replace
 
@@ -23,11 +23,11 @@ from .footage_camera import (
 
 @dataclass(frozen=True, eq=False)
 class AttachedFootage:
-    """A clip behind its camera."""
+    """The camera that a clip was attached to."""
 
     camera: bpy.types.Object
     guessed_lens_mm: float
-    """The lens, where it is a guess; 0 where it is known [mm]."""
+    """Focal length, where it is a guess [mm]; 0 where it is known."""
 
 
 def attach_footage(
@@ -38,14 +38,14 @@ def attach_footage(
 ) -> AttachedFootage:
     """Put a clip behind a camera and give the scene the clip's size, rate and range.
 
-    A lens that the clip's tracking camera was told counts, and the camera moves as a solved clip says. A lens
-    that nobody set is guessed; one that the animator set stays, as does where the camera stands.
+    A lens set in the clip's tracking camera is used, and the camera follows a solved clip. A lens that was
+    never set is guessed; one that the animator set stays, as does the camera's pose.
 
     Args:
         scene: The scene to change.
         clip: A clip that Blender has; where its file is missing, the scene keeps size, rate and range.
         camera_object: The camera; by default a new one at eye height that looks at the world's origin.
-        guessed_lens_mm: The lens that was guessed for that camera before, which may be guessed anew.
+        guessed_lens_mm: Focal length that was guessed for that camera before and may be guessed anew [mm].
     """
     size = (clip.size[0], clip.size[1])
     if clip.frame_duration and all(size):
@@ -58,7 +58,7 @@ def attach_footage(
     camera_object = camera_object or new_camera(scene)
     scene.camera = camera_object
     if camera_object.library is not None or camera_object.data.library is not None:
-        return AttachedFootage(camera_object, 0.0)  # its own file says what it is
+        return AttachedFootage(camera_object, 0.0)  # linked data cannot be changed
     set_background(camera_object.data, clip)
     solved = clip.tracking.reconstruction.is_valid
     stays = is_new or not may_move(camera_object)
@@ -83,7 +83,7 @@ def _lens(
     follows: bool,
     guessed_before_mm: float,
 ) -> tuple[Camera | None, float]:
-    """The lens to set, None for the camera's own, and how much of it is a guess [mm]."""
+    """The lens to set, None for the camera's own, and its focal length if guessed, else 0 [mm]."""
     known = clip_lens(clip)
     if known is not None and (stays or follows):
         return known, 0.0
@@ -95,5 +95,5 @@ def _lens(
 
 
 def is_guess(data: bpy.types.Camera, guessed_lens_mm: float) -> bool:
-    """Whether a camera still has the lens that was guessed for it; 0 for none was."""
+    """Whether a camera still has the lens that was guessed for it; 0 stands for no guess."""
     return guessed_lens_mm > 0.0 and abs(data.lens - guessed_lens_mm) < 1e-3

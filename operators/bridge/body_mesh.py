@@ -1,4 +1,4 @@
-"""A simple body on the armature's bones: one tapered, rounded limb a segment, markers in their colors."""
+"""Body mesh on the armature's bones: a tapered, rounded limb for each segment, markers in their colors."""
 
 from collections.abc import Sequence
 
@@ -31,7 +31,7 @@ def build_body_mesh(
     Args:
         armature_object: The actor, built for `body`.
         body: Skeleton and sizes.
-        markers: What the performer wears; `trunk` covers pelvis and chest.
+        markers: The performer's markers; `trunk` covers pelvis and chest.
 
     Returns:
         The mesh object, parented to the armature with an Armature modifier.

@@ -1,4 +1,4 @@
-"""Postures over time as what each bone stores: a rotation, and the root's location, relative to its rest."""
+"""Bone channels from postures over time: rotations, and the root's location, relative to the rest pose."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .object_space import ObjectSpace, object_space
 
 @dataclass(frozen=True, eq=False)
 class BoneChannels:
-    """One bone's values over F postures."""
+    """Channels of one bone over F postures."""
 
     bone: str
     rotation: Array
@@ -27,10 +27,10 @@ class BoneChannels:
 
 
 def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple[BoneChannels, ...]:
-    """What every bone with degrees of freedom must store to show a batch of postures in the world.
+    """Channels of every bone with degrees of freedom that show a batch of postures in the world.
 
     Args:
-        armature_object: An armature with the skeleton's bones, in any place, even scale and rest pose.
+        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
         postures: A batch of F.
 
     Raises:
@@ -45,12 +45,12 @@ def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple
 def channels_at_rest(
     models: tuple[BoneModel, ...], rest: Mapping[str, Array], space: ObjectSpace, postures: Posture
 ) -> tuple[BoneChannels, ...]:
-    """The same for any bones.
+    """Channels as `bone_channels`, of bones that need not be in an armature.
 
     Args:
         models: The skeleton's bones, parents first.
-        rest: (4, 4) each bone's place and axes at rest, in the object's space.
-        space: Where the object stands.
+        rest: (4, 4) rest matrix of each bone, in the object's space.
+        space: From the object's space to the world.
         postures: A batch of F.
     """
     frames: dict[str, Array] = {}

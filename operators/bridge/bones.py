@@ -1,4 +1,4 @@
-"""How the skeleton's joints become bones: one bone a segment, with axes an animator can turn by hand.
+"""Bones of the skeleton: one for each segment, with axes an animator can turn by hand.
 
 A bone's Y runs along its segment. Its X is the axis of the segment's first hinge, so that a positive
 turn about local X raises the girdle, bends the elbow and bends the knee, and a positive turn about local
@@ -27,7 +27,7 @@ HINGE_ORDER = "YZX"
 
 @dataclass(frozen=True, eq=False)
 class BoneModel:
-    """A segment seen as a bone."""
+    """A segment as a bone."""
 
     name: str
     parent: str | None
@@ -44,7 +44,7 @@ class BoneModel:
 
     @property
     def is_root(self) -> bool:
-        """Whether the bone carries the body's place in the world."""
+        """Whether the bone carries the body's location in the world."""
         return self.parent is None
 
 
@@ -82,7 +82,7 @@ def usual_mode(skeleton: Skeleton, model: BoneModel) -> str:
 
 
 def rest_matrices(body: Body) -> dict[str, Array]:
-    """(4, 4) place and axes of each bone at rest, as `build_armature` builds them: a T pose on z = 0 [m]."""
+    """(4, 4) rest matrix of each bone, as `build_armature` builds them: a T pose on z = 0 [m]."""
     models = bone_models(body)
     origins = body.pose(Posture.rest(body.skeleton)).origin
     floor = min(float((origins[model.joint] + model.end)[2]) for model in models)

@@ -18,23 +18,23 @@ STILL = 1e-6
 
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
-    """The camera as it saw the footage.
+    """The camera that took the footage, with its lens and poses.
 
     Args:
         footage: A clip, which gives size and lens distortion, and its perspective camera.
         frames: (F,) scene frames of the footage, at which a moving camera is read.
 
     Raises:
-        InputError: There is no camera or clip, or the camera is of a kind that no footage has.
+        InputError: There is no camera or clip, or the camera is of an unsupported type.
     """
     return replace(read_lens(footage), matrix_world=_poses(footage.scene, footage.camera, frames))
 
 
 def read_lens(footage: Footage) -> Camera:
-    """The camera's lens alone, as if it stood at the world's origin; nothing is evaluated.
+    """The camera's lens, with the pose of the world's origin; nothing is evaluated.
 
     Raises:
-        InputError: There is no camera or clip, or the camera is of a kind that no footage has.
+        InputError: There is no camera or clip, or the camera is of an unsupported type.
     """
     scene, camera_object, clip = footage.scene, footage.camera, footage.clip
     data = camera_object.data
@@ -89,7 +89,7 @@ def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
 
 
 def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Array) -> Array:
-    """(4, 4) of a camera that stands, (F, 4, 4) of one that moves."""
+    """Camera to world: (4, 4) of a still camera, (F, 4, 4) of a moving one."""
     if not may_move(camera_object):
         return _rigid(camera_object)
     poses = np.empty((len(frames), 4, 4))

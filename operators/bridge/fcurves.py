@@ -1,4 +1,4 @@
-"""A motion as F-curves of an Action that animates the actor's armature."""
+"""F-curves of a motion, in an Action that animates the actor's armature."""
 
 from collections.abc import Callable, Iterable
 
@@ -18,9 +18,12 @@ from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
 def posture_columns(
     armature_object: bpy.types.Object, postures: Posture
 ) -> list[tuple[str, int, str, Array]]:
-    """What the F-curves of a batch of F postures hold: data path, array index, bone and (F,) values each.
+    """Contents of the F-curves of a batch of F postures.
 
     Every bone keeps the rotation mode that the animator has chosen.
+
+    Returns:
+        Data path, array index, bone and values (F,) of each F-curve.
 
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
@@ -32,7 +35,7 @@ def posture_columns(
 def channel_columns(
     channels: Iterable[BoneChannels], mode_of: Callable[[str], str]
 ) -> list[tuple[str, int, str, Array]]:
-    """The same for channels of any bones, whose rotation modes `mode_of` knows by their names."""
+    """Contents of the F-curves of bone channels; `mode_of` gives a bone's rotation mode by its name."""
     rows = []
     for channel in channels:
         mode = mode_of(channel.bone)
@@ -51,7 +54,7 @@ def bone_path(bone: str, channel: str) -> str:
 
 
 def moved_paths(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[str, ...]:
-    """Data paths of everything that a posture says: rotations in all modes, and the root's location."""
+    """Data paths of all channels of a posture: rotations in every mode, and the root's location."""
     return tuple(
         bone_path(model.name, channel)
         for model in skeleton_bones(armature_object, skeleton)
@@ -69,12 +72,12 @@ def write_motion(
 ) -> bpy.types.Action:
     """Write a motion as an Action and let it animate the armature.
 
-    One group a bone, one key a frame and channel in the bone's own rotation mode, of type GENERATED.
+    A group for each bone, a GENERATED key for each frame and channel, in the bone's own rotation mode.
     Written again into the same Action, it replaces only such keys; the animator's stay and win their frames.
 
     Args:
-        armature_object: The actor, in any place and even scale; it shows the motion's world places.
-        motion: What to write.
+        armature_object: The actor, with any location and even scale; it shows the motion's world positions.
+        motion: The motion to write.
         action: The Action to write into; a new one by default.
         keyframe_action: Where the animator keyed bones without degrees of freedom (hands, feet); their curves
             are copied, so that they move as posed.

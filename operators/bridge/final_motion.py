@@ -1,4 +1,4 @@
-"""An Action's motion as channel values, as the animator left it, and the final Action written from them."""
+"""Channel values read from an Action, the animator's changes included, and the final Action written."""
 
 from collections.abc import Generator, Sequence
 
@@ -12,7 +12,7 @@ from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import Skeleton
 from ...core.errors import InputError
 from ...core.finish.hermite import Spline
-from ...core.finish.rig import Rig, RigPose, channel_count
+from ...core.finish.rig import Rig, Shown, channel_count
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import bone_path, moved_paths, posture_columns
@@ -24,7 +24,7 @@ from .review_curves import is_review_curve
 from .rotation_modes import rotation_path
 
 Channel = tuple[int, int, str, int]
-"""Position of a bone in the rig, column of its values, data path and array index of the property."""
+"""Index of a bone in the rig, column of its values, data path and array index of the property."""
 
 CHANGED_BY_FEET = ("pelvis", "thigh", "shin")
 SMALLEST_LENGTH = 1e-9
@@ -33,7 +33,7 @@ ROUNDING = 1e-3
 
 
 def rig_channels(rig: Rig) -> tuple[Channel, ...]:
-    """Where every column of every bone's values is stored in the armature."""
+    """The armature's property for every column of every bone's values."""
     found: list[Channel] = []
     for bone, model in enumerate(rig.bones):
         count = channel_count(model.mode)
@@ -68,14 +68,14 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
 def read_values(
     armature_object: bpy.types.Object, action: bpy.types.Action, rig: Rig, frames: Array
 ) -> Generator[float, None, list[Array]]:
-    """What an Action's curves say at scene frames, bone by bone; the scene is not touched.
+    """Evaluate an Action's curves at scene frames, bone by bone; the scene is not touched.
 
     Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
     plays the Action.
 
     Args:
         armature_object: The actor.
-        action: The motion, with whatever the animator has changed in it.
+        action: The motion, with the animator's changes.
         rig: The actor as `read_rig` finds it.
         frames: (F,) scene frames.
 
@@ -111,8 +111,8 @@ def _unit_quaternions(quaternions: Array) -> Array:
     return continuous_quaternions(unit)
 
 
-def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: RigPose, body: Body) -> Posture:
-    """The postures, (F,) of them, nearest to what a rig shows."""
+def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body) -> Posture:
+    """The postures nearest to a rig's poses, a batch of F."""
     models = skeleton_bones(armature_object, body.skeleton)
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
@@ -123,7 +123,7 @@ def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: RigPose, 
 def with_planted_legs(
     armature_object: bpy.types.Object, rig: Rig, values: Sequence[Array], planted: Posture
 ) -> list[Array]:
-    """Values with the hips and legs of other postures; all else stays as the animator has it."""
+    """Values with hips and legs replaced by those of other postures; the rest stays."""
     stored = {(path, index): column for path, index, _, column in posture_columns(armature_object, planted)}
     changed = [column.copy() for column in values]
     for bone, column, path, index in rig_channels(rig):
@@ -132,8 +132,8 @@ def with_planted_legs(
     return changed
 
 
-def furthest_from(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> float:
-    """The largest distance of a leg's joint or end between what a rig shows and postures [m]."""
+def largest_leg_distance_m(rig: Rig, shown: Shown, body: Body, posture: Posture) -> float:
+    """The largest distance of a leg's joint or end between a rig's poses and postures [m]."""
     pose = body.pose(posture)
     worst = 0.0
     for index, bone in enumerate(rig.bones):
@@ -144,13 +144,13 @@ def furthest_from(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> flo
     return worst
 
 
-def posed_positions(
+def posed_indices(
     armature_object: bpy.types.Object,
     keyframe_action: bpy.types.Action | None,
     skeleton: Skeleton,
     frames: Array,
 ) -> IndexArray:
-    """Positions among the frames of those that the animator posed."""
+    """Indices of the frames that the animator posed."""
     if keyframe_action is None:
         return np.zeros(0, dtype=np.intp)
     keyed = keyed_frames(armature_object, keyframe_action, skeleton)
@@ -173,8 +173,8 @@ def write_final(
     Args:
         armature_object: The actor.
         source: The Action the motion was read from; its other curves (hands, feet, properties) are
-            copied, but for those that judge the motion.
-        action: Where to write.
+            copied, but for review curves.
+        action: The final Action.
         body: The actor's body.
         rig: The actor as `read_rig` finds it.
         frames: (F,) scene frames, rising.

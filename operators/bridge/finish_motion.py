@@ -1,4 +1,4 @@
-"""From a reconstructed motion in its Action to the final one: feet planted, few keys."""
+"""Finish the reconstructed motion of an Action: feet planted, keys reduced."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from ...core.body.kinematics import Body
 from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
-from ...core.finish.planted_feet import plant_feet, point_tolerances
+from ...core.finish.planted_feet import plant_feet, tolerances
 from ...core.finish.rig import Rig
 from ...core.progress import Job, Progress, within
 from .actor_lengths import read_body
 from .final_motion import (
-    furthest_from,
+    largest_leg_distance_m,
     motion_frames,
-    posed_positions,
+    posed_indices,
     read_values,
     shown_postures,
     with_planted_legs,
@@ -33,7 +33,7 @@ Note = tuple[str, dict[str, Any]]
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
 NOTICEABLE_M = 0.005
-"""Distance [m] between a pose and its nearest posture that the animator is told of."""
+"""Distance between a pose and its nearest posture above which a note is made [m]."""
 BEYOND = (
     "The motion goes up to {distance:.0f} mm beyond what the skeleton's legs can do; planting the feet uses "
     "the nearest posture"
@@ -42,20 +42,20 @@ NO_REST = "No foot rests long enough to be planted; raise Foot Stray to hold fee
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What the animator wants of the final motion."""
+class FinishOptions:
+    """Options of the final motion."""
 
     tolerance_m: float | None
-    """How far the body may be off [m]; None for a key on every frame."""
+    """Largest distance of the body from the motion [m]; None for a key on every frame."""
     whole_pose: bool
     """Whether all bones are keyed on the same frames."""
     stray_m: float | None
-    """How far a resting foot may wander and still be held [m]; None to leave feet alone."""
+    """Distance that a resting foot may stray and still be held [m]; None to leave feet alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Finished:
-    """A finished motion that is not written yet."""
+    """A finished motion, not yet written."""
 
     body: Body
     rig: Rig
@@ -64,14 +64,14 @@ class Finished:
     motion: Sequence[Array] | Sequence[Spline]
     """For each bone of the rig its values on every frame, or few keys."""
     furthest_m: float
-    """The largest distance that leaving out keys makes [m]."""
+    """The largest distance from the motion that reducing the keys makes [m]."""
     contacts: tuple[Contact, ...]
-    """Where which foot was planted."""
+    """The planted feet."""
     notes: tuple[Note, ...]
 
     @property
     def keys_before(self) -> int:
-        """Keys of a motion with all of them."""
+        """Number of keys before the reduction."""
         channels = sum((held.values if isinstance(held, Spline) else held).shape[1] for held in self.motion)
         return int(channels * len(self.frames))
 
@@ -94,16 +94,16 @@ def finish_motion(
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
     keyframe_action: bpy.types.Action | None,
-    wanted: Wanted,
+    options: FinishOptions,
     frame_s: float,
 ) -> Job[Finished]:
-    """Finish the motion that an Action holds, with what the animator has changed in it.
+    """Finish the motion that an Action holds, with the animator's changes.
 
     Args:
         armature_object: The actor.
         action: The motion.
-        keyframe_action: Where the animator posed; those frames stay keys.
-        wanted: What to make of it.
+        keyframe_action: The animator's keyframes; their frames stay keys.
+        options: Tolerance, keys and feet.
         frame_s: Time from one scene frame to the next [s].
 
     Yields:
@@ -115,19 +115,19 @@ def finish_motion(
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
-    exact = posed_positions(armature_object, keyframe_action, body.skeleton, frames)
+    exact = posed_indices(armature_object, keyframe_action, body.skeleton, frames)
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     contacts: tuple[Contact, ...] = ()
     notes: tuple[Note, ...] = ()
-    if wanted.stray_m is not None:
+    if options.stray_m is not None:
         time_s = (frames - frames[0]) * frame_s
-        planting = _plant(armature_object, body, rig, values, time_s, wanted.stray_m)
+        planting = _plant(armature_object, body, rig, values, time_s, options.stray_m)
         values, contacts, notes = yield from planting
-    if wanted.tolerance_m is None:
+    if options.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, contacts, notes)
-    allowed = point_tolerances(rig, len(frames), wanted.tolerance_m, contacts)
-    reducing = reduce_keys(rig, frames, values, allowed, exact, wanted.whole_pose)
+    allowed = tolerances(rig, len(frames), options.tolerance_m, contacts)
+    reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)
 
@@ -142,14 +142,14 @@ def _plant(
 ) -> Job[tuple[list[Array], tuple[Contact, ...], tuple[Note, ...]]]:
     stage = "Planting the feet"
     yield Progress(stage, READ)
-    shown = rig.pose(values)
+    shown = rig.show(values)
     posture = shown_postures(armature_object, rig, shown, body)
     yield Progress(stage, SEEN)
     planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)
     if not planted.contacts:
         return values, (), ((NO_REST, {}),)
     notes: tuple[Note, ...] = ()
-    beyond_m = furthest_from(rig, shown, body, posture)
+    beyond_m = largest_leg_distance_m(rig, shown, body, posture)
     if beyond_m > NOTICEABLE_M:
         notes = ((BEYOND, {"distance": 1000.0 * beyond_m}),)
     return with_planted_legs(armature_object, rig, values, planted.posture), planted.contacts, notes

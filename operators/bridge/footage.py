@@ -1,4 +1,4 @@
-"""A take's footage in a scene: its clip, the camera it was taken with, and where its frames lie in time."""
+"""Footage of a take in a scene: its clip, its camera, and its frames on the time line."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,7 +47,7 @@ class Footage:
 
     @property
     def rate(self) -> float:
-        """Frames per second by which Blender places the clip's frames on the time line."""
+        """Frames per second of the clip on the scene's time line."""
         return clip_rate(self.clip, self.scene.render.fps / self.scene.render.fps_base)
 
     @property
@@ -69,7 +69,7 @@ class Footage:
         """The clip's file.
 
         Raises:
-            InputError: There is no clip, or its file is gone.
+            InputError: There is no clip, or its file is missing.
         """
         return clip_path(self.clip)
 
@@ -77,9 +77,9 @@ class Footage:
         """Open the clip's file.
 
         Raises:
-            InputError: There is no clip, its file is gone or cannot be decoded.
+            InputError: There is no clip, its file is missing or cannot be decoded.
         """
-        # Takes are looked at while the extension registers, when OpenCV may be missing.
+        # This module is imported while the extension registers, when OpenCV may be missing.
         from ...core.footage.clips.clip import Clip
 
         return Clip.open(self.path, fps=self.rate)
@@ -89,7 +89,7 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     """The file of a movie clip.
 
     Raises:
-        InputError: The file is gone.
+        InputError: The file is missing.
     """
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
@@ -100,10 +100,10 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
 
 
 def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
-    """Frames per second by which Blender places the clip's frames on the time line.
+    """Frames per second of a clip on a scene's time line.
 
-    For clips of variable rate Blender reckons its own mean rate and shows frames by their time, so keys
-    belong at `frame_start + time * clip.fps`. Image sequences have no rate, and `fps` holds.
+    For clips of variable rate Blender computes its own mean rate and shows frames by their time, so keys
+    belong at `frame_start + time * clip.fps`. Image sequences have no rate of their own: `fps` is returned.
     """
     return float(clip.fps) if clip.source == "MOVIE" and clip.fps > 0.0 else fps
 
@@ -111,7 +111,7 @@ def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
 def set_scene_range(
     scene: bpy.types.Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
 ) -> None:
-    """Give the scene a clip's size in pixels, frames per second and range of frames."""
+    """Set a scene's size [px], frames per second and frame range to those of a clip."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100

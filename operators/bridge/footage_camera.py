@@ -1,4 +1,4 @@
-"""The camera object that footage is shown behind, and what its clip knows of the lens."""
+"""Camera objects of footage: lens, pose, background clip, and the lens in the clip's tracking camera."""
 
 import bpy
 import numpy as np
@@ -9,14 +9,14 @@ from ...core.footage.camera import Camera
 CAMERA_NAME = "Footage Camera"
 
 UNTOUCHED_CLIP_MM = (24.0, 35.0)
-"""Focal length and sensor width of a clip's tracking camera that nobody has set [mm]."""
+"""Default focal length and sensor width of a clip's tracking camera [mm]."""
 UNTOUCHED_CAMERA_MM = (50.0, 36.0)
-"""The same of a new camera object."""
-STARTUP_PLACE_M = (7.3589, -6.9258, 4.9583)
-"""Where the camera of Blender's startup file stands [m]."""
+"""Default focal length and sensor width of a camera object [mm]."""
+STARTUP_LOCATION_M = (7.3589, -6.9258, 4.9583)
+"""Location of the camera in Blender's startup file [m]."""
 SAME = 1e-3
 SYMBOL_M = 0.3
-"""Size of the camera's symbol [m]: the usual meter stands in the picture of every other view."""
+"""Display size of the camera [m]: the default of 1 m would be in the picture of every other view."""
 
 
 def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
@@ -28,7 +28,7 @@ def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def set_lens(data: bpy.types.Camera, camera: Camera) -> None:
-    """Give a camera core's lens."""
+    """Set a camera's lens from core's camera."""
     data.type = "PERSP"
     data.lens_unit = "MILLIMETERS"
     data.sensor_fit = "HORIZONTAL"
@@ -38,9 +38,9 @@ def set_lens(data: bpy.types.Camera, camera: Camera) -> None:
 
 
 def clip_lens(clip: bpy.types.MovieClip) -> Camera | None:
-    """The lens that someone has told a clip's tracking camera, at the world's origin.
+    """The lens that was set in a clip's tracking camera, with the pose of the world's origin.
 
-    None where it is as Blender makes it, which says nothing, or where the clip has no size.
+    None where it has Blender's defaults, or where the clip has no size.
     """
     tracking, (width, height) = clip.tracking.camera, clip.size
     if not (width and height):
@@ -65,7 +65,7 @@ def clip_lens(clip: bpy.types.MovieClip) -> Camera | None:
 
 
 def set_clip_lens(clip: bpy.types.MovieClip, camera: Camera) -> None:
-    """Tell the clip its lens, so that Blender's tracking and undistortion know it too."""
+    """Set the lens of a clip's tracking camera, which Blender's tracking and undistortion use."""
     tracking = clip.tracking.camera
     tracking.units = "MILLIMETERS"
     tracking.sensor_width = camera.sensor_width_mm
@@ -77,19 +77,19 @@ def set_clip_lens(clip: bpy.types.MovieClip, camera: Camera) -> None:
 
 
 def lens_is_untouched(data: bpy.types.Camera) -> bool:
-    """Whether a camera has the lens that Blender gives every new one."""
+    """Whether a camera has Blender's default lens."""
     return _same((data.lens, data.sensor_width), UNTOUCHED_CAMERA_MM) and not (data.shift_x or data.shift_y)
 
 
 def is_startup_camera(camera_object: bpy.types.Object) -> bool:
-    """Whether a camera is that of Blender's startup file, left as it was: it was no footage's."""
+    """Whether a camera is that of Blender's startup file, unchanged, and so not one of footage."""
     animated = camera_object.animation_data is not None or len(camera_object.constraints)
-    place = camera_object.matrix_basis.translation
-    return lens_is_untouched(camera_object.data) and not animated and _same(place, STARTUP_PLACE_M)
+    location = camera_object.matrix_basis.translation
+    return lens_is_untouched(camera_object.data) and not animated and _same(location, STARTUP_LOCATION_M)
 
 
 def may_move(blender_object: bpy.types.Object | None) -> bool:
-    """Whether an object or what it hangs on is animated, driven or constrained."""
+    """Whether an object or one of its parents is animated, driven or constrained."""
     while blender_object is not None:
         data = blender_object.animation_data
         driven = data is not None and (data.action is not None or len(data.drivers) or len(data.nla_tracks))
@@ -102,7 +102,7 @@ def may_move(blender_object: bpy.types.Object | None) -> bool:
 def solver_constraint(
     scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
 ) -> bpy.types.CameraSolverConstraint | None:
-    """The constraint by which a camera moves as the clip's solution says."""
+    """The constraint by which a camera follows the clip's solution."""
     for constraint in camera_object.constraints:
         if constraint.type == "CAMERA_SOLVER" and constraint.enabled:
             shown = scene.active_clip if constraint.use_active_clip else constraint.clip
@@ -112,7 +112,7 @@ def solver_constraint(
 
 
 def solved_camera(scene: bpy.types.Scene, clip: bpy.types.MovieClip) -> bpy.types.Object | None:
-    """The camera of a scene that moves as the clip's solution says, the scene's own first."""
+    """The camera of a scene that follows the clip's solution, the active camera first."""
     cameras = [scene.camera, *(each for each in scene.objects if each.type == "CAMERA")]
     return next((each for each in cameras if each and solver_constraint(scene, each, clip)), None)
 
@@ -120,7 +120,7 @@ def solved_camera(scene: bpy.types.Scene, clip: bpy.types.MovieClip) -> bpy.type
 def follow_solution(
     scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
 ) -> None:
-    """Let a camera move as the clip's solution says, whichever clip the scene works on."""
+    """Let a camera follow the clip's solution, whichever clip is the scene's active one."""
     constraint = solver_constraint(scene, camera_object, clip)
     if constraint is None:
         constraint = camera_object.constraints.new("CAMERA_SOLVER")
@@ -129,7 +129,7 @@ def follow_solution(
 
 
 def shows_behind(camera_object: bpy.types.Object | None, clip: bpy.types.MovieClip) -> bool:
-    """Whether a camera has the clip behind what it sees."""
+    """Whether a camera has the clip as its background."""
     if camera_object is None or camera_object.type != "CAMERA":
         return False
     images = camera_object.data.background_images
@@ -137,7 +137,7 @@ def shows_behind(camera_object: bpy.types.Object | None, clip: bpy.types.MovieCl
 
 
 def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> None:
-    """Show the clip behind everything the camera sees, filling the frame."""
+    """Make a clip the camera's background, filling the frame."""
     images = camera_data.background_images
     background = next((image for image in images if image.source == "MOVIE_CLIP"), None) or images.new()
     background.source = "MOVIE_CLIP"
@@ -151,7 +151,7 @@ def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> 
 
 
 def set_still_pose(camera_object: bpy.types.Object, camera: Camera) -> None:
-    """Put a camera where a fixed one of core's stands."""
+    """Give a camera the pose of core's still camera."""
     camera_object.animation_data_clear()
     camera_object.matrix_world = Matrix(camera.matrix_world.tolist())
 

@@ -1,4 +1,4 @@
-"""The color of the footage under a pixel, as an eyedropper on the file itself gives it."""
+"""Color of a footage pixel, read from the file itself."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,11 +8,11 @@ from ...core.footage.clips.frame_reader import FrameReader
 from .footage import Footage
 
 REACH_PX = 2
-"""Pixels around the one that is picked: the median of 5 x 5 is free of noise and chroma subsampling."""
+"""Pixels on each side of the picked one: the median of 5 x 5 is free of noise and chroma subsampling."""
 
 
 def footage_color(footage: Footage, pixel: ArrayLike) -> tuple[int, int, int]:
-    """The color at a pixel of the frame that the scene shows now.
+    """The color at a pixel of the footage in the scene's current frame.
 
     Args:
         footage: The clip in its scene.

@@ -1,4 +1,4 @@
-"""Footage behind a camera: core's camera and clip as Blender's camera, movie clip, frame range and rate."""
+"""Write footage into a scene: core's camera and clip as camera, movie clip, frame range and rate."""
 
 from pathlib import Path
 
@@ -39,7 +39,7 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
 
 
 def clip_file(path: Path) -> Path:
-    """The file by which Blender knows a clip: the video, or the first image of a sequence.
+    """The file that Blender opens as a clip: the video, or the first image of a sequence.
 
     Raises:
         InputError: A folder or pattern without an image.
@@ -49,14 +49,14 @@ def clip_file(path: Path) -> Path:
 
 
 def stored_path(file: Path) -> str:
-    """How Blender notes a file: relative to the .blend, where that has a place and the animator wants so."""
-    place = str(real_path(file))
+    """A file's path as Blender stores it: relative to a saved .blend, where the preferences ask for that."""
+    path = str(real_path(file))
     if not (bpy.data.filepath and bpy.context.preferences.filepaths.use_relative_paths):
-        return place
+        return path
     try:
-        return str(bpy.path.relpath(place))
+        return str(bpy.path.relpath(path))
     except ValueError:  # on another drive
-        return place
+        return path
 
 
 def show_footage(
@@ -69,7 +69,7 @@ def show_footage(
     frames: Array | None = None,
     camera_object: bpy.types.Object | None = None,
 ) -> bpy.types.Object:
-    """Put a clip behind a camera that stands where the footage's camera stood.
+    """Show a clip behind a camera with the pose of the footage's camera.
 
     The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame.
 
@@ -79,7 +79,7 @@ def show_footage(
         clip_path: The clip.
         fps: Frames per second; Blender's own reading of the clip counts where it has one (see `clip_rate`).
         frame_start: Scene frame of the clip's first frame.
-        frame_count: Number of its frames.
+        frame_count: Number of the clip's frames.
         frames: (F,) scene frames at which a moving camera has its poses; one after the other by default.
         camera_object: The camera to use; a new one by default.
 

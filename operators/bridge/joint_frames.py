@@ -1,4 +1,4 @@
-"""Postures from joint frames: exact where a frame lies within the skeleton's freedoms, nearest where not.
+"""Postures fitted to joint frames: exact within the skeleton's freedoms, else the nearest.
 
 All functions take a single pose or a batch of them: leading axes `...` are those of `frames`.
 """
@@ -29,7 +29,7 @@ def posture_from_frames(
         skeleton: The skeleton the bones belong to.
         models: Its bones, parents first.
         frames: World orientation (..., 3, 3) of each bone's joint, by name of bone.
-        hips: (..., 3) world place of the root [m].
+        hips: (..., 3) world position of the root [m].
     """
     still = np.broadcast_to(np.eye(3), (*hips.shape[:-1], 3, 3))
     turns = {joint: still for joint in skeleton.ball_joints}
@@ -93,7 +93,7 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
 
 
 def _nearest_angle(axis: Array, rotation: Array) -> Array:
-    """(...,) the angle that maximises trace(rotation @ hinge(angle).T)."""
+    """(...,) the angle that maximizes trace(rotation @ hinge(angle).T)."""
     skew = np.stack(
         [
             rotation[..., 2, 1] - rotation[..., 1, 2],

@@ -1,4 +1,4 @@
-"""The animator's keyframes: frames keyed on the armature's own Action, and postures keyed there."""
+"""Keyframes of the animator: the keyed frames of an Action, read as postures and written from them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,13 +22,13 @@ from .rotation_modes import rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 Matches = Mapping[float, Matched]
-"""By scene frame, as `untouched_frames` gives them: what keyframes were matched with that nobody posed."""
+"""What matched keyframes were matched with, by scene frame as `untouched_frames` gives them."""
 
 NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5
 """A key farther than this [frames] from every frame of the clip belongs to none."""
 NOTICEABLE_M = 0.005
-"""Distance [m] between a pose and its nearest posture that the animator is told of."""
+"""Distance between a pose and its nearest posture above which a note is made [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class PosedKeyframes:
     keyframes: tuple[Keyframe, ...]
     """In order of frame."""
     notes: tuple[str, ...]
-    """What the animator should know, one sentence each."""
+    """Notes for the animator, one sentence each."""
 
 
 def keyed_frames(
@@ -77,7 +77,7 @@ def read_keyframes(
         action: The animator's Action.
         body: Skeleton, with the sizes that `read_body` finds.
         clip_frames: (F,) scene frame of every frame of the clip; keys elsewhere are left out with a note.
-        matches: Which keyframes nobody posed, and what they were matched with.
+        matches: The matched keyframes, and what they were matched with.
 
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
@@ -135,7 +135,7 @@ def write_keyframes(
 
     Args:
         armature_object: The actor.
-        action: Where to key.
+        action: The Action to key.
         keyframes: At least one, in order of frame.
         clip_frames: (F,) scene frame of every frame of the clip.
 

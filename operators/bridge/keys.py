@@ -1,9 +1,9 @@
-"""Keys on F-curves, in bulk. Those that Keymark made are told from the animator's by Blender's key type.
+"""Keys on F-curves, in bulk. Keymark's own are told from the animator's by Blender's key type.
 
 Only keys of the type GENERATED are ever replaced or removed, and of these not the ones that the animator has
-given another value: Blender leaves their type as it was. That a key has its first value is seen by `back`,
-a number which only the interpolation of that name uses; it holds the value that the key was made with.
-Those of a matched keyframe, which stands beside the animator's own, say so by `amplitude`.
+given another value: Blender leaves their type as it was. `back`, a number which only the interpolation of
+that name uses, holds the value that a key was made with, so that a changed key is recognized. `amplitude`
+marks the keys of a matched keyframe, which stands beside the animator's own.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from ...core.arrays import Array, BoolArray, SingleArray
 
 Keys = dict[str, NDArray[np.generic]]
-"""Properties of N keys by name: (N,), or (N, 2) for places."""
+"""Properties of N keys by name: (N,), or (N, 2) for coordinates."""
 
 UNMARKED = 0.0
-"""`back` of a key that says nothing of its first value; earlier versions made all so."""
+"""`back` of a key without a record of its first value, as earlier versions made all."""
 MARK_OF_ZERO = 1e-30
-OF_MATCH = -1.0
-"""`amplitude` of the keys of a matched keyframe; Blender allows people none below zero."""
+MATCH_AMPLITUDE = -1.0
+"""`amplitude` of the keys of a matched keyframe; users cannot set one below zero."""
 SAME_FRAME = 1e-3
 """Keys nearer than this [frames] lie on the same frame."""
 FLOATS = ("back", "amplitude", "period")
@@ -31,15 +31,15 @@ FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
 
 
 def _generated(keys: Keys) -> BoolArray:
-    """(N,) which keys are Keymark's, with the values it gave them."""
+    """(N,) which keys are Keymark's and have the values it gave them."""
     back = keys["back"]
-    changed = (back != _mark(keys)) & (back != UNMARKED)
+    changed = (back != _value_mark(keys)) & (back != UNMARKED)
     changed &= keys["interpolation"] != _enum_value("interpolation", "BACK")
     return (keys["type"] == _enum_value("type", "GENERATED")) & ~changed
 
 
-def _mark(keys: Keys) -> SingleArray:
-    """(N,) what tells that keys have the values they have now."""
+def _value_mark(keys: Keys) -> SingleArray:
+    """(N,) `back` of keys that records their present values."""
     values = keys["co"][:, 1].astype(np.float32)
     return np.where(values == UNMARKED, np.float32(MARK_OF_ZERO), values)
 
@@ -50,7 +50,7 @@ def _as_generated(keys: Keys) -> Keys:
     return {
         **keys,
         "type": np.full(len(used), _enum_value("type", "GENERATED"), np.int32),
-        "back": np.where(used, keys["back"], _mark(keys)).astype(np.float32),
+        "back": np.where(used, keys["back"], _value_mark(keys)).astype(np.float32),
     }
 
 
@@ -71,7 +71,7 @@ def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
     keys: Keys = {}
     for name in (*PAIRS, *FLOATS, *ENUMS, *FLAGS):
         count = len(points) * (2 if name in PAIRS else 1)
-        values = np.empty(count, _kind(name))
+        values = np.empty(count, _dtype(name))
         points.foreach_get(name, values)
         keys[name] = values.reshape(-1, 2) if name in PAIRS else values
     return keys
@@ -87,8 +87,8 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     fcurve.update()
 
 
-def _kind(name: str) -> type[np.generic]:
-    """How Blender stores a property of keys."""
+def _dtype(name: str) -> type[np.generic]:
+    """The type in which Blender stores a property of keys."""
     if name in FLAGS:
         return np.bool_
     return np.int32 if name in ENUMS else np.float32
@@ -97,8 +97,8 @@ def _kind(name: str) -> type[np.generic]:
 def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
     """Keys that are not selected, so that what the animator does next does not move them."""
     count = len(frames)
-    places = np.column_stack([frames, values]).astype(np.float32)
-    keys: Keys = {name: places.copy() for name in PAIRS}
+    coordinates = np.column_stack([frames, values]).astype(np.float32)
+    keys: Keys = {name: coordinates.copy() for name in PAIRS}
     for name in FLOATS:
         default = bpy.types.Keyframe.bl_rna.properties[name].default
         keys[name] = np.full(count, default, np.float32)
@@ -118,31 +118,32 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     """Frames (N,) of the keys that are not GENERATED, and of those of matched keyframes."""
-    # Only what is needed: this is asked for all of an armature's curves while the timeline is drawn.
+    # Read as little as possible: the timeline's draw function asks for all of an armature's curves.
     points = fcurve.keyframe_points
-    places, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
-    points.foreach_get("co", places.ravel())
+    coordinates, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
+    points.foreach_get("co", coordinates.ravel())
     points.foreach_get("type", types)
     counted = types != _enum_value("type", "GENERATED")
     if not counted.all():
         amplitudes = np.empty(len(points), np.float32)
         points.foreach_get("amplitude", amplitudes)
-        counted |= amplitudes == OF_MATCH
-    return np.asarray(places[counted, 0], dtype=np.float64)
+        counted |= amplitudes == MATCH_AMPLITUDE
+    return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
 def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys of matched keyframes that have the values matching gave them."""
+    """Frames (N,) of the keys of matched keyframes that are unchanged."""
     if not len(fcurve.keyframe_points):
         return np.zeros(0)
     keys = _read_keys(fcurve)
-    return np.asarray(keys["co"][_generated(keys) & (keys["amplitude"] == OF_MATCH), 0], dtype=np.float64)
+    unchanged = _generated(keys) & (keys["amplitude"] == MATCH_AMPLITUDE)
+    return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
     """Remove the GENERATED keys of the curves with these data paths, and curves left without keys.
 
-    Keys that the animator has given another value stay, and are from now on of the animator's own type.
+    Keys that the animator has given another value stay, and get the animator's own type.
     """
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
@@ -160,7 +161,7 @@ def add_generated_keys(
     """Add GENERATED keys, linear between frames; where the animator has a key, that key stays alone.
 
     Args:
-        channelbag: Where the curve lives or is added.
+        channelbag: The channel bag that has the curve, or gets it.
         path: Data path of the animated property.
         index: Component of the property.
         group: Name of the curve's group.
@@ -203,7 +204,7 @@ def set_matched_keys(
 ) -> None:
     """Set keys like those of `set_posed_keys`, but marked as a matched keyframe's."""
     keys = _as_generated(_new_keys(frames, values, "GENERATED", "BEZIER"))
-    keys["amplitude"] = np.full(len(frames), OF_MATCH, np.float32)
+    keys["amplitude"] = np.full(len(frames), MATCH_AMPLITUDE, np.float32)
     _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
 
 
@@ -217,7 +218,7 @@ def _set_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
 
 
 def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Remove whatever keys the curves with these data paths have on frames (K,), and curves left without."""
+    """Remove all keys on frames (K,) from the curves with these data paths, and curves left without keys."""
     for fcurve, keys, there in _keys_on(channelbag, paths, frames):
         if there.all():
             channelbag.fcurves.remove(fcurve)
@@ -226,9 +227,9 @@ def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], fr
 
 
 def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Make keys of matched keyframes on frames (K,) the animator's own; values and curves stay."""
+    """Turn keys of matched keyframes on frames (K,) into the animator's own; values and curves stay."""
     for fcurve, keys, there in _keys_on(channelbag, paths, frames):
-        there = there & (keys["amplitude"] == OF_MATCH)
+        there = there & (keys["amplitude"] == MATCH_AMPLITUDE)
         if there.any():
             given = _as_animators(keys)
             usual = bpy.types.Keyframe.bl_rna.properties["amplitude"].default
@@ -243,7 +244,7 @@ def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str
 def _keys_on(
     channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array
 ) -> Iterator[tuple[bpy.types.FCurve, Keys, BoolArray]]:
-    """The curves of these paths that have keys on any of the frames, their keys, and which those are."""
+    """The curves of these paths with keys on any of the frames, their keys, and which of them lie there."""
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
         if not len(fcurve.keyframe_points) or not len(frames):
@@ -255,7 +256,7 @@ def _keys_on(
 
 
 def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
-    """Replace a curve's keys by ones of the animator's own type, on a smooth curve of given slopes.
+    """Replace a curve's keys by ones of the animator's own type, with smooth interpolation of given slopes.
 
     The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
     cubic that has the keys' values and slopes.

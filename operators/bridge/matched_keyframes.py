@@ -1,7 +1,7 @@
-"""Keyframes that matching gave, on the keyframe Action beside the animator's own.
+"""Matched keyframes, on the keyframe Action beside the animator's own.
 
-One counts as matched only while every key of it is as it was written. As soon as the animator changes one, or
-moves it to another frame, the posture there is the animator's: so nobody has to say that it was corrected.
+A keyframe counts as matched only while all its keys are as they were written. As soon as the animator changes
+one, or moves it to another frame, the posture there is the animator's: corrections need no confirmation.
 """
 
 from collections.abc import Collection, Sequence
@@ -19,13 +19,13 @@ from .keys import give_to_animator, matched_frames_of, remove_keys, set_matched_
 from .rotation_modes import rotation_path
 
 DIGITS = 3
-"""To which frames are told apart, as in `keyed_frames`."""
+"""Decimals to which frames are told apart, as in `keyed_frames`."""
 
 
 def untouched_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
-    """Scene frames whose whole posture is as matching wrote it, in order.
+    """Scene frames whose matched posture is unchanged, in order.
 
     Raises:
         InputError: A bone is missing.
@@ -55,7 +55,7 @@ def write_matched(
 
     Args:
         armature_object: The actor.
-        action: Where to key.
+        action: The Action to key.
         frames: (K,) scene frames, rising.
         postures: K single postures, at least one.
 
@@ -76,7 +76,7 @@ def remove_keyframes(
     skeleton: Skeleton,
     frames: Collection[float],
 ) -> None:
-    """Take keyframes away; keys of hands and feet stay.
+    """Remove keyframes; keys of hands and feet stay.
 
     Raises:
         InputError: A bone is missing.
@@ -92,7 +92,7 @@ def take_over(
     skeleton: Skeleton,
     frames: Collection[float],
 ) -> None:
-    """Make matched keyframes the animator's own, as if posed like that.
+    """Turn matched keyframes into the animator's own, as if posed by hand.
 
     Raises:
         InputError: A bone is missing.
@@ -103,7 +103,7 @@ def take_over(
 
 
 def _curves(armature_object: bpy.types.Object, skeleton: Skeleton) -> list[tuple[str, int]]:
-    """Data path and index of all that a posture is keyed on, in the rotation modes that bones have now."""
+    """Data path and array index of all channels of a posture, in the bones' present rotation modes."""
     curves = []
     for model in skeleton_bones(armature_object, skeleton):
         if not model.chain:
@@ -119,7 +119,7 @@ def _curves(armature_object: bpy.types.Object, skeleton: Skeleton) -> list[tuple
 def _turned_to_neighbors(
     channelbag: bpy.types.ActionChannelbag, columns: list[tuple[str, int, str, Array]], frames: Array
 ) -> dict[str, Array]:
-    """(K,) a sign for each quaternion by data path, so that it does not turn the long way round.
+    """Signs (K,) of the quaternions by data path, so that bones do not turn the long way round.
 
     A quaternion and its negative are the same posture, but Blender interpolates number by number.
     """

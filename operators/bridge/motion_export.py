@@ -49,7 +49,7 @@ def export_motion(
 
 @contextmanager
 def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[None]:
-    """Let the scene's range be `frames`, without a preview range; then give back range and frame."""
+    """Set the scene's range to `frames`, without a preview range; then restore range and current frame."""
     names = ("frame_start", "frame_end", "use_preview_range")
     before = {name: getattr(scene, name) for name in names}
     at = scene.frame_current, scene.frame_subframe
@@ -64,7 +64,7 @@ def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[No
 
 @contextmanager
 def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
-    """Let one object be selected and active, in object mode; then give everything back."""
+    """Select one object only and make it active, in object mode; then restore selection and mode."""
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     active, hidden = layer.objects.active, chosen.hide_get(view_layer=layer)
     mode = active.mode if active is not None else "OBJECT"

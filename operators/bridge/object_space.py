@@ -1,4 +1,4 @@
-"""Where an armature object stands in the world: a turn, a place and one scale."""
+"""Similarity transform of an armature object: rotation, location and one scale."""
 
 from dataclasses import dataclass
 
@@ -22,20 +22,20 @@ class ObjectSpace:
     """(3,) [m]."""
     scale: float
 
-    def to_world(self, places: Array) -> Array:
-        """World places (..., 3) of places in the object's space [m]."""
-        return np.asarray(self.location + self.scale * (places @ self.rotation.T))
+    def to_world(self, points: Array) -> Array:
+        """World coordinates (..., 3) of points in the object's space [m]."""
+        return np.asarray(self.location + self.scale * (points @ self.rotation.T))
 
-    def from_world(self, places: Array) -> Array:
+    def from_world(self, points: Array) -> Array:
         """The inverse of `to_world`."""
-        return np.asarray((places - self.location) @ self.rotation / self.scale)
+        return np.asarray((points - self.location) @ self.rotation / self.scale)
 
 
 AT_ORIGIN = ObjectSpace(np.eye(3), np.zeros(3), 1.0)
 
 
 def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
-    """The object's place in the world as it is evaluated, parents and constraints included.
+    """The object's evaluated transform, parents and constraints included.
 
     Raises:
         InputError: The scale differs between axes or mirrors: limbs would change their lengths as they turn.
@@ -57,7 +57,7 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
 def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
     """The object as its scene evaluates it now; the object itself where no scene holds it.
 
-    Of several scenes that hold it, each at a frame of its own, the one that is worked in counts.
+    Of several scenes that hold it, each at a frame of its own, the context's scene counts.
     """
     scenes = blender_object.users_scene
     if not scenes:

@@ -1,4 +1,4 @@
-"""Postures read from an armature's evaluated pose, and set on it."""
+"""Read a posture from an armature's evaluated pose, and pose an armature."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ from .rotation_modes import set_rotation
 
 @dataclass(frozen=True, eq=False)
 class PoseReading:
-    """An armature's pose as a posture, and how well the posture says it."""
+    """An armature's pose as a posture, and the distance between both."""
 
     posture: Posture
     """The nearest posture the skeleton can take."""
@@ -37,7 +37,7 @@ def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
     says by how much the armature went beyond them.
 
     Args:
-        armature_object: An armature with the skeleton's bones, of any rotation modes, place and even scale.
+        armature_object: An armature with the skeleton's bones, any rotation modes, location and even scale.
         body: The skeleton, with the sizes that `read_body` finds in the armature.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A single posture as F-curves of an Action, and back, without any armature.
+"""F-curves of a single posture, written and read without any armature.
 
 The curves are those of an armature as Keymark builds it: T pose at rest, its object at the world's origin,
 every bone in the rotation mode it is built with. Blender's own pose library applies them to such armatures.
@@ -27,12 +27,12 @@ from .rig import rig_at_rest
 from .rotation_modes import rotation_path, rotation_values
 
 Values = dict[str, Array]
-"""What each turning bone's channels hold, by bone: those of its rotation, for the root then its location."""
+"""Channel values by bone: the rotation's, for the root then the location's."""
 
 FRAME = 1.0
 """The only frame of a pose asset."""
 SAME = 2e-6
-"""Relative difference of channels that storing them in single precision makes, at most."""
+"""Largest relative error of channels by single precision."""
 LARGEST_LOCATION_M = 1000.0
 
 
@@ -67,11 +67,11 @@ def read_posture_curves(
     """The posture that an Action's curves show; None where it has no curve of a bone of the skeleton.
 
     Args:
-        action: A pose asset. Curves of other things than the skeleton's bones are passed over, bones without
-            curves are as in `stored`, or at rest.
+        action: A pose asset. Curves of anything but the skeleton's bones are ignored; bones without curves
+            are as in `stored`, or at rest.
         body: The body it was posed on.
-        stored: The posture that the curves were once written from. Joints whose curves still say so are
-            taken from it, to the last digit.
+        stored: The posture that the curves were once written from. Joints whose curves are unchanged
+            are taken from it, to the last digit.
     """
     curves = {(curve.data_path, curve.array_index): curve for curve in _fcurves(action) if not curve.is_empty}
     known = channel_values(body, stored if stored is not None else Posture.rest(body.skeleton))
@@ -100,15 +100,15 @@ def read_posture_curves(
 
 
 def channel_values(body: Body, posture: Posture) -> Values:
-    """What the curves of a single posture hold."""
+    """Channel values of a single posture."""
     batch = Posture.stack([posture])
     models = _models(body)
     values: Values = {}
     modes = {model.name: usual_mode(body.skeleton, model) for model in models}
     for channel in channels_at_rest(models, _rest(body), AT_ORIGIN, batch):
         turn = rotation_values(channel.rotation, modes[channel.bone])[0]
-        place = () if channel.location is None else channel.location[0]
-        values[channel.bone] = np.concatenate([turn, place])
+        location = () if channel.location is None else channel.location[0]
+        values[channel.bone] = np.concatenate([turn, location])
     return values
 
 
@@ -116,8 +116,8 @@ def _channels(body: Body, model: BoneModel) -> list[tuple[str, int]]:
     """Data path and index of each of a bone's values."""
     mode = usual_mode(body.skeleton, model)
     path = bone_path(model.name, rotation_path(mode))
-    places = [(bone_path(model.name, "location"), index) for index in range(3 if model.is_root else 0)]
-    return [*((path, index) for index in range(channel_count(mode))), *places]
+    location = [(bone_path(model.name, "location"), index) for index in range(3 if model.is_root else 0)]
+    return [*((path, index) for index in range(channel_count(mode))), *location]
 
 
 @lru_cache(maxsize=4)
@@ -148,8 +148,8 @@ def _read_bone(
     keyed = [m for m in modes if any((bone_path(name, rotation_path(m)), i) in curves for i in range(4))]
     chosen = keyed[0] if keyed else mode
     path, count = bone_path(name, rotation_path(chosen)), channel_count(chosen)
-    places = [(bone_path(name, "location"), index) for index in range(3 if model.is_root else 0)]
-    channels = [*((path, index) for index in range(count)), *places]
+    location = [(bone_path(name, "location"), index) for index in range(3 if model.is_root else 0)]
+    channels = [*((path, index) for index in range(count)), *location]
     usual = known[:count] if chosen == mode else np.eye(4)[0][:count] * (chosen == "QUATERNION")
     otherwise = np.concatenate([usual, known[channel_count(mode) :]])
     values = [
@@ -161,13 +161,13 @@ def _read_bone(
 
 
 def _value(curve: bpy.types.FCurve, default: float) -> float:
-    """What a curve says at its first key; a file of strangers may hold anything."""
+    """A curve's value at its first key; an untrusted file may hold any number."""
     value = float(curve.keyframe_points[0].co[1]) if len(curve.keyframe_points) else default
     return value if abs(value) < LARGEST_LOCATION_M else default
 
 
 def _usable(values: Array, otherwise: Array, mode: str) -> Array:
-    """Values that show a rotation."""
+    """Values with a quaternion of unit length; `otherwise` where it has none."""
     if mode == "QUATERNION":
         length = float(np.linalg.norm(values[:4]))
         if length < 1e-6:
@@ -189,7 +189,7 @@ def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
 
 
 def _with_joints(body: Body, stored: Posture, shown: Posture, bones: list[str]) -> Posture:
-    """A posture with the joints that some bones move as in another."""
+    """The stored posture with the joints of some bones from the shown one."""
     skeleton = body.skeleton
     rotations, angles = stored.rotations.copy(), stored.angles.copy()
     translation = stored.translation

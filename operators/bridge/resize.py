@@ -1,4 +1,4 @@
-"""Other lengths for an actor that is there: its bones change, its pose, keyframes and place stay."""
+"""Resize an actor: its bones get other lengths; its pose, keyframes and location stay."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,10 +15,10 @@ from .object_space import object_space
 
 
 def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
-    """Give an armature's bones the lengths of a body.
+    """Set the lengths of an armature's bones to those of a body.
 
-    Every bone keeps its direction at rest, whatever the rest pose is, and the hips keep their place, so that
-    keyed poses stay where they were posed.
+    Every bone keeps its direction at rest, whatever the rest pose is, and the hips keep their location, so
+    that keyed poses stay where they were posed.
 
     Args:
         armature_object: An armature with the skeleton's bones, of even scale.

@@ -1,7 +1,7 @@
-"""How far each frame can be believed, as F-curves beside the motion's own, for the Graph Editor.
+"""Review curves: the confidence of each frame as F-curves beside the motion's own, for the Graph Editor.
 
-They animate custom properties of the armature object, which move nothing: no bone, no exporter by its own
-settings, and no reader of keyframes looks at them.
+They animate custom properties of the armature object, which move nothing: bones, exporters by default, and
+readers of keyframes ignore them.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from .keys import add_generated_keys, remove_generated_keys
 
 GROUP = "Keymark Confidence"
 SUFFIX = " (Keymark)"
-"""What the names of all custom properties end with, so that none is anybody else's."""
+"""Suffix of all custom properties' names, which tells them from others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class ReviewCurve:
     """One curve and the property it animates."""
 
     name: str
-    """What it shows, with the unit."""
+    """The quantity, with its unit."""
     description: str
     values: Array
     """(F,) values; frames that are NaN get no key."""
@@ -33,12 +33,12 @@ class ReviewCurve:
 
     @property
     def property_name(self) -> str:
-        """Of the custom property."""
+        """Name of the custom property."""
         return self.name + SUFFIX
 
 
 def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
-    """What is shown of a review: confidence, near-membership, reprojection error and the points' sigmas."""
+    """Curves of a review: confidence, near-membership, reprojection error and the points' sigmas."""
     compared = np.isfinite(review.reprojection_px)
     total = np.where(compared, review.reprojection_px, 0.0).sum(axis=1)
     count = compared.sum(axis=1)
@@ -81,7 +81,7 @@ def curve_path(name: str) -> str:
 
 
 def is_review_curve(fcurve: bpy.types.FCurve) -> bool:
-    """Whether a curve shows how far frames can be believed, and is no part of the motion."""
+    """Whether a curve is a review curve, and not part of the motion."""
     end = f'{bpy.utils.escape_identifier(SUFFIX)}"]'
     return str(fcurve.data_path).startswith('["') and str(fcurve.data_path).endswith(end)
 
@@ -94,7 +94,7 @@ def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Act
     Args:
         armature_object: The actor.
         action: The motion's Action.
-        review: What there is to show.
+        review: The review of that motion.
     """
     channelbag = channelbag_for(action, armature_object)
     curves = review_curves(review)

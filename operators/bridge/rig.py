@@ -1,4 +1,4 @@
-"""The actor's armature as core's `Rig`: what its channels show in the world."""
+"""Read the actor's armature as core's `Rig`: from channels to the world."""
 
 from collections.abc import Mapping
 
@@ -13,12 +13,12 @@ from .object_space import ObjectSpace, object_space
 
 
 def read_rig(armature_object: bpy.types.Object, body: Body) -> Rig:
-    """The bones that turn, in the rotation modes they have, with the ends of all that hangs on them.
+    """Read the bones with degrees of freedom, in their rotation modes, with the ends of their rigid leaves.
 
     `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels.
 
     Args:
-        armature_object: An armature with the skeleton's bones, in any place, even scale and rest pose.
+        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
         body: The skeleton, with the sizes that `read_body` finds in the armature.
 
     Raises:
@@ -39,14 +39,14 @@ def rig_at_rest(
     modes: Mapping[str, str],
     space: ObjectSpace,
 ) -> Rig:
-    """The same for any bones.
+    """A rig as `read_rig` gives it, of bones that need not be in an armature.
 
     Args:
         body: Skeleton and sizes.
         axes: (3, 3) each bone's axes in its joint's frame.
-        rest: (4, 4) each bone's place and axes at rest, in the object's space.
+        rest: (4, 4) rest matrix of each bone, in the object's space.
         modes: Rotation mode of each bone.
-        space: Where the object stands.
+        space: From the object's space to the world.
     """
     models = bone_models(body)
     turning = [model for model in models if model.chain]

@@ -1,4 +1,4 @@
-"""Rotations in whichever mode an animator has chosen for a bone; the mode itself is never changed."""
+"""Rotations in the rotation mode of a bone, which the animator chooses and Keymark never changes."""
 
 import bpy
 import numpy as np
@@ -51,7 +51,7 @@ def _continuous_axis_angles(rotation: Array) -> Array:
             axis, angle = before[1:], 0.0
         else:
             axis = vector / angle
-            if axis @ before[1:] < 0.0:  # the opposite axis and angle say the same and lie nearer
+            if axis @ before[1:] < 0.0:  # the opposite axis and angle are the same rotation and lie nearer
                 axis, angle = -axis, -angle
         turns = np.round((before[0] - angle) / (2.0 * np.pi)) if frame else 0.0
         before = np.array([angle + 2.0 * np.pi * turns, *axis])

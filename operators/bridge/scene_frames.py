@@ -41,9 +41,9 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
 
 @contextmanager
 def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
-    """Yield a function that evaluates the scene at a frame, fractional ones too; then go back.
+    """Yield a function that evaluates the scene at a frame, fractional ones too; then restore its frame.
 
-    Whatever is posed and not keyed, on any performer's armature, is there again afterwards.
+    Poses without keys, of any armature in the scene, are restored as well.
     """
     before = scene.frame_current, scene.frame_subframe
     poses = [(actor, _pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
@@ -57,12 +57,12 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     finally:
         scene.frame_set(before[0], subframe=before[1])
         for actor, pose in poses:
-            _give_back(actor, pose)
+            _restore_pose(actor, pose)
 
 
 @contextmanager
 def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
-    """Let `action`, or nothing, animate the armature meanwhile; then give back Action and unkeyed pose."""
+    """Assign an Action, or none, to the armature meanwhile; then restore its Action and unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
     pose = _pose_of(armature_object)
@@ -78,7 +78,7 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
             if before[1] is not None:
                 data.action_slot = before[1]
             evaluated(armature_object)  # a new Action is evaluated once, which would undo the unkeyed changes
-        _give_back(armature_object, pose)
+        _restore_pose(armature_object, pose)
 
 
 def _is_animated(item: bpy.types.Object) -> bool:
@@ -90,7 +90,7 @@ def _pose_of(armature_object: bpy.types.Object) -> Pose:
     return {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
 
 
-def _give_back(armature_object: bpy.types.Object, pose: Pose) -> None:
+def _restore_pose(armature_object: bpy.types.Object, pose: Pose) -> None:
     for name, values in pose.items():
         bone = armature_object.pose.bones[name]
         for channel, value in zip(CHANNELS, values, strict=True):

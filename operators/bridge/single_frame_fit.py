@@ -1,4 +1,4 @@
-"""Posing an actor by what one frame of the footage shows: the way from a scene to core's fit and back."""
+"""Fit an actor to one frame of the footage: from a scene to core's single-frame fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
 from ...core.footage.single_frame_regions import regions_of_frame
 from ...core.observation.depths import DEPTH_STD_M
 from ...core.observation.regions import MarkerPlacement, RegionModel
-from ...core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose, prior_from_standing
+from ...core.prior.frame_prior import Belief, belief_from_keyframes, belief_from_pose, belief_from_standing
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
@@ -33,7 +33,7 @@ from .pose import read_posture
 from .scene_frames import scene_frames
 
 STANDS_HERE = 1.5
-"""A body whose markers lie farther off than this many times those of one placed anew stands elsewhere."""
+"""Ratio of marker distances, shown body to one placed anew, above which the shown body is elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +43,11 @@ class FrameInFootage:
     footage: Footage
     styles: tuple[MarkerStyle, ...]
     reading: Reading | None
-    """What was read of the clip, where that is of this very footage and these markers."""
+    """An earlier reading of the clip, if it is of this footage and these markers."""
     clip_frames: Array
-    """(F,) scene frame of every frame of the clip; reckoned from its header where it was not read."""
+    """(F,) scene frame of every frame of the clip; estimated from its header where it was not read."""
     index: int
-    """The current frame's place in the clip."""
+    """Index of the current frame in the clip."""
 
     @property
     def segments(self) -> tuple[str, ...]:
@@ -55,13 +55,13 @@ class FrameInFootage:
         return tuple(style.segment for style in self.styles)
 
     def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
-        """The markers' regions in the frame: what was read, else found now.
+        """The markers' regions in the frame: from the reading, else found now.
 
         Args:
-            expected: Where they are expected, (1, M), which tells markers of like color apart.
+            expected: Expected regions (1, M), which tell markers of similar color apart.
 
         Raises:
-            InputError: A color is nowhere in the clip, or the clip cannot be read.
+            InputError: A color does not occur in the clip, or the clip cannot be read.
         """
         if self.reading is not None:
             return self.reading.tracks.frame(self.index)
@@ -72,15 +72,15 @@ class FrameInFootage:
 def frame_in_footage(
     footage: Footage, styles: Sequence[MarkerStyle], reading: Reading | None = None
 ) -> FrameInFootage:
-    """Where in the footage the scene's current frame lies.
+    """The scene's current frame in the footage.
 
     Args:
         footage: Clip and camera in their scene.
         styles: The markers.
-        reading: What was read of the clip earlier; it is taken if it is of this footage and these markers.
+        reading: An earlier reading of the clip; used if it is of this footage and these markers.
 
     Raises:
-        InputError: The clip is not there, or the current frame lies outside it.
+        InputError: The clip is missing, or the current frame lies outside it.
     """
     key = reading_key(footage.path, footage.rate, styles, None)
     if reading is not None and of_same_footage(reading.key, key):
@@ -103,7 +103,7 @@ def frame_in_footage(
 
 
 def posed_standing(frame: FrameInFootage, body: Body, regions: RegionTracks | None) -> Posture:
-    """A body that stands where the performer is in the frame."""
+    """A standing body at the performer's location in the frame."""
     camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
     return place_standing(body, camera, 0, regions, frame.segments)
 
@@ -115,18 +115,18 @@ def fit_to_frame(
     start: str,
     matches: Matches = NOT_MATCHED,
 ) -> FrameFit:
-    """The actor's posture by what the frame shows; scene, Action and pose are as before.
+    """Fit the actor's posture to the frame; scene, Action and pose are as before.
 
     Args:
         frame: The frame.
         armature_object: The actor.
-        action: Where the animator keyed; None for no keyframes.
+        action: The animator's keyframes; None for none.
         start: KEYFRAMES for the nearest ones (standing where there are none), POSE for the actor's pose as it
             is, STANDING for a body that stands where the performer is.
-        matches: Which keyframes nobody posed; markers' places are not calibrated on these.
+        matches: The matched keyframes; marker placements are not calibrated on these.
 
     Raises:
-        InputError: No marker is seen in the frame, or what is needed to see them is missing.
+        InputError: No marker is visible in the frame, or clip, camera or a bone is missing.
     """
     body = read_body(armature_object, HUMAN)
     keyframes = _keyframes(frame, armature_object, action, body, matches)
@@ -135,9 +135,9 @@ def fit_to_frame(
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in frame.segments))
     if start == "POSE":
-        belief = prior_from_pose(read_posture(armature_object, body).posture)
+        belief = belief_from_pose(read_posture(armature_object, body).posture)
     elif start == "KEYFRAMES" and keyframes:
-        belief = prior_from_keyframes(keyframes, frame.index, frame.footage.rate)
+        belief = belief_from_keyframes(keyframes, frame.index, frame.footage.rate)
     else:
         belief = _standing_belief(frame, model, read_posture(armature_object, body).posture)
     regions = frame.regions(expected_in_frame(model, belief, len(posed)))
@@ -154,8 +154,8 @@ def fit_to_frame(
     return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed))
 
 
-def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> FramePrior:
-    """About the shown posture if it stands at the performer already, as measured; else one placed there."""
+def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> Belief:
+    """Belief about the shown posture if it is at the performer's location, else about one placed there."""
     regions = frame.regions()
     placed = posed_standing(frame, model.body, regions)
     both = Posture.stack([shown, placed])
@@ -163,11 +163,11 @@ def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) 
     predicted = model.evaluate(model.body.pose(both), np.array([last, last]))
     apart = np.linalg.norm(predicted.centroid - regions.centroid, axis=-1)
     if not np.isfinite(apart).any():
-        return prior_from_standing(placed)
+        return belief_from_standing(placed)
     of_shown, of_placed = np.nanmean(apart, axis=1)
     if of_shown <= STANDS_HERE * of_placed:
-        return prior_from_standing(shown, DEPTH_STD_M)
-    return prior_from_standing(placed)
+        return belief_from_standing(shown, DEPTH_STD_M)
+    return belief_from_standing(placed)
 
 
 def _keyframes(
@@ -191,10 +191,10 @@ def measured_in_frame(
     ground_px: tuple[float, ...],
     arms_stretched: bool,
 ) -> MeasuredActor:
-    """The performer as measured in a frame in which they stand; see `measure_standing`.
+    """Measure the performer in a frame in which they stand; see `measure_standing`.
 
     Raises:
-        InputError: The two places in the picture cannot be a person's.
+        InputError: The two pixels cannot be those of a person.
     """
     camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
     regions = frame.regions() if frame.styles else None

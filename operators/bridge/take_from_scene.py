@@ -1,4 +1,4 @@
-"""A take as it stands in a scene: footage, camera, actor, markers and the animator's keyframes."""
+"""Read a take from a scene: footage, camera, actor, markers and the animator's keyframes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,7 +25,7 @@ def clip_frames(footage: Footage) -> Job[Array]:
     """Find the scene frame that shows each frame of the clip.
 
     Yields:
-        Progress; a video is gone through once for its time stamps, since its header may be wrong.
+        Progress; a video is read once for its time stamps, since its header may be wrong.
 
     Returns:
         (F,) scene frames, fractional for variable frame rates.
@@ -48,23 +48,23 @@ def read_scene_take(
     markers: Sequence[MarkerStyle],
     matches: Matches = NOT_MATCHED,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
-    """What `core.reconstruct` needs, from a scene; the scene is as before afterwards.
+    """Read a scene as core's take; the scene is as before afterwards.
 
     Args:
         footage: Clip and camera in their scene.
         armature_object: The actor.
-        keyframe_action: Where the animator keyed; None for no keyframes.
-        markers: What the performer wears.
-        matches: Which keyframes nobody posed, and what they were matched with.
+        keyframe_action: The animator's keyframes; None for none.
+        markers: The performer's markers.
+        matches: The matched keyframes, and what they were matched with.
 
     Yields:
         Progress.
 
     Returns:
-        The take, and sentences the animator should read.
+        The take, and notes for the animator.
 
     Raises:
-        InputError: Something is missing or unusable; the sentence says what to do.
+        InputError: Something is missing or unusable.
     """
     path = footage.path
     if not markers:

@@ -1,7 +1,7 @@
-"""Views of the actor besides the footage's: cameras at the front, at a side, and one that goes round.
+"""Turntable: further views of the actor, from the front, from a side, and from a camera that circles it.
 
-They hang on an empty at the actor's hips, which follows them over the floor but not up and down, so that a
-jump stays a jump. All of it lies in a collection of its own and is removed with that.
+The cameras are parented to an empty at the actor's hips, which follows them over the floor but not up and
+down, so that a jump stays a jump. All objects are in a collection of their own and are removed with it.
 """
 
 from collections.abc import Iterable
@@ -20,16 +20,16 @@ from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
 SAMPLES = 24
-"""Frames at which the actor is looked at to find where it moves and faces."""
+"""Frames at which the actor is sampled to find where it moves and faces."""
 MARGIN = 1.15
-"""How much more than the actor's reach a view shows."""
+"""Ratio of a view's extent to the actor's reach."""
 FACING = 0.2
 """An actor whose mean facing direction is shorter than this turns all around and faces nowhere."""
 SENSOR_MM = 36.0
 MADE_BY_KEYMARK = "keymark_view"
-"""Custom property of the objects that are removed again, whatever they are called by then."""
+"""Custom property of the turntable's objects, by which they are recognized after renaming."""
 SYMBOL_M = 0.25
-"""Size of the empties and cameras as drawn."""
+"""Display size of the empties and cameras [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Stage:
     """Where the actor moves and faces."""
 
     center: Array
-    """(3,) middle of its hips over the floor, and of its height [m]."""
+    """(3,) mean of its hips over the floor, and the middle of its height [m]."""
     heading_rad: float
     """Direction it faces on the whole, from the world's +X towards +Y."""
     reach_m: float
@@ -62,12 +62,12 @@ def survey(
     camera_object: bpy.types.Object | None,
     follow: bool,
 ) -> Stage:
-    """Look where the actor moves and faces over the scene's range of frames.
+    """Find where the actor moves and faces over the scene's frame range.
 
     Args:
-        scene: Its frames are gone through, and it is left at the frame it shows.
+        scene: The scene, whose current frame is restored.
         armature_object: The actor.
-        camera_object: An actor that turns all around is looked at from here; from -Y where there is none.
+        camera_object: The front of an actor that turns all around is towards it; towards -Y where None.
         follow: Whether the views follow the hips.
 
     Raises:
@@ -77,17 +77,17 @@ def survey(
     frames = np.unique(
         np.linspace(scene.frame_start, max(scene.frame_end, scene.frame_start), SAMPLES).round()
     )
-    places = np.empty((len(frames), len(bones), 2, 3))
+    ends = np.empty((len(frames), len(bones), 2, 3))
     with at_scene_frame(scene) as go_to:
         for row, frame in enumerate(frames):
             go_to(float(frame))
-            places[row] = _bone_ends(armature_object, bones)
-    hips = places[:, bones.index("pelvis"), 0]
-    left_to_right = places[:, bones.index("thigh.L"), 0] - places[:, bones.index("thigh.R"), 0]
-    low, high = places[..., 2].min(), places[..., 2].max()
+            ends[row] = _bone_ends(armature_object, bones)
+    hips = ends[:, bones.index("pelvis"), 0]
+    left_to_right = ends[:, bones.index("thigh.L"), 0] - ends[:, bones.index("thigh.R"), 0]
+    low, high = ends[..., 2].min(), ends[..., 2].max()
     middle = np.array([*hips[:, :2].mean(axis=0), 0.5 * (low + high)])
     about = hips if follow else middle[None]
-    sideways = np.linalg.norm(places[..., :2] - about[:, None, None, :2], axis=-1)
+    sideways = np.linalg.norm(ends[..., :2] - about[:, None, None, :2], axis=-1)
     spare = (
         (0.0, -1.0)
         if camera_object is None

@@ -10,7 +10,7 @@ from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, motion
-from ..shell.takes import active_take, actor_of, take_by_identifier
+from ..shell.takes import active_take, actor_of, take_called
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -35,24 +35,24 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        """Read the motion and finish it; the settings are those of the moment it begins."""
-        from ..bridge.finish_motion import Wanted, finish_motion
+        """Read the motion and finish it, with the options at the start of the job."""
+        from ..bridge.finish_motion import FinishOptions, finish_motion
 
         take = active_take(scene)
         settings, identifier = take.finish, take.identifier
-        wanted = Wanted(
+        options = FinishOptions(
             tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
             whole_pose=settings.shared == "WHOLE_POSE",
             stray_m=settings.stray_mm / 1000.0 if settings.plant_feet else None,
         )
         frame_s = scene.render.fps_base / scene.render.fps
-        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, wanted, frame_s)
+        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, options, frame_s)
         del take, settings  # Blender may move them while the job runs
         return FinishedTake(identifier, (yield from job))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        """Write the final Action and let it animate the actor."""
-        take, finished = take_by_identifier(scene, result.take), result.finished
+        """Write the final Action and assign it to the actor."""
+        take, finished = take_called(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:
             raise InputError("the motion has been deleted meanwhile; nothing was changed")

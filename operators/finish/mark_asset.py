@@ -11,7 +11,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
-    """Offer the motion, finished if it is, in the asset browser: with catalog, tags and a picture"""
+    """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
 
     bl_idname = "keymark.mark_asset"
     bl_label = "Mark Asset"

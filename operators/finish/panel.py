@@ -1,4 +1,4 @@
-"""From the reconstructed motion to what the animator keeps."""
+"""Panels of the finish: final Action, asset, library and export; formats are listed in `export_formats`."""
 
 import bpy
 
@@ -14,7 +14,7 @@ class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
     bl_label = "Finish"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button, how many keys there shall be, and what came of it."""
+        """Draw the button, the options, and the result."""
         take, column = active_take(context.scene), self.column()
         settings = take.finish
         row = column.row()
@@ -34,7 +34,7 @@ class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
 
 
 def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """What the last bake made, and the switch between it and the motion."""
+    """Draw the result of the last bake, and the switch between it and the motion."""
     settings = take.finish
     data = take.armature.animation_data
     shown = data.action if data else None
@@ -61,7 +61,7 @@ def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
 
 
 class FinishPart(TakePanel):
-    """A part of the last step, folded until it is wanted."""
+    """Base of the sub-panels, closed by default."""
 
     bl_parent_id = "KEYMARK_PT_finish"
     bl_options = {"DEFAULT_CLOSED"}
@@ -73,7 +73,7 @@ class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
     bl_label = "Asset"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what is said of the asset, and the button."""
+        """Draw the details of the asset, and the button."""
         settings, column = active_take(context.scene).finish, self.column()
         for name in ("catalog", "tags", "author", "license", "description"):
             column.prop(settings, name)
@@ -86,13 +86,13 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
     bl_label = "Export"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw a button for each format; one that this Blender lacks is gray and says why."""
+        """Draw a button for each format; one that this Blender cannot write is gray, with the reason."""
         column = self.column()
-        for kind, chosen in FORMATS.items():
-            missing = chosen.missing()
+        for kind, listed in FORMATS.items():
+            missing = listed.missing()
             row = column.row()
             row.enabled = not missing
-            row.operator("keymark.export_motion", text=chosen.name, icon="EXPORT").format = kind
+            row.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
             if missing:
                 column.label(text=missing, icon="INFO")
 
@@ -103,7 +103,7 @@ class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
     bl_label = "Keyframe Library"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button, and what it is for."""
+        """Draw the button, and its purpose."""
         column = self.column()
         lines = column.column(align=True)
         lines.scale_y = 0.85

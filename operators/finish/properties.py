@@ -1,4 +1,4 @@
-"""How a take's motion is finished: its final keys, and what it is called among the assets."""
+"""Properties of the finish: options and result of the final Action, and details of the asset."""
 
 import bpy
 
@@ -13,12 +13,12 @@ SHARED = (
 
 
 class KEYMARK_PG_finish(bpy.types.PropertyGroup):
-    """A take's finishing."""
+    """Finish of a take's motion."""
 
-    keys: bpy.props.EnumProperty(name="Keys", description="How many keys the final Action has", items=KEYS)
+    keys: bpy.props.EnumProperty(name="Keys", description="Number of keys of the final Action", items=KEYS)
     tolerance_mm: bpy.props.FloatProperty(
         name="Tolerance (mm)",
-        description="How far any joint or end of the body may be from the reconstructed motion, in any frame",
+        description="Largest distance of any joint or end of the body from the reconstructed motion",
         default=5.0,
         min=0.1,
         soft_min=1.0,
@@ -32,12 +32,12 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
     )
     plant_feet: bpy.props.BoolProperty(
         name="Plant Feet",
-        description="Hold feet that rest at one place; the legs follow, the hips a little where they must",
+        description="Hold resting feet at one place; the legs follow, and the hips a little where they must",
         default=True,
     )
     stray_mm: bpy.props.FloatProperty(
         name="Foot Stray (mm)",
-        description="How far a resting foot may wander and still be held; raise it to hold feet that sway",
+        description="Distance that a resting foot may stray and still be held; raise it to hold swaying feet",
         default=25.0,
         min=1.0,
         soft_max=100.0,
@@ -52,7 +52,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
     )
     outdated: bpy.props.BoolProperty(
         name="Outdated",
-        description="The motion was reconstructed again since the final Action was made",
+        description="Whether the motion was reconstructed again after the final Action was made",
         options={"HIDDEN"},
     )
     keys_before: bpy.props.IntProperty(name="Keys Before", options={"HIDDEN"})
@@ -61,15 +61,17 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
     rests: bpy.props.IntProperty(name="Rests", options={"HIDDEN"})
     catalog: bpy.props.StringProperty(
         name="Catalog",
-        description="Where the asset browser lists the motion, such as Keymark/Walking; empty for no catalog",
+        description="Catalog of the motion in the asset browser, such as Keymark/Walking; empty for none",
         default="Keymark/Motions",
     )
     tags: bpy.props.StringProperty(
         name="Tags", description="Words to find the motion by, with commas between them", default="keymark"
     )
-    author: bpy.props.StringProperty(name="Author", description="Who made the motion")
-    license: bpy.props.StringProperty(name="License", description="Under which terms others may use it")
-    description: bpy.props.StringProperty(name="Description", description="What the motion shows")
+    author: bpy.props.StringProperty(name="Author", description="Author of the motion")
+    license: bpy.props.StringProperty(
+        name="License", description="Terms under which others may use the motion"
+    )
+    description: bpy.props.StringProperty(name="Description", description="Description of the motion")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_finish,))

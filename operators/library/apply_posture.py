@@ -1,4 +1,4 @@
-"""Pose the actor as a library's posture shows."""
+"""Pose the actor in a posture of a library."""
 
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
-    """Pose the actor as in a library, whatever its proportions; nothing is keyed before you do"""
+    """Pose the actor in a posture of a library, fitted to its proportions; no key is set"""
 
     bl_idname = "keymark.apply_posture"
     bl_label = "Apply Posture"
@@ -41,26 +41,26 @@ class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
     )
     place: bpy.props.EnumProperty(
         name="Place",
-        description="Where the actor is posed",
+        description="Location of the posed actor",
         items=[
-            ("ACTOR", "Where the Actor Is", "At its place and heading, on the floor under its feet"),
+            ("ACTOR", "Where the Actor Is", "At its location and heading, on the floor under its feet"),
             ("WORLD", "As in the Library", "As it was posed, above the world's origin, the floor at z = 0"),
         ],
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Fit the posture to the actor and show it, over the keyframes."""
+        """Fit the posture to the actor and pose it, over the keyframes."""
         from ..bridge.actor_lengths import read_body
-        from ..bridge.library.posture_transfer import named_posture, on_actor, standing_as
+        from ..bridge.library.posture_transfer import named_posture, placed_like, posture_for_actor
         from ..bridge.pose import read_posture, write_posture
 
         take = active_take(context.scene)
         body = read_body(take.armature, HUMAN)
         library, name = self._chosen(context)
         found = named_posture(library, name)
-        posture = on_actor(found, library.actor, body, mirror=self.mirrored)
+        posture = posture_for_actor(found, library.actor, body, mirror=self.mirrored)
         if self.place == "ACTOR":
-            posture = standing_as(posture, body, read_posture(take.armature, body).posture)
+            posture = placed_like(posture, body, read_posture(take.armature, body).posture)
         show_keyframes(take)
         write_posture(take.armature, posture)
         say(

@@ -28,7 +28,7 @@ class KEYMARK_OT_discard_library(BaseOperator, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for confirmation."""
         item = chosen_entry(context)
-        message = label("'{title}' goes for good", title=item.title if item is not None else "")
+        message = label("'{title}' is deleted permanently", title=item.title if item is not None else "")
         return context.window_manager.invoke_confirm(
             self, event, message=message, confirm_text="Delete", icon="WARNING"
         )

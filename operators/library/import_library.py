@@ -34,7 +34,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     )
     existing: bpy.props.EnumProperty(
         name="Existing",
-        description="What to do where another library of the same identifier is at hand",
+        description="Action where another library of the same identifier is at hand",
         items=CHOICES,
         options={"SKIP_SAVE"},
     )
@@ -95,6 +95,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take both away."""
+    """Remove both."""
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     bpy.utils.unregister_class(KEYMARK_OT_import_library)

@@ -22,7 +22,7 @@ class KEYMARK_OT_install_shipped_libraries(InstallOperator, bpy.types.Operator):
     )
     existing: bpy.props.EnumProperty(
         name="Existing",
-        description="What to do where another library of the same identifier is installed",
+        description="Action where another library of the same identifier is installed",
         items=CHOICES,
         options={"SKIP_SAVE"},
     )

@@ -22,32 +22,34 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
-    title: bpy.props.StringProperty(name="Title", description="What people read; by default the take's name")
-    author: bpy.props.StringProperty(name="Author", description="Who made the library")
+    title: bpy.props.StringProperty(
+        name="Title", description="Title of the library; by default the take's name"
+    )
+    author: bpy.props.StringProperty(name="Author", description="Author of the library")
     license: bpy.props.StringProperty(
         name="License",
-        description="What others may do with it, as an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
-        "by default nothing",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
         default="LicenseRef-Proprietary",
         search=suggest,
         search_options={"SUGGESTION"},
     )
     count: bpy.props.IntProperty(
         name="Postures",
-        description="How many postures the library gets; 0 for 10 to 40, as many as differ",
+        description="Number of postures in the library; 0 for 10 to 40, as many as differ",
         default=0,
         min=0,
         max=1000,
     )
     for_matching: bpy.props.BoolProperty(
         name="Use for Matching",
-        description="Put it among your own libraries at once, so that footage can be matched with it",
+        description="Publish the library among your own at once, so that footage can be matched with it",
         default=True,
     )
 
     learned_as: bpy.props.StringProperty(
         name="Learned As",
-        description="Identifier that the library was given, so that doing it again replaces it",
+        description="Identifier that the library was given, by which learning again replaces it",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 

@@ -17,8 +17,8 @@ def chosen_library(context: bpy.types.Context, identifier: str) -> "Library":
         InputError: There is none, or it is not complete.
     """
     from .editing.library_from_scene import library_from_scene
-    from .registry_files import registered_library
+    from .registry_files import load_registered
 
     if identifier:
-        return registered_library(identifier)
+        return load_registered(identifier)
     return library_from_scene(library_here(context.scene))

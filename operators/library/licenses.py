@@ -1,4 +1,4 @@
-"""Terms under which libraries are usually shared, offered where somebody types a license."""
+"""Common licenses of libraries, suggested in license fields."""
 
 import bpy
 
@@ -9,9 +9,9 @@ USUAL = (
     ("CC-BY-NC-4.0", "Nothing commercial, the author is named"),
     ("LicenseRef-Proprietary", "Nothing without asking"),
 )
-"""SPDX identifiers, and what others may do."""
+"""SPDX identifiers, and what they allow."""
 
 
 def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: str) -> list[tuple[str, str]]:
-    """The usual licenses that go with what is typed so far, each with what it allows."""
+    """The common licenses that contain the typed text, each with what it allows; all if none does."""
     return [each for each in USUAL if typed.lower() in each[0].lower()] or list(USUAL)

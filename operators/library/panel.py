@@ -1,4 +1,4 @@
-"""Keyframe libraries: those at hand, and the one that is made in this file."""
+"""Panels of keyframe libraries: the registry, and the library that is made in this file."""
 
 import bpy
 
@@ -9,11 +9,11 @@ from .editing.scene_libraries import active_motion, active_posture, find_library
 from .registry import chosen_entry
 
 MOST_LINES = 4
-"""Of what a library says of itself, or what is wrong with it."""
+"""Lines of a library's description, or of its problem."""
 
 
 class KEYMARK_UL_shelf(bpy.types.UIList):
-    """Libraries at hand, with an icon that tells whose they are and whether they can be used."""
+    """Registered libraries, with an icon for shipped, own and unusable ones."""
 
     def draw_item(
         self,
@@ -25,7 +25,7 @@ class KEYMARK_UL_shelf(bpy.types.UIList):
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one library: title, version, number of postures."""
+        """Draw one library: title and number of postures."""
         row = layout.row(align=True)
         row.label(
             text=item.title,
@@ -73,7 +73,7 @@ class KEYMARK_UL_library_motions(bpy.types.UIList):
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one motion: name, and how long it takes."""
+        """Draw one motion: name and duration."""
         row = layout.row(align=True)
         row.prop(item, "name", text="", emboss=False, icon="FILE_REFRESH" if item.cyclic else "FORWARD")
         facts = row.row()
@@ -94,7 +94,7 @@ class KEYMARK_UL_library_steps(bpy.types.UIList):
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one step: when, and which posture."""
+        """Draw one step: time and posture."""
         row = layout.row(align=True)
         when = row.row()
         when.ui_units_x = 3.5
@@ -103,7 +103,7 @@ class KEYMARK_UL_library_steps(bpy.types.UIList):
 
 
 class KEYMARK_MT_shelf(bpy.types.Menu):
-    """What else can be done with the libraries at hand."""
+    """Further operators on the registered libraries."""
 
     bl_label = "Library Specials"
 
@@ -119,7 +119,7 @@ class KEYMARK_MT_shelf(bpy.types.Menu):
 
 
 class KEYMARK_MT_library(bpy.types.Menu):
-    """What else can be done with the library that is made here."""
+    """Further operators on the library that is made here."""
 
     bl_label = "Library Specials"
 
@@ -148,7 +148,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list, what is known of the chosen one, and what is done with it."""
+        """Draw the list, the facts of the chosen library, and its operators."""
         registry, layout = context.window_manager.keymark_shelf, self.layout
         row = layout.row()
         row.template_list(
@@ -185,7 +185,7 @@ class KEYMARK_PT_library_here(SubPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw which library, its postures, and what is done with them."""
+        """Draw the library, its postures, and their operators."""
         layout, group = self.layout, find_library_here(context.scene)
         if group is None:
             layout.operator("keymark.new_library", icon="ADD")
@@ -231,12 +231,12 @@ class LibraryPart(SubPanel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There is one."""
+        """There is a library."""
         return find_library_here(context.scene) is not None
 
 
 class KEYMARK_PT_library_motions(LibraryPart, bpy.types.Panel):
-    """Its motions."""
+    """Motions of the library."""
 
     bl_label = "Motions"
 
@@ -274,12 +274,12 @@ class KEYMARK_PT_library_motions(LibraryPart, bpy.types.Panel):
 
 
 class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
-    """What it says of itself."""
+    """Details of the library."""
 
     bl_label = "Details"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw who made it, under which terms, and from what."""
+        """Draw author, license, description and sources."""
         group, column = library_here(context.scene), self.column()
         for name in ("author", "license", "version", "description", "tags", "identifier"):
             column.prop(group, name)
@@ -293,7 +293,7 @@ class KEYMARK_PT_library_details(LibraryPart, bpy.types.Panel):
 
 
 def _draw_begin(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """What an empty library waits for; without a take there is no other button to build an actor."""
+    """Draw the next step of an empty library; without a take there is no other button to build an actor."""
     take = find_take(context.scene)
     if take is None or take.armature is None:
         draw_sentence(layout, context, label("Build an actor to pose; no footage is needed"), "FORWARD")
@@ -303,7 +303,7 @@ def _draw_begin(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _facts(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.PropertyGroup) -> None:
-    """What is known of a library at hand."""
+    """Draw the facts of a registered library."""
     column = layout.column(align=True)
     column.scale_y = 0.85
     postures = count_label(len(item.postures), "1 posture", "{count} postures")

@@ -12,7 +12,7 @@ from .publication import publish, registry_conflicts
 
 
 class KEYMARK_OT_keep_library(BaseOperator, bpy.types.Operator):
-    """Put the library among your own as it is now, so that footage can be matched with it"""
+    """Publish the library, as it is now, among your own, so that footage can be matched with it"""
 
     bl_idname = "keymark.keep_library"
     bl_label = "Use for Matching"
@@ -21,7 +21,7 @@ class KEYMARK_OT_keep_library(BaseOperator, bpy.types.Operator):
 
     existing: bpy.props.EnumProperty(
         name="Existing",
-        description="What to do where another library of the same identifier is at hand",
+        description="Action where another library of the same identifier is at hand",
         items=CHOICES,
         options={"SKIP_SAVE"},
     )

@@ -9,7 +9,7 @@ from .registry import refresh
 
 
 class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
-    """Look again at the folder of your libraries, after files were put there by other programs"""
+    """Read the folder of your libraries again, after other programs have changed its files"""
 
     bl_idname = "keymark.refresh_shelf"
     bl_label = "Refresh Libraries"

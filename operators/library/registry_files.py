@@ -16,7 +16,7 @@ def folders() -> list[Path]:
     return [registry.own_folder(), SHIPPED]
 
 
-def registered_library(identifier: str) -> Library:
+def load_registered(identifier: str) -> Library:
     """The registered library of an identifier, read from its file.
 
     Raises:

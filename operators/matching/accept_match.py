@@ -1,4 +1,4 @@
-"""Take a matched keyframe for the animator's own, as if posed like that."""
+"""Accept a matched keyframe as the animator's own."""
 
 import bpy
 
@@ -12,7 +12,7 @@ from .matches import chosen_match, state_of
 
 
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
-    """Count the chosen match as posed by you: it is believed as much, and matching again leaves it alone"""
+    """Count the chosen match as posed by you: it is trusted as much, and matching again leaves it alone"""
 
     bl_idname = "keymark.accept_match"
     bl_label = "Accept"
@@ -20,7 +20,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Give its keys to the animator."""
+        """Turn its keys into the animator's."""
         from ..bridge.matched_keyframes import take_over
 
         take = active_take(context.scene)

@@ -1,4 +1,4 @@
-"""Go to the next or the previous match, or to one that is in doubt."""
+"""Jump to the next or previous match, or to a doubtful one."""
 
 import bpy
 
@@ -20,31 +20,31 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
-        description="Which way to go from the current frame; from the last match on to the first",
+        description="Direction from the current frame; from the last match it goes to the first",
         items=[
             ("NEXT", "Next", "Go to the next match"),
             ("PREVIOUS", "Previous", "Go to the previous match"),
         ],
     )
     only_doubtful: bpy.props.BoolProperty(
-        name="Only Doubtful", description="Go to matches that are in doubt", default=False
+        name="Only Doubtful", description="Go to doubtful matches only", default=False
     )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip says where to."""
+        """Tooltip with the direction."""
         if properties.only_doubtful:
-            return "Go to the next match that is in doubt: replace it, or pose the actor there"
+            return "Go to the next doubtful match: replace it, or pose the actor there"
         return "Go to the next match" if properties.direction == "NEXT" else "Go to the previous match"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Choose it in the list, which goes there."""
+        """Choose the match in the list, which goes there."""
         scene, take = context.scene, active_take(context.scene)
         matching = take.matching
         invalidate_keyed_frames()
         wanted = [
-            (match.frame, place)
-            for place, match in enumerate(matching.matches)
+            (match.frame, index)
+            for index, match in enumerate(matching.matches)
             if not self.only_doubtful or (match.is_doubtful and state_of(take, match) == "MATCHED")
         ]
         if not wanted:

@@ -1,4 +1,4 @@
-"""Match the footage with keyframe libraries: keyframes that nobody has to pose."""
+"""Match the footage with keyframe libraries, to get keyframes without posing."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -35,29 +35,31 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
 
     library: bpy.props.StringProperty(
         name="Library",
-        description="What the library is known by, or its file; auto tries all and chooses",
+        description="Identifier or file of the library; auto tries all and chooses",
         default=EVERY_LIBRARY,
     )
     floor: bpy.props.EnumProperty(
-        name="Floor", description="What is known of the floor, which settles the distance", items=FLOORS
+        name="Floor",
+        description="Source of the floor's height, which determines the performer's distance",
+        items=FLOORS,
     )
     floor_height: bpy.props.FloatProperty(
         name="Floor Height",
-        description="How high the floor lies that the performer stands on",
+        description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
         precision=3,
         default=0.0,
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take from the panel what to look for."""
+        """Take library and floor from the panel."""
         matching = active_take(context.scene).matching
         self.library, self.floor = matching.library_name, matching.floor
         self.floor_height = matching.floor_height
         return super().invoke(context, event)
 
     def start(self, scene: bpy.types.Scene) -> "Job[MatchResult]":
-        """Read the scene's take and match it; what earlier matching gave is left out of account."""
+        """Read the scene's take and match it; earlier matches are ignored."""
         from ...core.matching.match_take import match_take, with_matches
         from ...core.take.read_footage import read_footage
         from ..bridge.take_from_scene import read_scene_take
@@ -82,11 +84,11 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         choice = yield from stretch(match_take(posed, reading, libraries, floor_m, count), READ, 1.0)
         found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
         matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
-        # The match may have found that another thing of its color had been taken for a marker.
+        # Matching corrects the reading where another object of a marker's color was taken for the marker.
         return MatchResult(identifier, frames, choice.reading or reading, choice, matched, notes)
 
     def finish(self, scene: bpy.types.Scene, result: "MatchResult") -> None:
-        """Key what was found beside what is posed; what earlier matching gave goes."""
+        """Key the matches beside what is posed, in place of earlier ones."""
         take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.notes:

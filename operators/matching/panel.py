@@ -1,4 +1,4 @@
-"""Keyframes from a library: what to match, how sure it is, and choosing among what a frame may show."""
+"""Panel of matching: settings, results, and the choice among a frame's candidates."""
 
 from math import degrees
 
@@ -11,16 +11,16 @@ from .matches import state_of
 from .properties import DOUBTFUL, SURE
 
 WORTH_NAMING = 0.005
-"""Probability below which the second best kind of motion is none."""
+"""Probability above which the second best library is named."""
 WELL = 0.85
-"""Fit below which the footage probably shows something else than the library."""
+"""Fit below which the footage probably shows something else."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
 NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
 
 class KEYMARK_UL_matches(bpy.types.UIList):
-    """Matches: frame, posture, and how probably it is right."""
+    """Matches: frame, posture and confidence."""
 
     def draw_item(
         self,
@@ -32,7 +32,7 @@ class KEYMARK_UL_matches(bpy.types.UIList):
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one match; of one that is posed or gone, say so."""
+        """Draw one match, or that it is posed or has no key any more."""
         state = state_of(active_take(context.scene), item)
         row = layout.row(align=True)
         row.active = state != "GONE"
@@ -51,7 +51,7 @@ class KEYMARK_UL_matches(bpy.types.UIList):
 
 
 def confidence_icon(match: bpy.types.PropertyGroup) -> str:
-    """How sure a match is, as a shape: a hand that chose it, a tick, a dot, a question mark."""
+    """Icon of a match's confidence: chosen by hand, sure, fair or doubtful."""
     if match.by_hand:
         return "VIEW_PAN"
     if match.confidence < DOUBTFUL:
@@ -60,18 +60,18 @@ def confidence_icon(match: bpy.types.PropertyGroup) -> str:
 
 
 def percent(share: float) -> str:
-    """A probability as people read it."""
+    """A probability in percent."""
     return label("{percent:.0f} %", percent=100.0 * share)
 
 
 class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
-    """Matching, and what came of it."""
+    """Matching and its results."""
 
     bl_label = "Match a Library"
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what to look for, the button or the running job, and what was found."""
+        """Draw the settings, the button or the running job, and the results."""
         matching, column = active_take(context.scene).matching, self.column()
         column.prop(matching, "library")
         column.prop(matching, "floor")
@@ -94,7 +94,7 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
 def _draw_choice(
     layout: bpy.types.UILayout, context: bpy.types.Context, matching: bpy.types.PropertyGroup
 ) -> None:
-    """Which library, how sure, and what comes next; how much it explains, where that is in doubt."""
+    """Draw the best libraries with their probabilities; how much they explain, where that is doubtful."""
     if not len(matching.ranking):
         return
     best, *others = matching.ranking
@@ -139,23 +139,23 @@ def _draw_matches(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> 
 
 
 def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """What the chosen match's frame may show, each a button, and what else can be done with it."""
+    """Draw the candidates of the chosen match as buttons, and its other operators."""
     matching = take.matching
     if matching.active_match >= len(matching.matches):
         return
     match = matching.matches[matching.active_match]
     box = layout.column(align=True)
     box.label(text=label("Frame {frame:g} may show", frame=match.frame), translate=False)
-    for place, candidate in enumerate(match.candidates):
+    for index, candidate in enumerate(match.candidates):
         row = box.row(align=True)
         button = row.operator(
             "keymark.replace_match",
-            text=_said_of(candidate),
+            text=_candidate_label(candidate),
             translate=False,
             icon="MOD_MIRROR" if candidate.mirrored else "ARMATURE_DATA",
-            depress=place == match.chosen,
+            depress=index == match.chosen,
         )
-        button.candidate = place
+        button.candidate = index
         said = row.row()
         said.ui_units_x = PERCENT_UNITS
         said.alignment = "RIGHT"
@@ -167,8 +167,8 @@ def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) 
     row.operator("keymark.remove_match", icon="X")
 
 
-def _said_of(candidate: bpy.types.PropertyGroup) -> str:
-    """A candidate's name; the turn first, as several often differ by that alone and a sidebar is narrow."""
+def _candidate_label(candidate: bpy.types.PropertyGroup) -> str:
+    """A candidate's name, after its turn: several often differ by that alone, and a sidebar is narrow."""
     angle = degrees(candidate.turned)
     if abs(angle) < NOTICEABLE_TURN_DEG:
         return str(candidate.name)

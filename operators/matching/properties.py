@@ -1,4 +1,4 @@
-"""What the footage was matched with: which library, how sure that is, and each frame's posture."""
+"""Properties of matching: settings, ranking of the libraries, and matches with their candidates."""
 
 from typing import TYPE_CHECKING
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
 
 PLACE_VALUES = 6
-"""Degrees of freedom that say where the hips are and how they are turned; Blender's vectors are short."""
+"""Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short."""
 DOUBTFUL = 0.5
-"""A match less sure than this is worth a look."""
+"""Confidence below which a match is doubtful."""
 SURE = 0.8
 FLOORS = (
     ("AUTO", "Find from Footage", "How high the floor is follows from the performer's size in the footage"),
@@ -24,11 +24,11 @@ FLOORS = (
 
 Entry = tuple[str, str, str, str, int]
 _entries: list[Entry] = []
-"""What the menu of libraries shows; Blender needs the words as long as it shows them."""
+"""Items of the menu of libraries: Blender keeps no copy of the strings."""
 
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
-    """The choice by itself, all libraries on the shelf, and the chosen one though it be gone from there."""
+    """The automatic choice, all registered libraries, and the chosen one even if it is missing."""
     rows = [item[:4] for item in library_items(matching, context)]
     name = matching.library_name
     if all(name != row[0] for row in rows):
@@ -47,51 +47,49 @@ def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
 
 
 def _chosen(matching: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Clicking a match in the list goes there."""
+    """Go to the frame of the match that was clicked in the list."""
     if matching.active_match < len(matching.matches):
         matching.matches[matching.active_match].go_to(matching.id_data)
 
 
 class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
-    """A posture that a frame may show, placed in front of the camera."""
+    """A posture that a frame may show, placed in the world."""
 
     name: bpy.props.StringProperty(name="Posture", description="The posture's name in its library")
     mirrored: bpy.props.BoolProperty(
-        name="Mirrored", description="The posture is taken with left and right exchanged"
+        name="Mirrored", description="Whether left and right of the posture are exchanged"
     )
     confidence: bpy.props.FloatProperty(
         name="Confidence",
-        description="How probably this posture is about right",
+        description="Probability that this posture is about right",
         subtype="FACTOR",
         min=0.0,
         max=1.0,
     )
     place: bpy.props.FloatVectorProperty(
-        name="Place", description="Where the hips are and how they are turned", size=PLACE_VALUES
+        name="Place", description="Location and rotation of the hips", size=PLACE_VALUES
     )
     turned: bpy.props.FloatProperty(
         name="Turned",
-        description="How far the performer faces to their left of what matching chose, seen from above",
+        description="Turn to the performer's left from the posture that matching chose, seen from above",
         subtype="ANGLE",
     )
     turns: bpy.props.FloatVectorProperty(
-        name="Turns", description="How the joints are turned", size=HUMAN.dof_count - PLACE_VALUES
+        name="Turns", description="Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES
     )
 
 
 class KEYMARK_PG_match(bpy.types.PropertyGroup):
-    """A frame whose posture a library gave."""
+    """A matched frame with its candidates."""
 
     frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    library: bpy.props.StringProperty(
-        name="Library", description="What the library is known by that the posture is from"
-    )
+    library: bpy.props.StringProperty(name="Library", description="Identifier of the posture's library")
     candidates: bpy.props.CollectionProperty(type=KEYMARK_PG_candidate)
     chosen: bpy.props.IntProperty(
-        name="Chosen", description="Which of the candidates the frame has", default=0, min=0
+        name="Chosen", description="Index of the candidate that the frame has", default=0, min=0
     )
     by_hand: bpy.props.BoolProperty(
-        name="Chosen by Hand", description="A person has chosen among the candidates, so nothing is in doubt"
+        name="Chosen by Hand", description="Whether a person chose the candidate, so that it is not doubtful"
     )
 
     @property
@@ -101,37 +99,37 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 
     @property
     def confidence(self) -> float:
-        """How probably the posture is about right; a person's choice counts as the best of them."""
+        """Probability that the posture is about right; a person's choice counts as the best candidate."""
         if self.by_hand:
             return float(max(candidate.confidence for candidate in self.candidates))
         return float(self.candidate.confidence)
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether it is worth a look."""
+        """Whether the match is worth a check."""
         return not self.by_hand and self.confidence < DOUBTFUL
 
     @property
     def matched(self) -> "Matched":
-        """What the estimate is told of it."""
+        """The match as core's `Matched`."""
         from ...core.prior.keyframes import Matched
 
         chosen = self.candidate
         return Matched(self.library, chosen.name, chosen.mirrored, min(max(self.confidence, 0.0), 1.0))
 
     def go_to(self, scene: bpy.types.Scene) -> None:
-        """Let the scene show this frame."""
+        """Go to this frame in the scene."""
         whole = int(self.frame // 1.0)
         scene.frame_set(whole, subframe=self.frame - whole)
 
 
 class KEYMARK_PG_library_chance(bpy.types.PropertyGroup):
-    """How probably the footage shows what a library holds."""
+    """Probability that the footage shows a library's motions."""
 
     name: bpy.props.StringProperty(name="Library", description="The library's title")
     probability: bpy.props.FloatProperty(
         name="Probability",
-        description="How probably the footage shows this kind of motion, of all that were tried",
+        description="Probability that the footage shows this library's motions, of all that were tried",
         subtype="FACTOR",
         min=0.0,
         max=1.0,
@@ -139,27 +137,29 @@ class KEYMARK_PG_library_chance(bpy.types.PropertyGroup):
 
 
 class KEYMARK_PG_matching(bpy.types.PropertyGroup):
-    """What a take's footage is matched with, and what was found."""
+    """Settings and results of matching a take."""
 
     library_name: bpy.props.StringProperty(
         name="Library",
-        description="What the library is known by that is looked for; menus number theirs, which may change",
+        description="Identifier of the library to match with; the numbers of menu items may change",
         default=EVERY_LIBRARY,
         options={"HIDDEN"},
     )
     library: bpy.props.EnumProperty(
         name="Library",
-        description="What the footage is matched with",
+        description="Library that the footage is matched with",
         items=_libraries,
         get=_library_number,
         set=_set_library,
     )
     floor: bpy.props.EnumProperty(
-        name="Floor", description="What is known of the floor, which settles the distance", items=FLOORS
+        name="Floor",
+        description="Source of the floor's height, which determines the performer's distance",
+        items=FLOORS,
     )
     floor_height: bpy.props.FloatProperty(
         name="Floor Height",
-        description="How high the floor lies that the performer stands on",
+        description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
         precision=3,
         default=0.0,
@@ -168,18 +168,18 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
     )
     ranking: bpy.props.CollectionProperty(type=KEYMARK_PG_library_chance)
     reason: bpy.props.StringProperty(
-        name="Reason", description="Why this library, or why none, as the last matching said"
+        name="Reason", description="Reason of the last matching for this library, or for none"
     )
     fit: bpy.props.FloatProperty(
         name="Fit",
-        description="How well the matched postures explain the footage; negative before the first time",
+        description="Share of the footage that the matches explain; negative before the first matching",
         default=-1.0,
         min=-1.0,
         max=1.0,
     )
     floor_found: bpy.props.FloatProperty(
         name="Floor Found",
-        description="How high the floor lies that the performer was placed on by the last matching",
+        description="Height of the floor in the last matching",
         subtype="DISTANCE",
         precision=3,
     )

@@ -1,4 +1,4 @@
-"""Take a matched keyframe away."""
+"""Remove a matched keyframe."""
 
 import bpy
 
@@ -20,7 +20,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the next in the list is chosen."""
+        """Remove the match; the next in the list is chosen."""
         from ..bridge.matched_keyframes import remove_keyframes
 
         scene = context.scene

@@ -1,4 +1,4 @@
-"""Give a matched frame another of the postures that it may show."""
+"""Replace the posture of a matched frame by another candidate."""
 
 import bpy
 
@@ -19,13 +19,13 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
 
     candidate: bpy.props.IntProperty(
         name="Candidate",
-        description="Which of the chosen match's candidates to take, from 0 for the one that matching chose",
+        description="Index of the chosen match's candidate to take; 0 is the one that matching chose",
         default=0,
         min=0,
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Key it, and go there."""
+        """Key the candidate, and go to its frame."""
         from .match_edits import key_candidate
 
         take = active_take(context.scene)

@@ -1,4 +1,7 @@
-"""What is drawn over Blender's editors, from what is in memory: a draw function reads no file."""
+"""Overlays drawn over Blender's editors; a new one is a module with `draw` and a line in `registry.OVERLAYS`.
+
+Draw functions use only what is in memory and read no file.
+"""
 
 PROPERTIES = ("properties", "timeline_properties")
 MODULES = ("panel", "mask", "registry")

@@ -1,4 +1,4 @@
-"""The reconstructed motion over the footage in the Movie Clip editor."""
+"""Overlay of the Movie Clip editor: the reconstructed motion over the footage."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ClipView:
-    """A region that shows the footage."""
+    """A region of the Movie Clip editor as a view of the motion."""
 
     footage: FootageView
     to_camera: Array
-    """(4, 4) from the world to the camera that the footage was taken with."""
+    """(4, 4) from the world to the footage's camera."""
     focal_px: float
-    """Its focal length [px of the footage]."""
+    """Focal length of that camera [px of the footage]."""
 
-    def places(self, review: "Review", indices: IndexArray) -> Array:
-        """Places (I, 13, 2) of the points in the region; a moving camera's, each as its own frame saw it."""
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
         return self.footage.to_region(review.image_points[indices])
 
     def pixels_per_meter(self, review: "Review", index: int) -> Array:
@@ -39,10 +39,10 @@ class ClipView:
 
 
 def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
-    """How a region of a Movie Clip editor shows a take.
+    """A region of a Movie Clip editor as a view of a take's motion.
 
     Raises:
-        InputError: The take's camera is missing, or of a kind that no footage has.
+        InputError: The take's camera is missing, or of an unsupported type.
     """
     source = footage_of(scene, take)
     to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)

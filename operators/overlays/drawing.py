@@ -1,8 +1,7 @@
-"""Drawing into a region: lines, filled shapes and words, and pictures to draw, on Blender 4.5 to 5.2.
+"""Drawing primitives for a region: lines, polygons, textures and text, on Blender 4.5 to 5.2.
 
-To be called from a draw function of `registry`, which has switched blending on. Colors are red, green, blue
-and alpha in sRGB, 0 to 1, as users pick them. Nothing is made before the first call: without a window a
-Blender has no shaders.
+For draw functions of `registry`, which has enabled blending. Colors are red, green, blue and alpha in sRGB,
+0 to 1, as users pick them. Shaders are made at the first call: without a window Blender has none.
 """
 
 from collections.abc import Sequence
@@ -21,10 +20,10 @@ from .figures import triangles
 Color = tuple[float, float, float, float]
 
 HALO: Color = (0.0, 0.0, 0.0, 0.75)
-"""What sets lines off from footage of any brightness."""
+"""Dark edge that sets lines off from footage of any brightness."""
 INK: Color = (1.0, 1.0, 1.0, 1.0)
 HALO_PX = 1.25
-"""How far a halo reaches beyond its line on each side."""
+"""Width of a halo on each side of its line."""
 FONT = 0
 TEXT_SIZE = 11.0
 OUTLINED_TEXT = 6
@@ -33,7 +32,7 @@ ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
 
 def ui_scale() -> float:
-    """Pixels of the screen for one of a plain one: resolution scale and high-density screens."""
+    """Screen pixels for each unscaled pixel: resolution scale and high-density screens."""
     return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
 
 
@@ -47,7 +46,7 @@ def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0
     """Draw straight segments.
 
     Args:
-        segments: (S, 2, 2) region pixels, or (S, 2, 3) places of the space that is being drawn.
+        segments: (S, 2, 2) region pixels, or (S, 2, 3) points in the space being drawn.
         color: (4,) one for all, or (S, 4) one each.
         width: Thickness, scaled with the user interface.
         halo: Opacity of a dark edge on both sides, 0 to 1.
@@ -78,15 +77,15 @@ def polygons(corners: ArrayLike, color: ArrayLike) -> None:
     """Fill convex polygons.
 
     Args:
-        corners: (N, K, D) region pixels or places; a polygon that is not finite is left out.
+        corners: (N, K, D) region pixels or points in space; polygons that are not finite are left out.
         color: (4,) one for all, or (N, 4) one each.
     """
-    places = np.asarray(corners, dtype=np.float64)
-    if not len(places):
+    points = np.asarray(corners, dtype=np.float64)
+    if not len(points):
         return
     colors = np.asarray(color, dtype=np.float32)
-    whole = np.isfinite(places).all(axis=(-2, -1))
-    content = {"pos": _positions(triangles(places[whole]))}
+    whole = np.isfinite(points).all(axis=(-2, -1))
+    content = {"pos": _positions(triangles(points[whole]))}
     if not len(content["pos"]):
         return
     if colors.ndim == 1:
@@ -95,20 +94,20 @@ def polygons(corners: ArrayLike, color: ArrayLike) -> None:
         shader.uniform_float("color", tuple(colors.tolist()))
     else:
         shader = gpu.shader.from_builtin("SMOOTH_COLOR")
-        content["color"] = np.repeat(colors[whole], 3 * (places.shape[-2] - 2), axis=0)
+        content["color"] = np.repeat(colors[whole], 3 * (points.shape[-2] - 2), axis=0)
         batch = batch_for_shader(shader, "TRIS", content)
     batch.draw(shader)
 
 
-def _positions(places: Array) -> SingleArray:
-    """(V, 3): lines of varying thickness take no plane coordinates."""
-    flat = np.zeros((places.size // places.shape[-1], 3), dtype=np.float32)
-    flat[:, : places.shape[-1]] = places.reshape(-1, places.shape[-1])
+def _positions(points: Array) -> SingleArray:
+    """Vertices (V, 3): the polyline shaders take no plane coordinates."""
+    flat = np.zeros((points.size // points.shape[-1], 3), dtype=np.float32)
+    flat[:, : points.shape[-1]] = points.reshape(-1, points.shape[-1])
     return flat
 
 
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
-    """A picture on the graphics card; keep it, making one takes time.
+    """Upload a picture to the graphics card; keep the texture, as making one takes time.
 
     Args:
         pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first; the texture's own
@@ -128,13 +127,13 @@ def text(
     size: float = TEXT_SIZE,
     align: Literal["left", "middle", "right"] = "left",
 ) -> None:
-    """Write one line of words, outlined so that it reads on any background.
+    """Draw a line of text, outlined so that it reads on any background.
 
     Args:
-        words: What to write.
-        x: Where the part of the words named by `align` stands [region px].
+        words: The text.
+        x: Position of the part of the text that `align` names [region px].
         y: Base line [region px].
-        color: Of the letters.
+        color: Color of the text.
         size: In points, scaled with the user interface.
         align: `left`, `middle` or `right`.
     """
@@ -146,11 +145,11 @@ def text(
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)
     blf.disable(FONT, blf.SHADOW)
-    gpu.state.blend_set("ALPHA")  # which blf switches off: what is drawn next would be opaque
+    gpu.state.blend_set("ALPHA")  # blf disables blending, which would make later items opaque
 
 
 def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:
-    """Width and height of a line of words as `text` writes it [region px]."""
+    """Width and height of a line of text as `text` draws it [region px]."""
     blf.size(FONT, size * ui_scale())
     width, height = blf.dimensions(FONT, words)
     return float(width), float(height)

@@ -1,6 +1,6 @@
-"""Plane figures as arrays: outlines cut into segments, dashes, circles, diamonds. Nothing is drawn here.
+"""Plane figures as arrays: line segments, dashes, circles, diamonds; nothing is drawn here.
 
-Places are region pixels unless a function says otherwise. A place that is not finite breaks a line.
+Points are region pixels unless stated otherwise. A point that is not finite breaks a line.
 """
 
 from functools import cache
@@ -11,23 +11,23 @@ from numpy.typing import ArrayLike
 from ...core.arrays import Array
 
 MOST_DASHES = 1000
-"""No line is cut into more dashes: one that reaches far outside a zoomed view gets longer ones."""
+"""Upper limit for a line, which gets longer dashes where it reaches far outside a zoomed view."""
 
 
 def segments(points: ArrayLike, *, closed: bool = False) -> Array:
-    """Cut lines into their segments, without those an end of which is not finite.
+    """Cut lines into their segments; those with an end that is not finite are left out.
 
     Args:
-        points: (..., N, D) lines of N places each.
-        closed: Whether each line returns to its first place.
+        points: (..., N, D) lines of N points each.
+        closed: Whether each line returns to its first point.
 
     Returns:
         (S, 2, D).
     """
-    places = np.asarray(points, dtype=np.float64)
-    ends = np.roll(places, -1, axis=-2) if closed else places[..., 1:, :]
-    starts = places if closed else places[..., :-1, :]
-    pairs = np.stack([starts, ends], axis=-2).reshape(-1, 2, places.shape[-1])
+    line = np.asarray(points, dtype=np.float64)
+    ends = np.roll(line, -1, axis=-2) if closed else line[..., 1:, :]
+    starts = line if closed else line[..., :-1, :]
+    pairs = np.stack([starts, ends], axis=-2).reshape(-1, 2, line.shape[-1])
     return pairs[np.isfinite(pairs).all(axis=(-2, -1))]
 
 
@@ -35,35 +35,35 @@ def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) 
     """Cut one line into dashes that run on around its corners.
 
     Args:
-        points: (N, D) places; a dash begins anew after one that is not finite.
+        points: (N, D) points; a dash begins anew after one that is not finite.
         dash: Length of a dash.
         gap: Length of the gap after it.
-        closed: Whether the line returns to its first place.
+        closed: Whether the line returns to its first point.
 
     Returns:
         (S, 2, D) segments of the dashes.
     """
-    places = np.asarray(points, dtype=np.float64)
-    if closed and len(places):
-        places = np.concatenate([places, places[:1]])
-    finite = np.isfinite(places).all(axis=-1)
-    runs = np.split(places, np.flatnonzero(np.diff(finite)) + 1)
+    line = np.asarray(points, dtype=np.float64)
+    if closed and len(line):
+        line = np.concatenate([line, line[:1]])
+    finite = np.isfinite(line).all(axis=-1)
+    runs = np.split(line, np.flatnonzero(np.diff(finite)) + 1)
     parts = [_dashed_run(run, dash, gap) for run in runs if len(run) > 1 and np.isfinite(run[0]).all()]
-    return np.concatenate(parts) if parts else np.empty((0, 2, places.shape[-1]))
+    return np.concatenate(parts) if parts else np.empty((0, 2, line.shape[-1]))
 
 
-def _dashed_run(places: Array, dash: float, gap: float) -> Array:
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=-1))])
+def _dashed_run(line: Array, dash: float, gap: float) -> Array:
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=-1))])
     period = max(dash + gap, along[-1] / MOST_DASHES)
     if along[-1] == 0.0:
-        return np.empty((0, 2, places.shape[-1]))
+        return np.empty((0, 2, line.shape[-1]))
     share = dash / (dash + gap)
     starts = np.arange(0.0, along[-1], period)
     cuts = np.unique(np.concatenate([along, starts, starts + share * period]))
     cuts = cuts[cuts <= along[-1]]
     middles = 0.5 * (cuts[1:] + cuts[:-1])
     inked = (middles / period) % 1.0 < share
-    at = np.stack([np.interp(cuts, along, column) for column in places.T], axis=-1)
+    at = np.stack([np.interp(cuts, along, column) for column in line.T], axis=-1)
     return np.stack([at[:-1], at[1:]], axis=1)[inked]
 
 

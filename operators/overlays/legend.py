@@ -1,4 +1,4 @@
-"""A legend in the corner: a sample of each kind of line, and what it means."""
+"""Legend in a corner of a region: a sample of each kind of line, and its meaning."""
 
 from enum import Enum
 from functools import lru_cache
@@ -14,16 +14,16 @@ from .style import CORE, CORE_SHARE, DASH, DIAMOND, DOT, GAP, JOINT, LEFT, MIDDL
 GROUND = (0.0, 0.0, 0.0, 0.35)
 DOTS = 3
 SAMPLE, GAP_AFTER, LINE, MARGIN = 26.0, 8.0, 18.0, 12.0
-"""Length of a sample, distance to its words, height of a line, distance from the corner [px]."""
+"""Length of a sample, distance to its text, height of a line, distance from the corner [px]."""
 MIDDLE_OF_LETTERS = 4.0
-"""Above their base line [px]."""
+"""Height of the middle of letters above their base line [px]."""
 THIN, THICK = 1.5, 3.6
 ABOVE_CACHE = 22.0
-"""The Movie Clip editor draws its cached frames at the bottom [px]."""
+"""Height of the cache bar at the bottom of the Movie Clip editor [px]."""
 
 
 class Sample(Enum):
-    """What stands before a line of words."""
+    """The sample at the start of a row."""
 
     NONE = "none"
     SOLID = "solid"
@@ -41,21 +41,21 @@ Row = tuple[Sample, str]
 
 @lru_cache(maxsize=16)
 def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
-    """Rows of a legend on a dark ground that sets it off from bright footage.
+    """A legend on a dark background, which sets it off from bright footage.
 
     Args:
-        rows: Samples and words, from the top down.
+        rows: Samples and texts, from the top down.
         x: Left end of the samples.
         y: Base line of the last row.
-        style: How to draw.
+        style: Colors and sizes.
     """
     if not rows:
         return ()
     strokes: list[Stroke] = []
     fills: list[Fill] = []
     labels: list[Label] = []
-    for place, (sample, words) in enumerate(reversed(rows)):
-        base = y + place * LINE * style.scale
+    for row, (sample, words) in enumerate(reversed(rows)):
+        base = y + row * LINE * style.scale
         drawn = _sample(sample, x, base + MIDDLE_OF_LETTERS * style.scale, style)
         strokes += [item for item in drawn if isinstance(item, Stroke)]
         fills += [item for item in drawn if isinstance(item, Fill)]
@@ -65,7 +65,7 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     right = max(label.x + text_size(label.words)[0] for label in labels) + edge
     left, bottom, top = x - edge, y - edge, labels[-1].y + LINE * style.scale
     ground = np.array([[[left, bottom], [right, bottom], [right, top], [left, top]]])
-    # Thick lines below thin ones, and each kind together: few calls draw them all.
+    # Thick lines below thin ones, and items of one kind together, so that few draw calls are needed.
     strokes.sort(key=lambda stroke: -stroke.width)
     return (Fill(ground, style.color(GROUND)), *strokes, *fills, *labels)
 
@@ -98,7 +98,7 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
 
 
 def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
-    """The bottom left corner of what no toolbar or operator's panel covers of a region [region px]."""
+    """The bottom left corner of a region's part that no toolbar or operator panel covers [region px]."""
     left = bottom = 0.0
     for other in area.regions:
         covers = other.width > 1 and other.height > 1 and other != region

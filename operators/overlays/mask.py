@@ -1,7 +1,7 @@
-"""What has the markers' colors, over the footage in the camera view and the Movie Clip editor.
+"""Overlay of color masks: the pixels that have a marker's color, in camera view and Movie Clip editor.
 
-Everything else is darkened, so that a mask shows on a marker of its very color; an outline and the marker's
-name say the same to eyes that see the colors alike.
+All other pixels are darkened, so that a mask shows on a marker of its very color; outlines and the markers'
+names tell masks apart for color-blind eyes.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,14 @@ from gpu_extras.batch import batch_for_shader
 
 from ...core.arrays import SingleArray
 from ...core.errors import KeymarkError
-from ..markers.mask_previews import ColorMask, Preview, clear_previews, is_of_frame, preview_of, update_masks
+from ..markers.mask_previews import (
+    ColorMask,
+    Preview,
+    forget_previews,
+    is_of_frame,
+    look_at_frame,
+    preview_of,
+)
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
 from . import drawing
@@ -25,14 +32,14 @@ TINT = 0.65
 WIDTH = 1.5
 HALO = 0.8
 NAME_GAP = 4.0
-"""Between an outline and the name above it [px of a plain screen]."""
+"""Distance between an outline and the name above it [unscaled px]."""
 SHORTEST_NAMED = 0.25
-"""Outlines shorter than this share of the longest have no name."""
+"""Share of the longest outline's length below which outlines get no name."""
 MESH = 24
-"""Cells across the picture, to follow the lens."""
+"""Cells across the picture, which follow the lens distortion."""
 
 _drawn: dict[int, tuple[tuple[ColorMask, ...], gpu.types.GPUTexture]] = {}
-"""The texture of the masks that were drawn last; at most one."""
+"""Cache of one: the masks that were drawn last, and their texture."""
 
 
 def draw(context: bpy.types.Context) -> None:
@@ -49,7 +56,7 @@ def draw(context: bpy.types.Context) -> None:
 
 
 def draw_masks(preview: Preview, view: FootageView) -> None:
-    """Draw what has the markers' colors, in the region of a view."""
+    """Draw the masks of a preview in the region of a view."""
     _picture(_texture(preview), view)
     for mask in preview.masks:
         _outlines(mask, view)
@@ -68,26 +75,26 @@ def tinted(masks: Sequence[ColorMask]) -> SingleArray:
 
 
 def _texture(preview: Preview) -> gpu.types.GPUTexture:
-    """The picture of the masks on the graphics card; anew only where they are others than before."""
+    """The texture of a preview's masks; cached until the masks change."""
     if 0 not in _drawn or _drawn[0][0] is not preview.masks:
         _drawn[0] = (preview.masks, drawing.texture(tinted(preview.masks)))
     return _drawn[0][1]
 
 
 def _picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
-    """Draw a picture of the footage's extent, bent as the view shows the footage."""
+    """Draw a texture over the footage, distorted as the view shows the footage."""
     cells = MESH if view.lens is not None else 1
     steps = np.linspace(0.0, 1.0, cells + 1)
     across, down = np.meshgrid(steps, steps)
     shares = np.stack([across, down], axis=-1)
     corners = np.stack([shares[:-1, :-1], shares[:-1, 1:], shares[1:, 1:], shares[1:, :-1]], axis=-2)
     triangles = corners.reshape(-1, 4, 2)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2)
-    places = np.zeros((len(triangles), 3), dtype=np.float32)
-    places[:, :2] = view.to_region(triangles * view.size)
+    vertices = np.zeros((len(triangles), 3), dtype=np.float32)
+    vertices[:, :2] = view.to_region(triangles * view.size)
     # Textures begin at the bottom.
     ends = (triangles * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
     shader = gpu.shader.from_builtin("IMAGE_COLOR")
-    batch = batch_for_shader(shader, "TRIS", {"pos": places, "texCoord": ends})
+    batch = batch_for_shader(shader, "TRIS", {"pos": vertices, "texCoord": ends})
     shader.uniform_sampler("image", texture)
     shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
     batch.draw(shader)
@@ -100,7 +107,7 @@ def _outlines(mask: ColorMask, view: FootageView) -> None:
 
 
 def _names(masks: Sequence[ColorMask], view: FootageView) -> None:
-    """Write each mask's name above its larger outlines, higher where there is one already."""
+    """Draw each mask's name above its larger outlines, higher where another name is."""
     scale = drawing.ui_scale()
     boxes: list[tuple[float, float, float, float]] = []
     for mask in masks:
@@ -108,8 +115,8 @@ def _names(masks: Sequence[ColorMask], view: FootageView) -> None:
         longest = len(mask.outlines[0]) if mask.outlines else 0
         for outline in mask.outlines:
             if len(outline) >= SHORTEST_NAMED * longest:
-                places = view.to_region(outline)
-                x, y = float(places[:, 0].mean()), float(places[:, 1].max()) + NAME_GAP * scale
+                points = view.to_region(outline)
+                x, y = float(points[:, 0].mean()), float(points[:, 1].max()) + NAME_GAP * scale
                 y = free_height((x - 0.5 * width, y, width, height + NAME_GAP * scale), boxes)
                 boxes.append((x - 0.5 * width, y, width, height + NAME_GAP * scale))
                 drawing.text(mask.label, x, y, align="middle")
@@ -129,24 +136,24 @@ def free_height(
 
 @persistent
 def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Make the masks of the frame that is shown now."""
+    """Make the masks of the scene's current frame."""
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
     try:
-        update_masks(scene)
+        look_at_frame(scene)
     except KeymarkError:
-        clear_previews()  # the clip is gone; whoever asks for masks again is told so
+        forget_previews()  # the clip is missing, which the operator that shows masks reports
 
 
 def register() -> None:
-    """Follow the scene's frame, where there is a screen to draw on."""
+    """Follow the scene's frame, unless Blender runs in the background."""
     if not bpy.app.background:
         bpy.app.handlers.frame_change_post.append(_frame_changed)
 
 
 def unregister() -> None:
-    """Stop following it; let go of textures and open files."""
+    """Stop following it; release textures and open files."""
     if _frame_changed in bpy.app.handlers.frame_change_post:
         bpy.app.handlers.frame_change_post.remove(_frame_changed)
     _drawn.clear()
-    clear_previews()
+    forget_previews()

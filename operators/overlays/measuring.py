@@ -1,4 +1,4 @@
-"""What has been clicked while the performer is measured: the top of the head, and a line to the mouse."""
+"""Overlay of the measuring operator: the clicked top of the head, and a line to the mouse."""
 
 from dataclasses import dataclass
 
@@ -15,34 +15,34 @@ CROSS_PX = 7.0
 
 @dataclass
 class Clicks:
-    """The measuring that is going on."""
+    """State of the running measurement."""
 
     head: tuple[float, float] | None = None
     """Footage pixel of the top of the head."""
     mouse: tuple[int, int] = (0, 0)
-    """In the window."""
+    """Position of the mouse in the window [px]."""
 
 
-_going_on: Clicks | None = None
+_running: Clicks | None = None
 
 
 def show(clicks: Clicks | None) -> None:
-    """Draw these clicks from now on; None for nothing."""
-    global _going_on
-    _going_on = clicks
+    """Draw these clicks from now on; None ends the drawing."""
+    global _running
+    _running = clicks
 
 
 def draw(context: bpy.types.Context) -> None:
     """Draw the first click and the height that a second one at the mouse would give."""
     take = find_take(context.scene)
-    if _going_on is None or _going_on.head is None or take is None:
+    if _running is None or _running.head is None or take is None:
         return
     view = footage_view(context.scene, take, context.area, context.region)
     if view is None:
         return
     scale = drawing.ui_scale()
-    head = view.to_region(_going_on.head)
-    mouse = np.array(_going_on.mouse, dtype=np.float64) - (context.region.x, context.region.y)
+    head = view.to_region(_running.head)
+    mouse = np.array(_running.mouse, dtype=np.float64) - (context.region.x, context.region.y)
     arms = CROSS_PX * scale * np.array([[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]])
     drawing.lines(head + arms, drawing.INK, halo=1.0)
     drawing.lines(np.stack([head, mouse])[None], drawing.INK, width=1.0, halo=0.6)

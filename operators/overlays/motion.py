@@ -1,4 +1,4 @@
-"""The reconstructed motion over an editor: everything that is switched on, as one picture."""
+"""The reconstructed motion as items to draw, whichever editor they are drawn in."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 
 UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
-"""Of a marker that was removed since the reconstruction."""
+"""Color of a marker that was removed since the reconstruction."""
 NEAREST = 0.75
-"""A scene frame further than this from every frame of the clip shows none of them."""
+"""Largest distance of the scene's frame from the clip's frame that it shows [frames]."""
 
 
 class MotionView(Protocol):
-    """How an editor shows the motion."""
+    """A region of an editor as a view of the motion."""
 
     @property
     def footage(self) -> FootageView | None:
-        """Where the footage is, if the editor shows it."""
+        """The footage's view, if the region shows the footage."""
 
-    def places(self, review: "Review", indices: IndexArray) -> Array:
-        """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
 
     def pixels_per_meter(self, review: "Review", index: int) -> Array:
         """Size (13,) of a meter at each point."""
@@ -45,16 +45,16 @@ class MotionView(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What of a take there is to draw."""
+    """A frame of a take's motion that is drawn."""
 
     take: bpy.types.PropertyGroup
     review: "Review"
     index: int
-    """Place in the clip of the frame that the scene shows."""
+    """Index in the clip of the scene's current frame."""
 
 
 def shown(scene: bpy.types.Scene) -> Shown | None:
-    """The active take's motion at the scene's frame; None where there is none."""
+    """The active take's motion at the scene's frame; None without a motion there."""
     take = find_take(scene)
     review = None if take is None else review_of(take)
     if take is None or review is None or not len(review.frames):
@@ -67,7 +67,7 @@ def shown(scene: bpy.types.Scene) -> Shown | None:
 def picture(
     context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
 ) -> list[Item]:
-    """Everything that is switched on, and a legend that explains it."""
+    """All enabled items, and their legend."""
     scale = drawing.ui_scale()
     meter = view.pixels_per_meter(what.review, what.index)
     style = Style(settings.opacity, settings.line_width, scale, body_scale(meter, scale))
@@ -77,8 +77,8 @@ def picture(
     if view.footage is not None:
         items += _outlines(what, view.footage, settings, style)
     if settings.show_skeleton:
-        (places,) = view.places(what.review, np.array([what.index]))
-        items += skeleton(what.review, what.index, places, meter, settings.uncertain_beyond, style)
+        (positions,) = view.point_positions(what.review, np.array([what.index]))
+        items += skeleton(what.review, what.index, positions, meter, settings.uncertain_beyond, style)
     if settings.show_legend:
         rows = _rows(what, view, settings)
         items += legend(rows, *corner(context.area, context.region, scale), style)
@@ -103,12 +103,12 @@ def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, sty
     frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
     chosen = [point for point, name in enumerate(review.point_names) if name in settings.path_points]
     names = [review.point_names[point] for point in chosen]
-    places = np.swapaxes(view.places(review, frames)[:, chosen], 0, 1)
-    return paths(names, places, frames, what.index, review.keyframe_indices, style)
+    positions = np.swapaxes(view.point_positions(review, frames)[:, chosen], 0, 1)
+    return paths(names, positions, frames, what.index, review.keyframe_indices, style)
 
 
 def _rows(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> tuple[Row, ...]:
-    """What the legend explains: only what is drawn."""
+    """Rows of the legend, for drawn items only."""
     rows: list[Row] = []
     if view.footage is not None:
         if settings.show_observed:

@@ -1,4 +1,4 @@
-"""Marker regions: where each was seen, solid, and where the motion puts it, dashed."""
+"""Outlines of marker regions: observed ones solid, predicted ones dashed."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ MarkerColor = tuple[float, float, float]
 
 
 def hidden_markers(review: "Review", index: int) -> list[int]:
-    """Places of the markers that were not found in a frame."""
+    """Indices of the markers that were not found in a frame."""
     return np.flatnonzero(~np.isfinite(review.observed[index]).all(axis=-1).any(axis=-1)).tolist()
 
 
@@ -33,16 +33,16 @@ def observed_outlines(
     """A solid outline of each region that was found.
 
     Args:
-        review: What there is to see.
-        index: Place of the frame.
-        to_region: Takes footage pixels (..., 2) to the region.
+        review: The review of the motion.
+        index: Index of the frame.
+        to_region: Converts footage pixels (..., 2) to region pixels.
         colors: Each marker's color.
-        style: How to draw.
+        style: Colors and sizes.
     """
-    places = to_region(review.observed[index])
+    outlines = to_region(review.observed[index])
     return [
         Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
-        for outline, color in zip(places, colors, strict=True)
+        for outline, color in zip(outlines, colors, strict=True)
     ]
 
 
@@ -54,10 +54,10 @@ def predicted_outlines(
     style: Style,
 ) -> list[Item]:
     """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
-    places = to_region(review.predicted[index])
+    outlines = to_region(review.predicted[index])
     items: list[Item] = []
     hidden = hidden_markers(review, index)
-    for marker, (outline, color) in enumerate(zip(places, colors, strict=True)):
+    for marker, (outline, color) in enumerate(zip(outlines, colors, strict=True)):
         whole = outline[np.isfinite(outline).all(axis=-1)]
         if not len(whole):
             continue

@@ -1,4 +1,4 @@
-"""What is drawn over the viewport and the Movie Clip editor."""
+"""Panels of the overlays, in the 3D viewport and in the Movie Clip editor."""
 
 import bpy
 
@@ -10,7 +10,7 @@ ROWS = (
     ("head",),
     *((f"{joint}.L", f"{joint}.R") for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")),
 )
-"""Points as the choice of paths shows them: the performer's left, and right."""
+"""Rows of the choice of points: the performer's left, and right."""
 
 
 def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -45,7 +45,7 @@ def _draw_paths(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
 
 
 class KEYMARK_PT_overlays(TakePanel, bpy.types.Panel):
-    """What is drawn over the viewport."""
+    """Overlays of the viewport."""
 
     bl_label = "Overlays"
     bl_parent_id = "KEYMARK_PT_review"
@@ -57,7 +57,7 @@ class KEYMARK_PT_overlays(TakePanel, bpy.types.Panel):
 
 
 class KEYMARK_PT_paths(TakePanel, bpy.types.Panel):
-    """Which points' ways are drawn, and how far."""
+    """Paths: their points, and their lengths."""
 
     bl_label = "Paths"
     bl_parent_id = "KEYMARK_PT_overlays"
@@ -73,7 +73,7 @@ class KEYMARK_PT_paths(TakePanel, bpy.types.Panel):
 
 
 class ClipPanel:
-    """Where Keymark's panels are in the Movie Clip editor."""
+    """Base of Keymark's panels in the Movie Clip editor."""
 
     bl_space_type = "CLIP_EDITOR"
     bl_region_type = "UI"
@@ -87,7 +87,7 @@ class ClipPanel:
 
 
 class KEYMARK_PT_clip_overlays(ClipPanel, TakePanel, bpy.types.Panel):
-    """What is drawn over the footage."""
+    """Overlays of the footage."""
 
     bl_label = "Overlays"
     bl_parent_id = ""
@@ -98,7 +98,7 @@ class KEYMARK_PT_clip_overlays(ClipPanel, TakePanel, bpy.types.Panel):
 
 
 class KEYMARK_PT_clip_paths(ClipPanel, TakePanel, bpy.types.Panel):
-    """Which points' ways are drawn, and how far."""
+    """Paths: their points, and their lengths."""
 
     bl_label = "Paths"
     bl_parent_id = "KEYMARK_PT_clip_overlays"

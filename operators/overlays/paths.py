@@ -1,4 +1,4 @@
-"""The ways of points through time: past solid, future dashed, a dot a frame, diamonds at keyframes."""
+"""Paths of points over time: past solid, future dashed, a dot for each frame, diamonds at keyframes."""
 
 from collections.abc import Sequence
 
@@ -11,35 +11,35 @@ from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, Style, side_color
 
 
 def window(index: int, before: int, after: int, frame_count: int) -> IndexArray:
-    """Places of the frames from `before` ones before to `after` ones after one, within the clip."""
+    """Indices of the frames from `before` before to `after` after one, within the clip."""
     return np.arange(max(0, index - before), min(frame_count, index + after + 1))
 
 
 def paths(
     names: Sequence[str],
-    places: Array,
+    positions: Array,
     frames: IndexArray,
     index: int,
     keyframe_indices: IndexArray,
     style: Style,
 ) -> list[Item]:
-    """The ways of N points.
+    """The paths of N points.
 
     Args:
         names: The points' names.
-        places: (N, I, 2) where they are in the region in each frame of the window.
-        frames: (I,) those frames' places in the clip.
-        index: The current frame's place in the clip.
-        keyframe_indices: Those of the keyframes.
-        style: How to draw.
+        positions: (N, I, 2) their region pixels in each frame of the window.
+        frames: (I,) indices of those frames in the clip.
+        index: Index of the current frame in the clip.
+        keyframe_indices: Indices of the keyframes.
+        style: Colors and sizes.
     """
     keyed = np.isin(frames, keyframe_indices)
-    dots, marks = places[:, ~keyed].reshape(-1, 2), places[:, keyed]
+    dots, marks = positions[:, ~keyed].reshape(-1, 2), positions[:, keyed]
     items: list[Item] = []
-    for name, way in zip(names, places, strict=True):
+    for name, path in zip(names, positions, strict=True):
         color = style.color(side_color(name))
-        ahead = dashes(way[frames >= index], DASH * style.scale, GAP * style.scale)
-        items.append(Stroke(segments(way[frames <= index]), color, style.width, style.halo))
+        ahead = dashes(path[frames >= index], DASH * style.scale, GAP * style.scale)
+        items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
         items.append(Stroke(ahead, color, style.width, style.halo))
     items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
     for name, mark in zip(names, marks, strict=True):

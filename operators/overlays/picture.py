@@ -1,4 +1,4 @@
-"""What an overlay consists of, as data: made without a screen, painted in one go."""
+"""Items of an overlay as data: made without a screen, painted in few draw calls."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class Stroke:
     segments: Array
     """(S, 2, 2) region pixels."""
     color: ArrayLike
-    """(4,) one for all, or (S, 4)."""
+    """(4,) for all, or (S, 4)."""
     width: float
     halo: float = 0.0
     """Opacity of the dark edge."""
@@ -33,12 +33,12 @@ class Fill:
     corners: Array
     """(N, K, 2) region pixels."""
     color: ArrayLike
-    """(4,) one for all, or (N, 4)."""
+    """(4,) for all, or (N, 4)."""
 
 
 @dataclass(frozen=True)
 class Label:
-    """A line of words; `x` is where its `align` part stands, `y` the base line [region px]."""
+    """A line of text; `x` is the position of the part that `align` names, `y` the base line [region px]."""
 
     words: str
     x: float
@@ -51,7 +51,7 @@ Item = Stroke | Fill | Label
 
 
 def paint(items: Iterable[Item]) -> None:
-    """Draw everything, the first at the bottom; neighbors that are alike in one go."""
+    """Draw all items, the first at the bottom; alike neighbors in one draw call."""
     for item in merged(items):
         if isinstance(item, Stroke):
             drawing.lines(item.segments, item.color, item.width, item.halo)
@@ -62,7 +62,7 @@ def paint(items: Iterable[Item]) -> None:
 
 
 def merged(items: Iterable[Item]) -> list[Item]:
-    """Neighboring lines of one thickness become one item, and neighboring polygons of as many corners."""
+    """Merge neighboring lines of one thickness, and neighboring polygons of equally many corners."""
     done: list[Item] = []
     for _, group in groupby(items, key=_kind):
         alike = list(group)
@@ -86,7 +86,7 @@ def _kind(item: Item) -> tuple[object, ...]:
 
 
 def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:
-    """Places one after the other, and a color for each."""
-    places = np.concatenate([place for place, _ in parts])
-    colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(place), 4)) for place, color in parts]
-    return places, np.concatenate(colors)
+    """Concatenated points, and a color for each."""
+    points = np.concatenate([part for part, _ in parts])
+    colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(part), 4)) for part, color in parts]
+    return points, np.concatenate(colors)

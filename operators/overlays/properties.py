@@ -1,4 +1,4 @@
-"""What is drawn over the editors. Blender's own overlay switch hides all of it in the 3D viewport."""
+"""Properties of the overlays. Blender's own overlay switch hides all of them in the 3D viewport."""
 
 import bpy
 
@@ -13,7 +13,7 @@ def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> 
 
 
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
-    """What is drawn over the editors, and how."""
+    """The overlays' switches and looks."""
 
     show_observed: bpy.props.BoolProperty(
         name="Observed Markers",
@@ -35,27 +35,27 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
-        description="Draw the ways of chosen points: past solid, future dashed, diamonds at keyframes",
+        description="Draw the paths of chosen points: past solid, future dashed, diamonds at keyframes",
         default=False,
         update=_changed,
     )
     show_legend: bpy.props.BoolProperty(
         name="Legend",
-        description="Explain in a corner what is drawn, and name the markers that are hidden",
+        description="Explain the lines in a corner, and name the hidden markers",
         default=True,
         update=_changed,
     )
     path_points: bpy.props.EnumProperty(
         name="Points",
-        description="Points whose way is drawn; Shift-click to choose several",
-        items=[(name, segment_title(name), "", 1 << place) for place, name in enumerate(HUMAN.point_names)],
+        description="Points whose path is drawn; Shift-click to choose several",
+        items=[(name, segment_title(name), "", 1 << bit) for bit, name in enumerate(HUMAN.point_names)],
         options={"ENUM_FLAG"},
         default={"wrist.L", "wrist.R"},
         update=_changed,
     )
     path_before: bpy.props.IntProperty(
         name="Frames Before",
-        description="How many frames of the way before the current one are drawn",
+        description="Length of the path before the current frame, in frames",
         default=15,
         min=0,
         soft_max=100,
@@ -63,7 +63,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     path_after: bpy.props.IntProperty(
         name="After",
-        description="How many frames of the way after the current one are drawn",
+        description="Length of the path after the current frame, in frames",
         default=15,
         min=0,
         soft_max=100,
@@ -71,7 +71,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     uncertain_beyond: bpy.props.FloatProperty(
         name="Uncertainty",
-        description="A point of larger standard deviation is drawn as a ring within a circle of that size",
+        description="Standard deviation above which a point is drawn as a ring within a circle of that size",
         subtype="DISTANCE",
         default=0.05,
         min=0.001,
@@ -81,7 +81,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     opacity: bpy.props.FloatProperty(
         name="Opacity",
-        description="Opacity of everything that is drawn",
+        description="Opacity of all overlays",
         subtype="FACTOR",
         default=1.0,
         min=0.0,

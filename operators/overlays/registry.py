@@ -1,4 +1,4 @@
-"""Which overlays there are, and handing them to Blender's editors."""
+"""Registry of the overlays, and their draw handlers in Blender's editors."""
 
 import logging
 from collections.abc import Callable
@@ -18,14 +18,14 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Overlay:
-    """One draw function and where it draws."""
+    """A draw function, and the editor it draws in."""
 
     name: str
-    """What users call it."""
+    """Name that users see."""
     module: str
-    """The module beside this one whose `draw(context)` it is."""
+    """Module in this folder with the function `draw(context)`."""
     space: str
-    """A class of `bpy.types`."""
+    """Space of the editor, a class of `bpy.types`."""
     region: str = "WINDOW"
     phase: str = "POST_PIXEL"
 
@@ -39,16 +39,16 @@ OVERLAYS = (
     Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
     Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
-"""All of them; those of one place are drawn in this order."""
+"""All overlays; those of one editor are drawn in this order."""
 
 _handlers: list[tuple[Overlay, Any]] = []
 _failures: dict[Overlay, str] = {}
 
 
 def guarded(overlay: Overlay, draw: DrawFunction) -> Callable[[], None]:
-    """A draw handler: `draw` with blending on, until it fails for the first time.
+    """A draw handler: `draw` with blending, disabled after its first unexpected failure.
 
-    A failure is logged once; called at every redraw it would flood the console.
+    A failure is logged once: logged at every redraw it would flood the console.
     """
 
     def handler() -> None:
@@ -58,7 +58,7 @@ def guarded(overlay: Overlay, draw: DrawFunction) -> Callable[[], None]:
         try:
             draw(bpy.context)
         except KeymarkError:
-            pass  # a camera of another kind, say: there is nothing to draw until that is mended
+            pass  # a camera of an unsupported type, for example: nothing can be drawn until that is changed
         except Exception as error:
             _failures[overlay] = str(error) or type(error).__name__
             logger.exception("Keymark's overlay '%s' failed and is switched off", overlay.name)
@@ -69,17 +69,17 @@ def guarded(overlay: Overlay, draw: DrawFunction) -> Callable[[], None]:
 
 
 def failures() -> dict[str, str]:
-    """What went wrong, by name of overlay, for those that are switched off."""
+    """Messages of the failures, by name of the disabled overlay."""
     return {overlay.name: sentence for overlay, sentence in _failures.items()}
 
 
 def try_again() -> None:
-    """Let overlays that failed draw again."""
+    """Enable overlays that failed."""
     _failures.clear()
 
 
 def redraw(context: bpy.types.Context) -> None:
-    """Have every editor that shows an overlay drawn again."""
+    """Redraw every editor that shows an overlay."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if any(isinstance(area.spaces.active, getattr(bpy.types, it.space)) for it in OVERLAYS):
@@ -87,7 +87,7 @@ def redraw(context: bpy.types.Context) -> None:
 
 
 def register() -> None:
-    """Add the draw handlers, unless there is no screen to draw on."""
+    """Add the draw handlers, unless Blender runs in the background."""
     if bpy.app.background:
         return
     for overlay in OVERLAYS:

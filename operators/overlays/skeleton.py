@@ -1,4 +1,4 @@
-"""The reconstructed body as lines between its 13 points, and how certain each point is."""
+"""The reconstructed body as lines between its 13 points, with each point's uncertainty."""
 
 from typing import TYPE_CHECKING
 
@@ -30,31 +30,31 @@ LIMBS = (
 
 
 def skeleton(
-    review: "Review", index: int, places: Array, pixels_per_meter: Array, limit_m: float, style: Style
+    review: "Review", index: int, positions: Array, pixels_per_meter: Array, limit_m: float, style: Style
 ) -> list[Item]:
     """The body of one frame.
 
     Args:
-        review: What there is to see.
-        index: Place of the frame.
-        places: (13, 2) the points in the region.
+        review: The review of the motion.
+        index: Index of the frame.
+        positions: (13, 2) region pixels of the points.
         pixels_per_meter: (13,) size of a meter at each point in the region.
-        limit_m: A point whose standard deviation is larger is uncertain.
-        style: How to draw.
+        limit_m: Standard deviation above which a point is uncertain [m].
+        style: Colors and sizes.
     """
     sigma = review.sigma_m[index]
     uncertain = sigma > limit_m
     colors = np.array([style.color(side_color(name)) for name in review.point_names])
     return [
-        *_limbs(review.point_names, places, style),
-        *_joints(places, uncertain, colors, style),
-        _doubt(places[uncertain], (sigma * pixels_per_meter)[uncertain], colors[uncertain], style),
+        *_limbs(review.point_names, positions, style),
+        *_joints(positions, uncertain, colors, style),
+        _deviations(positions[uncertain], (sigma * pixels_per_meter)[uncertain], colors[uncertain], style),
     ]
 
 
-def _limbs(names: tuple[str, ...], places: Array, style: Style) -> list[Item]:
-    """Lines with sides' colors; those on the right have a dark core."""
-    at = dict(zip(names, places, strict=True))
+def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
+    """Lines in the colors of their sides; those of the right have a dark core."""
+    at = dict(zip(names, positions, strict=True))
     at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
     at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
     lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
@@ -68,16 +68,16 @@ def _limbs(names: tuple[str, ...], places: Array, style: Style) -> list[Item]:
     ]
 
 
-def _joints(places: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
-    """Discs, and rings where a point is uncertain."""
-    rims = circles(places, style.size(JOINT), 16)
-    seen = np.isfinite(places).all(axis=-1)
+def _joints(positions: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
+    """Discs, and rings for uncertain points."""
+    rims = circles(positions, style.size(JOINT), 16)
+    seen = np.isfinite(positions).all(axis=-1)
     edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
     return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
 
 
-def _doubt(places: Array, radii: Array, colors: Array, style: Style) -> Stroke:
+def _deviations(positions: Array, radii: Array, colors: Array, style: Style) -> Stroke:
     """Dashed circles as large as the points' standard deviations."""
-    seen = np.isfinite(places).all(axis=-1) & np.isfinite(radii)
-    parts = segments(circles(places[seen], radii[seen], 48), closed=True)[::2]
+    seen = np.isfinite(positions).all(axis=-1) & np.isfinite(radii)
+    parts = segments(circles(positions[seen], radii[seen], 48), closed=True)[::2]
     return Stroke(parts, np.repeat(colors[seen], 24, axis=0), 1.0, style.halo)

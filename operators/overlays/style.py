@@ -1,4 +1,4 @@
-"""How what is drawn looks: colors, sizes, dashes. All sizes are of a plain screen [px]."""
+"""Style of the overlays: colors, sizes, dashes. All sizes are unscaled [px]."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,38 +13,38 @@ RIGHT: Color = (0.96, 0.66, 0.10, 1.0)
 MIDDLE: Color = (0.92, 0.92, 0.92, 1.0)
 """Sky blue and orange, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
 CORE: Color = (0.08, 0.08, 0.08, 1.0)
-"""What makes a line hollow."""
+"""Color of the core of a hollow line."""
 SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
 DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
 CORE_SHARE = 0.45
-"""Share of a hollow line's thickness that its core has."""
+"""Thickness of the core of a hollow line, as a share of the line's."""
 LIMB = 2.4
-"""How much thicker than outlines limbs are drawn."""
+"""Thickness of limbs relative to outlines."""
 METER, SMALLEST = 160.0, 0.35
-"""A body of which a meter is smaller than this is drawn with finer marks, down to a share of the usual."""
+"""Size of a meter below which a body's marks get smaller [px], and the smallest share of their size."""
 PALER = 0.5
-"""How far towards white the prediction's color is moved, so that dashes show over a solid line."""
+"""Share of white in the prediction's color, so that dashes show over a solid line."""
 HALO = 0.9
 
 
 @dataclass(frozen=True)
 class Style:
-    """What the animator chose, and the screen."""
+    """The animator's settings, and the scales of screen and body."""
 
     opacity: float
     width: float
     scale: float
-    """Pixels of the screen for one of a plain one."""
+    """Screen pixels for each unscaled pixel."""
     body_scale: float = 1.0
-    """How much smaller than usual what belongs to the body is drawn, as it is far away."""
+    """Scale of the body's marks, below 1 for a distant body."""
 
     def color(self, color: Color | tuple[float, float, float]) -> Color:
         """A color with the chosen opacity."""
         return faded(color, self.opacity)
 
     def size(self, plain: float) -> float:
-        """A length of what belongs to the body [region px]."""
+        """A size of the body's marks [region px]."""
         return plain * self.body_scale * self.scale
 
     @property
@@ -54,7 +54,7 @@ class Style:
 
 
 def body_scale(pixels_per_meter: Array, scale: float) -> float:
-    """How large a body is drawn of which a meter is so large at each point (N,) [region px]."""
+    """Scale of a body's marks from the size of a meter at each of its points (N,) [region px]."""
     seen = pixels_per_meter[np.isfinite(pixels_per_meter)]
     meter = float(np.median(seen)) / scale if len(seen) else METER
     return float(np.clip(meter / METER, SMALLEST, 1.0))

@@ -1,4 +1,4 @@
-"""Over the Timeline and the Dope Sheet: how fast the markers move, where to pose, how far to believe."""
+"""Overlay of Timeline and Dope Sheet: marker speed, proposed and matched keyframes, confidence."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,9 +9,8 @@ import numpy as np
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
-from ..shell.lru_cache import LruCache
 from ..shell.messages import label
-from ..shell.results import reading_of, review_of
+from ..shell.results import Remembered, reading_of, review_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
@@ -24,26 +23,26 @@ MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 
 @dataclass(frozen=True)
 class Sizes:
-    """How large things are drawn on a plain screen [px]."""
+    """Unscaled sizes [px]."""
 
     graph: float
-    """Most height of the graph."""
+    """Largest height of the graph."""
     ruler: float
-    """Kept free at the top."""
+    """Height kept free at the top."""
     headroom: float
-    """Between graph and ruler, for triangles and words."""
+    """Height between graph and ruler, for triangles and text."""
     strip: float
     foot: float
-    """Below the strip; Blender's scroll bar is there."""
+    """Height below the strip, for Blender's scroll bar."""
     gap: float
-    """Between strip and graph."""
+    """Height between strip and graph."""
     diamond: float
     pointer: float
 
 
 ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
 SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
-"""For a Timeline that shows no more than its ruler, as Blender 5 opens it."""
+"""Sizes for a Timeline as low as its ruler, as Blender 5 opens it."""
 LEAST_ROOMY = 16.0
 """Height of a graph [px] for which the ruler is kept free."""
 LEAST = 6.0
@@ -56,47 +55,47 @@ GROUND: Color = (0.0, 0.0, 0.0, 0.28)
 
 @dataclass(frozen=True)
 class Timeline:
-    """Where frames lie in a region, and how high things are drawn."""
+    """Horizontal positions of frames in a region, and heights of graph and strip."""
 
     origin: float
-    """Place of frame 0 [px]."""
+    """Horizontal position of frame 0 [px]."""
     scale: float
-    """Pixels of a frame."""
+    """Pixels for each frame."""
     width: float
     height: float
-    """Of the graph."""
+    """Height of the graph [px]."""
     pixel: float
-    """Pixels of the screen for one of a plain one."""
+    """Screen pixels for each unscaled pixel."""
     sizes: Sizes
 
     @property
     def strip_floor(self) -> float:
-        """Where the strip stands."""
+        """Bottom of the strip [px]."""
         return self.sizes.foot * self.pixel
 
     @property
     def floor(self) -> float:
-        """Where the graph stands."""
+        """Bottom of the graph [px]."""
         return (self.sizes.foot + self.sizes.strip + self.sizes.gap) * self.pixel
 
     @property
     def top(self) -> float:
-        """Where the graph ends."""
+        """Top of the graph [px]."""
         return self.floor + self.height
 
-    def places(self, frames: Array) -> Array:
-        """Where frames (F,) lie [px]."""
+    def frame_x(self, frames: Array) -> Array:
+        """Horizontal positions (F,) of frames [px]."""
         return self.origin + self.scale * np.asarray(frames, dtype=np.float64)
 
     def fitting(self, x: Array, size: float) -> float:
-        """A mark's size [px], smaller where marks at places (N,) would cover each other."""
+        """A mark's size [px], smaller where marks at x (N,) would cover each other."""
         apart = float(np.median(np.diff(np.sort(x)))) if len(x) > 2 else np.inf
         return float(np.clip(0.6 * apart, 0.4 * size * self.pixel, size * self.pixel))
 
 
 def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
-    """How a region of the Timeline or the Dope Sheet lies; None where it is too low to draw into."""
-    # Places come as whole pixels: a long way apart, the scale is exact nonetheless.
+    """The layout of a region of Timeline or Dope Sheet; None where it is too low to draw into."""
+    # Positions are whole pixels: far apart, they still give an exact scale.
     far = 100_000.0
     start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
     for sizes, least in ((ROOMY, LEAST_ROOMY), (SLIM, LEAST)):
@@ -120,7 +119,7 @@ def draw(context: bpy.types.Context) -> None:
 
 
 def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:
-    """Everything that is switched on and known."""
+    """All enabled items that have data."""
     settings = scene.keymark.timeline
     items: list[Item] = []
     speed = _speed(scene, take)
@@ -155,21 +154,21 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
 
 
 def _level(frames: Array, speed: "Speed | None") -> Array:
-    """How high marks at frames (K,) lie on the graph, 0 to 1; at its foot where there is none."""
+    """Heights of marks at frames (K,) on the graph, 0 to 1; 0 without a graph."""
     if speed is None:
         return np.zeros(len(frames))
     return np.asarray(np.interp(frames, speed.frames, relative(speed.values)))
 
 
 def relative(speed: Array) -> Array:
-    """Speeds as heights from 0 to 1: few very fast frames do not press the others down."""
+    """Speeds as heights from 0 to 1; a few very fast frames are clipped."""
     top = 1.15 * float(np.nanpercentile(speed, 98.0)) if np.isfinite(speed).any() else 1.0
     return np.clip(speed / max(top, 1e-9), 0.0, 1.0)
 
 
 def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     """The sum of the markers' speeds as a translucent graph."""
-    x = timeline.places(frames)
+    x = timeline.frame_x(frames)
     shown = in_view(x, timeline.width)
     x, values = joined(x[shown], relative(speed)[shown], lowest=False)
     if len(x) < 2:
@@ -183,8 +182,8 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
 
 
 def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> list[Item]:
-    """How far each frame can be believed, on a dark ground against which heights are read."""
-    x = timeline.places(frames)
+    """Confidence of each frame as bars, on a dark background against which heights are read."""
+    x = timeline.frame_x(frames)
     shown = in_view(x, timeline.width)
     x, values = joined(x[shown], confidence[shown], lowest=True)
     if not len(x):
@@ -200,7 +199,7 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     """Triangles over the graph that point at frames worth another keyframe, and a line down to the strip."""
     if not len(frames):
         return []
-    x = timeline.places(frames)
+    x = timeline.frame_x(frames)
     tip = timeline.top + timeline.pixel
     marks = pointers(x, tip, timeline.fitting(x, timeline.sizes.pointer))
     foot = np.stack([x, np.full_like(x, timeline.strip_floor)], axis=-1)
@@ -217,7 +216,7 @@ def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) 
     if not len(frames):
         return []
     heights = timeline.floor + timeline.height * level
-    x = timeline.places(frames)
+    x = timeline.frame_x(frames)
     marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
     return [
         Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
@@ -226,8 +225,8 @@ def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) 
 
 
 def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
-    """Squares on the graph at keyframes from a library: hollow where in doubt, filled where sure."""
-    x = timeline.places(frames)
+    """Squares on the graph at matched keyframes: hollow for doubtful ones, filled for sure ones."""
+    x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
     marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))
     return [
@@ -238,24 +237,24 @@ def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) ->
 
 @dataclass(frozen=True, eq=False)
 class Speed:
-    """V_sum on the time line."""
+    """V_sum over scene frames."""
 
     key: str
-    """Tells it from others."""
+    """Cache key."""
     frames: Array
     """(F,) scene frames."""
     values: Array
     """(F,) [px per frame]."""
 
 
-_speeds: LruCache[Speed] = LruCache()
-_views: LruCache[list[Item]] = LruCache(16)
-"""What was last drawn: a redraw without a change of view only draws."""
+_speeds: Remembered[Speed] = Remembered()
+_views: Remembered[list[Item]] = Remembered(16)
+"""Cache of drawn items: a redraw without a change of view only draws."""
 
 
 def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | None:
-    """The markers' speed as last read; where that was lost, as the motion's review holds it."""
-    # Not before there is something to draw: Keymark registers without the libraries these need.
+    """The markers' speed from the last reading; where that was lost, from the motion's review."""
+    # Imported late: Keymark registers without SciPy.
     from ...core.prior.marker_speed import marker_speed
 
     reading, review = reading_of(take), review_of(take)

@@ -1,7 +1,4 @@
-"""The figures over the timeline as arrays: a graph, a strip, diamonds and triangles. Nothing is drawn here.
-
-Places are region pixels.
-"""
+"""Figures of the timeline overlay as arrays: graph, strip, squares, triangles [region px]."""
 
 import numpy as np
 
@@ -10,23 +7,23 @@ from ...core.arrays import Array
 UNSURE = np.array([0.90, 0.42, 0.10])
 HALFWAY = np.array([0.93, 0.83, 0.35])
 SURE = np.array([0.22, 0.55, 0.90])
-"""From vermilion by yellow to blue, told apart by every kind of eye."""
+"""Colors of low, middle and high confidence, also for color-blind eyes."""
 DOUBTED = 0.5
-"""Confidence up to which a frame is wholly unsure: no better than chance whether a joint is in place."""
+"""Confidence up to which a frame has the lowest color: no better than chance that a joint is correct."""
 FINEST_PX = 1.5
 """Frames nearer than this are drawn as one."""
 
 
 def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
-    """Fewer places where frames lie closer than can be seen, so that drawing takes no longer for a long clip.
+    """Merge frames that lie closer than can be seen, so that a long clip takes no longer to draw.
 
     Args:
-        x: (F,) increasing places.
-        values: (F,) what is shown there.
-        lowest: Whether the lowest of the values that fall together is shown, or the highest.
+        x: (F,) increasing positions.
+        values: (F,) values there.
+        lowest: Whether the lowest of the merged values is kept, or the highest.
 
     Returns:
-        Places and values, (N,) each.
+        Positions and values, (N,) each.
     """
     if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
         return x, values
@@ -37,7 +34,7 @@ def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
 
 
 def in_view(x: Array, width: float) -> slice:
-    """The frames (F,) at increasing places that a region of this width shows, and one more on each side."""
+    """The frames at increasing positions (F,) that a region of this width shows, and one on each side."""
     first, last = np.searchsorted(x, (0.0, width))
     return slice(max(0, int(first) - 1), int(last) + 1)
 
@@ -46,9 +43,9 @@ def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, 
     """A curve and the area under it.
 
     Args:
-        x: (N,) places.
+        x: (N,) positions.
         values: (N,) heights, 0 to 1; NaN leaves a gap.
-        floor: Where 0 lies.
+        floor: Height of 0.
         height: Distance from 0 to 1.
 
     Returns:
@@ -61,10 +58,10 @@ def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, 
 
 
 def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A bar a frame: the higher and bluer, the further it can be believed.
+    """A bar for each frame: the higher and bluer, the higher its confidence.
 
     Args:
-        x: (N,) places.
+        x: (N,) positions.
         confidence: (N,) 0 to 1; NaN leaves a gap.
         floor: Foot of the bars.
         height: Height of a bar of confidence 1.
@@ -85,10 +82,10 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
         ],
         axis=1,
     )
-    return bars, np.column_stack([believed_color(confidence), np.ones(len(x))])
+    return bars, np.column_stack([confidence_color(confidence), np.ones(len(x))])
 
 
-def believed_color(confidence: Array) -> Array:
+def confidence_color(confidence: Array) -> Array:
     """Colors (N, 3) of confidences (N,)."""
     share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
     stops = np.stack([UNSURE, HALFWAY, SURE])
@@ -96,14 +93,14 @@ def believed_color(confidence: Array) -> Array:
 
 
 def squares(centers: Array, size: float) -> Array:
-    """(N, 4, 2) upright squares about places (N, 2), as large as a diamond of this size."""
+    """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
     half = 0.8 * size
     corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
     return np.asarray(centers[:, None] + corners)
 
 
 def pointers(x: Array, tip: float, size: float) -> Array:
-    """(N, 3, 2) triangles that point down to a height at places (N,)."""
+    """(N, 3, 2) triangles that point down to a height at positions (N,)."""
     half, top = 0.6 * size, np.full_like(x, tip + size)
     corners = ((x, np.full_like(x, tip)), (x + half, top), (x - half, top))
     return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)

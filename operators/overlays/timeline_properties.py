@@ -1,4 +1,4 @@
-"""What is drawn over the Timeline and the Dope Sheet."""
+"""Properties of the overlay of Timeline and Dope Sheet."""
 
 import bpy
 
@@ -10,11 +10,11 @@ def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> 
 
 
 class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
-    """What is drawn over the Timeline and the Dope Sheet."""
+    """Properties of the overlay of Timeline and Dope Sheet."""
 
     show_speed: bpy.props.BoolProperty(
         name="Speed",
-        description="Graph of how fast the markers move in the footage; a good keyframe lies where it is low",
+        description="Graph of the markers' speed in the footage; good keyframes lie where it is low",
         default=True,
         update=_changed,
     )
@@ -32,7 +32,7 @@ class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
     )
     show_confidence: bpy.props.BoolProperty(
         name="Confidence",
-        description="A strip that is the higher and the bluer the further a frame can be believed",
+        description="A strip that is the higher and the bluer, the higher the confidence of a frame",
         default=True,
         update=_changed,
     )

@@ -1,4 +1,4 @@
-"""The reconstructed motion in the 3D viewport; marker outlines where it looks through the take's camera."""
+"""Overlay of the 3D viewport: the reconstructed motion; marker outlines in the view of the take's camera."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class WorldView:
-    """A region that looks at the world."""
+    """A region of a 3D viewport as a view of the motion."""
 
     footage: FootageView | None
     matrix: Array
@@ -27,8 +27,8 @@ class WorldView:
     size: Array
     """(2,) of the region [px]."""
 
-    def places(self, review: "Review", indices: IndexArray) -> Array:
-        """Places (I, 13, 2) of the points in the region, NaN behind the viewer."""
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
         return self.project(review.points[indices])
 
     def pixels_per_meter(self, review: "Review", index: int) -> Array:
@@ -38,12 +38,12 @@ class WorldView:
         return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)
 
     def project(self, points: Array) -> Array:
-        """Places (..., 2) in the region of points (..., 3) of the world."""
+        """Region pixels (..., 2) of points (..., 3) in the world."""
         flat = points @ self.matrix[:2, :3].T + self.matrix[:2, 3]
         return np.asarray(0.5 * self.size * (1.0 + flat / self._before(points)[..., None]))
 
     def _before(self, points: Array) -> Array:
-        """(...) what places are divided by, which grows with the distance; NaN behind the viewer."""
+        """Homogeneous coordinate w (...) of points, which grows with the distance; NaN behind the viewer."""
         divisor = points @ self.matrix[3, :3] + self.matrix[3, 3]
         return np.where(divisor > 1e-6, divisor, np.nan)
 
@@ -51,7 +51,7 @@ class WorldView:
 def world_view(
     region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
 ) -> WorldView:
-    """How a region of a 3D viewport sees the world."""
+    """A region of a 3D viewport as a view of the motion."""
     right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
     return WorldView(
         footage,

@@ -1,4 +1,4 @@
-"""From keyframes to the motion."""
+"""Panel of the reconstruction."""
 
 import bpy
 
@@ -7,7 +7,7 @@ from ..shell.takes import active_take, find_take
 
 
 class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
-    """Reconstructing, and what the actor shows."""
+    """Reconstruction, and the Action on the actor."""
 
     bl_label = "Reconstruct"
 
@@ -24,7 +24,7 @@ class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
 
 
 def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """The switch between keyframes and motion, where there is a motion to switch to."""
+    """Draw the switch between keyframes and motion, where there is a motion."""
     if take.armature is None or take.motion_action is None:
         return
     data = take.armature.animation_data
@@ -39,7 +39,7 @@ def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
 
 
 class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
-    """What the last run says of its result."""
+    """Notes of the last reconstruction."""
 
     bl_label = "Notes"
     bl_parent_id = "KEYMARK_PT_reconstruct"
@@ -51,7 +51,7 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
         return take is not None and len(take.notes) > 0
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Show that there is something to read, the panel closed too."""
+        """Draw an icon, so that notes are noticed in the closed panel."""
         self.layout.label(text="", icon="INFO")
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -34,7 +34,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     preview: "LivePreview | None" = None
 
     def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
-        """Read the scene's take and reconstruct it, beginning with what is known of it already."""
+        """Read the scene's take and reconstruct it, starting from the last reading and reconstruction."""
         from ...core.estimate.reconstruct import check_reconstructible, reconstruct
         from ...core.review.review import review
         from ...core.take.read_footage import read_footage
@@ -63,12 +63,12 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
-        """Let the actor follow."""
+        """Show the preview on the actor."""
         if self.preview is not None and progress.preview is not None:
             self.preview.show(progress.preview)
 
     def unwatch(self) -> None:
-        """Leave actor and scene as they were."""
+        """Restore actor and scene."""
         if self.preview is not None:
             self.preview.end()
             self.preview = None

@@ -1,4 +1,4 @@
-"""Show either the keyframes or the reconstructed motion on the actor."""
+"""Show keyframes, motion or final Action on the actor."""
 
 import bpy
 
@@ -8,7 +8,7 @@ from ..shell.messages import say
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 
-NOT_THERE = {
+MISSING = {
     "KEYFRAMES": "There are no keyframes yet; pose the actor and store one",
     "MOTION": "There is no motion yet; reconstruct it",
     "FINAL": "There is no final Action yet; bake it",
@@ -16,7 +16,7 @@ NOT_THERE = {
 
 
 class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
-    """Let the keyframes or the reconstructed motion animate the actor"""
+    """Animate the actor by its keyframes, the reconstructed motion or the final Action"""
 
     bl_idname = "keymark.show_action"
     bl_label = "Show on Actor"
@@ -25,11 +25,11 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
 
     which: bpy.props.EnumProperty(
         name="Show",
-        description="Which of the take's Actions",
+        description="Action of the take to show",
         items=[
-            ("KEYFRAMES", "Keyframes", "Let the keyframes you posed animate the actor"),
-            ("MOTION", "Motion", "Let the reconstructed motion animate the actor"),
-            ("FINAL", "Final", "Let the finished motion animate the actor"),
+            ("KEYFRAMES", "Keyframes", "Animate the actor by its keyframes"),
+            ("MOTION", "Motion", "Animate the actor by the reconstructed motion"),
+            ("FINAL", "Final", "Animate the actor by the final Action"),
         ],
     )
 
@@ -42,7 +42,7 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
             "FINAL": settings.finish.action,
         }[self.which]
         if action is None:
-            say(self, "ERROR", NOT_THERE[self.which])
+            say(self, "ERROR", MISSING[self.which])
             return {"CANCELLED"}
         assign_action(settings.armature, action)
         return None

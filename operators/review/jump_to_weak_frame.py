@@ -1,4 +1,4 @@
-"""Go through the frames worth another keyframe, the worst first."""
+"""Jump through the frames worth another keyframe, the worst first."""
 
 import bpy
 
@@ -18,7 +18,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
-        description="Which of the listed frames to go to",
+        description="Listed frame to go to",
         items=[
             ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
             ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
@@ -28,7 +28,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The tooltip says which way."""
+        """Tooltip with the direction."""
         return {
             "CHOSEN": "Go to the frame that is chosen in the list",
             "NEXT": "Go to the next frame of the list; the worst comes first",
@@ -39,7 +39,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
         """Go there; at the end of the list, stay and say so."""
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
-        # The first time, the worst frame itself is the next one.
+        # At first, the worst frame itself is the next one.
         chosen = review.weak_frames[min(review.active_weak_frame, len(review.weak_frames) - 1)]
         if self.direction == "NEXT" and abs(chosen.frame - context.scene.frame_current_final) > 1e-3:
             step = 0

@@ -1,4 +1,4 @@
-"""How good the motion is, and where another keyframe helps."""
+"""Panels of the review: confidence, weak frames, and the overlay of the Timeline."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_UL_weak_frames(bpy.types.UIList):
-    """Frames worth another keyframe: frame, reason, and how much a keyframe there is worth."""
+    """Weak frames: frame, reason and worth of another keyframe there."""
 
     def draw_item(
         self,
@@ -38,7 +38,7 @@ class KEYMARK_UL_weak_frames(bpy.types.UIList):
 
 
 class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
-    """Confidence, and the frames worth another keyframe."""
+    """Confidence and weak frames."""
 
     bl_label = "Review"
 
@@ -65,7 +65,7 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
 
 
 class KEYMARK_PT_timeline(TakePanel, bpy.types.Panel):
-    """What is drawn over the timeline."""
+    """Overlay of the Timeline."""
 
     bl_label = "Timeline"
     bl_parent_id = "KEYMARK_PT_review"

@@ -1,4 +1,4 @@
-"""What the animator is told of a take's motion: how far it can be believed, and where to pose again."""
+"""Properties of the review: confidence of a take's motion, and its weak frames."""
 
 import bpy
 
@@ -11,7 +11,7 @@ REASONS = (
 
 
 def _chosen(review: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Clicking a frame in the list goes there."""
+    """Go to the weak frame that was clicked in the list."""
     if review.active_weak_frame < len(review.weak_frames):
         review.weak_frames[review.active_weak_frame].go_to(review.id_data)
 
@@ -20,27 +20,32 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     """A frame worth another keyframe."""
 
     frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    reason: bpy.props.EnumProperty(name="Reason", description="Why a keyframe helps here", items=REASONS)
-    marker: bpy.props.StringProperty(name="Marker", description="The marker that is the reason, if one is")
+    reason: bpy.props.EnumProperty(
+        name="Reason", description="Reason why a keyframe helps here", items=REASONS
+    )
+    marker: bpy.props.StringProperty(name="Marker", description="Marker that is the reason, if any")
     strength: bpy.props.FloatProperty(
         name="Worth",
-        description="What a keyframe here is worth, relative to the worst frame's",
+        description="Worth of a keyframe here, relative to the worst frame's",
         subtype="FACTOR",
         min=0.0,
         max=1.0,
     )
 
     def go_to(self, scene: bpy.types.Scene) -> None:
-        """Let the scene show this frame."""
+        """Go to this frame in the scene."""
         whole = int(self.frame // 1.0)
         scene.frame_set(whole, subframe=self.frame - whole)
 
 
 class KEYMARK_PG_review(bpy.types.PropertyGroup):
-    """What is known of a take's motion."""
+    """Review of a take's motion."""
 
     frame_count: bpy.props.IntProperty(
-        name="Frames", description="Frames that were reconstructed; 0 before the first time", default=0, min=0
+        name="Frames",
+        description="Number of reconstructed frames; 0 before the first reconstruction",
+        default=0,
+        min=0,
     )
     confidence: bpy.props.FloatProperty(
         name="Confidence",

@@ -1,1 +1,1 @@
-"""Assets: what a browser shows of them, their .blend files and catalogs, and motions as assets."""
+"""Assets: their details, .blend files and catalogs, and motions as assets."""

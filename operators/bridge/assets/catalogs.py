@@ -1,6 +1,6 @@
-"""Blender's file of asset catalogs, `blender_assets.cats.txt`: a catalog found there, or added.
+"""Blender's file of asset catalogs, `blender_assets.cats.txt`: catalogs found in it, or added.
 
-Each line is `UUID:path/of/catalog:simple name`; lines that are empty or begin with `#` say nothing.
+Each line is `UUID:path/of/catalog:simple name`; empty lines and lines that begin with `#` are ignored.
 """
 
 import uuid
@@ -25,7 +25,7 @@ NAMESPACE = uuid.UUID("5b1f3c0e-6a52-4a43-9b57-3d1f6f4c2a90")
 
 
 def catalog_file() -> Path:
-    """Where Blender looks for the open file's catalogs: at the root of its asset library, or beside it.
+    """The catalog file of the open .blend: at the root of its asset library, or beside it.
 
     Raises:
         InputError: The .blend has never been saved.
@@ -44,15 +44,15 @@ def catalog_file() -> Path:
 
 
 def catalog_identifier(catalog: str) -> str:
-    """The UUID that a catalog gets in a file that does not have it yet."""
+    """The UUID of a catalog that a file does not have yet."""
     return str(uuid.uuid5(NAMESPACE, _clean(catalog)))
 
 
 def ensure_catalog(file: Path, catalog: str) -> str:
-    """The identifier of a catalog; it is added to the file where it is missing, all else there is kept.
+    """The UUID of a catalog; it is added to the file if missing, all other lines are kept.
 
     Args:
-        file: The file of catalogs; made where it is missing.
+        file: The file of catalogs; created if missing.
         catalog: The catalog's path, with slashes, such as `Keymark/Walking`.
 
     Returns:
@@ -78,7 +78,7 @@ def ensure_catalog(file: Path, catalog: str) -> str:
 
 
 def _catalogs(content: str) -> dict[str, str]:
-    """Identifiers of the catalogs in a file's text, by path; where one stands twice, the first."""
+    """UUIDs of the catalogs in a file's text, by path; of a repeated path the first."""
     found: dict[str, str] = {}
     for line in content.splitlines():
         parts = line.strip().split(":", 2)

@@ -1,4 +1,4 @@
-"""Actions as assets: what an asset browser shows of them, and by which it finds them."""
+"""Mark data-blocks as assets: catalog, tags, details and preview for the asset browser."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from ..final_motion import motion_frames, read_values, shown_postures
 from ..rig import read_rig
 
 DRAWN_FRAMES = 25
-"""Frames over the whole motion that the picture is made from."""
+"""Frames of the motion that the picture is drawn from."""
 
 
 @dataclass(frozen=True)
 class AssetDetails:
-    """What people write about an asset."""
+    """Details of an asset, as the asset browser shows them."""
 
     catalog: str
     """UUID of its catalog; empty for none."""
@@ -33,12 +33,12 @@ class AssetDetails:
 
 
 def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None) -> None:
-    """Make a data-block an asset, or change what is said of one.
+    """Mark a data-block as an asset, or change an asset's details.
 
     Args:
         asset: The data-block, an Action for example.
-        details: What to say of it; its tags replace those it has.
-        picture: (S, S, 3) blue, green, red: its preview; None keeps the one it has.
+        details: The asset's details; tags replace the present ones.
+        picture: (S, S, 3) blue, green, red: its preview; None keeps the present one.
     """
     asset.asset_mark()
     data = asset.asset_data
@@ -55,7 +55,7 @@ def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None
 
 
 def _set_preview(asset: bpy.types.ID, picture: Image) -> None:
-    """Blender keeps previews from the bottom row up, red, green, blue, alpha from 0 to 1."""
+    """Set a preview, which Blender stores from the bottom row up, red, green, blue, alpha from 0 to 1."""
     rgba = cv2.cvtColor(picture, cv2.COLOR_BGR2RGBA)[::-1].astype(np.float32) / 255.0
     preview = asset.preview_ensure()
     preview.image_size = (picture.shape[1], picture.shape[0])

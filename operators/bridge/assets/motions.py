@@ -1,8 +1,8 @@
-"""Whole motions as assets: Actions, and actors that they animate.
+"""Motions as assets: Actions, and actors that they animate.
 
 The curves are those that `convert` writes: of an armature as Keymark builds it, at the world's origin, every
-bone in the rotation mode it is built with. All its actors have the same bones, so that any of them can be
-given any of these Actions.
+bone in the rotation mode it is built with. All actors have the same bones, so that any of these Actions can
+be assigned to any of them.
 """
 
 from collections.abc import Iterable, Iterator
@@ -26,12 +26,12 @@ from .asset_blend import write_asset_blend
 from .marking import AssetDetails, mark_asset
 
 MOTIONS, ACTORS = "Keymark", "Keymark Actors"
-"""Above the catalogs of all shoots."""
+"""Parents of the catalogs of all shoots."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionAsset:
-    """A motion, and what an asset browser shows of it."""
+    """A motion with its details for the asset browser."""
 
     name: str
     catalog: str
@@ -42,7 +42,7 @@ class MotionAsset:
 
 
 def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
-    """Give an empty Action the curves of a motion: a key for each frame and channel, of type GENERATED."""
+    """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
     channelbag = new_channelbag(action)
     body, skeleton = motion.body, motion.body.skeleton
     models = bone_models(body)
@@ -58,22 +58,24 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
 def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
     """Write motions as assets into a .blend, and their catalogs into the file beside it.
 
-    Each is there twice: as an Action, which any actor can be given; and as an actor that it animates, because
-    only objects can be dragged from an asset browser into a scene.
+    Each is written twice: as an Action, for any actor; and as an actor that it animates, because only objects
+    can be dragged from an asset browser into a scene.
 
     Args:
         path: The .blend; one that is there is replaced, while catalogs that are there are kept.
-        assets: Taken one at a time.
+        assets: The motions, consumed one at a time.
 
     Raises:
         InputError: As `write_asset_blend`.
         ConversionError: As `write_asset_blend`.
     """
     with own_scene("Motions") as scene:
-        write_asset_blend(path, path.parent, bpy.data, _made(scene, assets))
+        write_asset_blend(path, path.parent, bpy.data, _motion_assets(scene, assets))
 
 
-def _made(scene: bpy.types.Scene, assets: Iterable[MotionAsset]) -> Iterator[tuple[bpy.types.ID, str]]:
+def _motion_assets(
+    scene: bpy.types.Scene, assets: Iterable[MotionAsset]
+) -> Iterator[tuple[bpy.types.ID, str]]:
     """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
     actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
     for asset in assets:

@@ -1,1 +1,1 @@
-"""Keyframe libraries in Blender: as pose assets and files, on an actor, and learned from an Action."""
+"""Keyframe libraries in Blender: pose assets, files, transfer to an actor, learning from an Action."""

@@ -1,4 +1,4 @@
-"""Keyframe libraries as .blend files of pose assets with their catalogs: written, and read from strangers."""
+"""Keyframe libraries as .blend files of pose assets with catalogs: written, and read from untrusted files."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -15,9 +15,9 @@ from ..blend_writer import one_line
 from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
-"""A library of a thousand postures with pictures fits; a film's scene handed in by mistake does not."""
-BEGINNINGS = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
-"""Of .blend files: plain, and packed in the two ways that Blender knows."""
+"""Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
+BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
+"""First bytes of .blend files: plain, Zstandard and gzip."""
 
 
 def write_library_blend(
@@ -29,10 +29,10 @@ def write_library_blend(
 
     Args:
         path: The .blend.
-        library: What to write.
+        library: The library.
         root: Folder of the asset library that `path` lies in, whose catalogs are kept there; by default that
             of the .blend itself.
-        pictures: Of each posture; drawn by default.
+        pictures: A picture of each posture; drawn by default.
 
     Raises:
         InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
@@ -48,13 +48,13 @@ def write_library_blend(
 def read_library_blend(path: Path) -> tuple[Library, ...]:
     """The libraries whose pose assets a .blend holds; nothing of it stays in the open file.
 
-    Only Actions marked as assets are loaded, and of these only curves and texts are looked at: what scripts,
-    drivers or other data there may be is neither loaded nor run.
+    Only Actions marked as assets are loaded, and of these only curves and texts are read: scripts, drivers
+    and other data are neither loaded nor run.
 
     Raises:
-        InputError: It is no .blend, it is damaged or too large, or it holds no library.
+        InputError: The file is not a .blend, damaged or too large, or has no library.
     """
-    _check(path)
+    _check_file(path)
     with _loaded_actions(path) as actions:
         libraries = library_from_assets(actions)
     if not libraries:
@@ -64,11 +64,11 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
     return libraries
 
 
-def _check(path: Path) -> None:
+def _check_file(path: Path) -> None:
     try:
         size = path.stat().st_size
         with path.open("rb") as file:
-            beginning = file.read(8)
+            magic = file.read(8)
     except OSError as error:
         reason = error.strerror or error
         raise InputError(f"{path}: cannot be read ({reason}); it must be a .blend") from error
@@ -76,13 +76,13 @@ def _check(path: Path) -> None:
         raise InputError(
             f"{path}: has {size / 2**20:.0f} MiB; a .blend of a library has at most {LARGEST_BYTES >> 20} MiB"
         )
-    if not beginning.startswith(BEGINNINGS):
+    if not magic.startswith(BLEND_MAGIC):
         raise InputError(f"{path}: is no .blend; it begins as none does")
 
 
 @contextmanager
 def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
-    """The Actions of a .blend that are marked as assets; afterwards all that came with them is removed."""
+    """The Actions of a .blend that are marked as assets; all that was loaded is removed afterwards."""
     before = set(bpy.data.user_map())
     try:
         try:

@@ -1,8 +1,8 @@
-"""Keyframe libraries as pose assets: one Action of one frame a posture, and back without loss.
+"""Keyframe libraries as pose assets: an Action of one frame for each posture, and back without loss.
 
-Each Action carries all that its curves cannot say, as text in two custom properties: the library's header,
-and its own posture to the last digit. So a library can be put together again from its Actions alone, in
-whatever file they are. What an animator changes counts: curves, name and tags of an asset before the text.
+Each Action stores what its curves cannot, as text in two custom properties: the library's header, and its own
+posture to the last digit. So a library can be restored from its Actions alone, in any file. An animator's
+changes of an asset's curves, name and tags take precedence over the text.
 """
 
 import json
@@ -29,20 +29,20 @@ from ..assets.marking import AssetDetails, mark_asset
 from ..posture_curves import read_posture_curves, write_posture_curves
 
 HEADER, POSTURE = "keymark_library", "keymark_posture"
-"""Custom properties of an Action."""
+"""Custom properties of an Action: header of the library, and the posture."""
 CATALOGS = "Keymark"
-"""Above the catalogs of all libraries."""
+"""Parent of the catalogs of all libraries."""
 CUT_FROM = 55
-"""Bytes of a name from which Blender 4.5 may have cut it to make room for a number."""
+"""Length in bytes from which Blender 4.5 may have cut a name to make room for a number."""
 LONGEST_TEXT = 2_000_000
-"""Letters of a custom property that are read; what is longer is no library's."""
+"""Characters of a custom property; longer ones are not read."""
 
 
 def catalog_of(library: Library, posture: LibraryPosture) -> str:
-    """The catalog of a posture: its library's, below that its first motion's where there are several."""
+    """Catalog path of a posture: its library's, and below it its first motion's where there are several."""
     of_it = [m.name for m in library.motions if any(step.posture == posture.name for step in m.steps)]
     names = [library.title, *(of_it[:1] if len(library.motions) > 1 else [])]
-    # Catalogs know slashes and colons as something else.
+    # Slashes and colons have a meaning in catalog paths.
     return "/".join([CATALOGS, *("".join("-" if a in ":/\\" else a for a in name) for name in names)])
 
 
@@ -54,12 +54,12 @@ def draw_pictures(library: Library) -> Iterator[Image]:
 def add_assets(
     library: Library, data: bpy.types.BlendData | None = None, pictures: Iterable[Image] | None = None
 ) -> list[bpy.types.Action]:
-    """An Action for each posture, in order, marked as asset.
+    """Add an Action for each posture, in order, marked as asset.
 
     Args:
         library: The library.
-        data: Where to; the open file by default.
-        pictures: Of each posture; drawn by default.
+        data: The file to add to; the open one by default.
+        pictures: A picture of each posture; drawn by default.
     """
     drawn = draw_pictures(library) if pictures is None else pictures
     return [
@@ -75,30 +75,30 @@ def add_asset(
     picture: Image | None = None,
     data: bpy.types.BlendData | None = None,
 ) -> bpy.types.Action:
-    """An Action for a posture of a library, marked as asset; its picture is drawn by default."""
+    """Add an Action for a posture of a library, marked as asset; its picture is drawn by default."""
     action = (data or bpy.data).actions.new(posture.name)
     write_posture_curves(action, _body(library), posture.posture)
     if picture is None:
         picture = posture_picture(_body(library), posture.posture)
-    show_asset(action, library, posture, order, picture)
+    stamp_asset(action, library, posture, order, picture)
     return action
 
 
-def show_asset(
+def stamp_asset(
     action: bpy.types.Action,
     library: Library,
     posture: LibraryPosture,
     order: int,
     picture: Image | None = None,
 ) -> None:
-    """Let an Action say which posture of which library it is: to people, and to `library_from_assets`.
+    """Write into an Action which posture of which library it is, for people and for `library_from_assets`.
 
     Args:
         action: The Action; its curves stay.
-        library: The library, or one that says the same of itself.
-        posture: What the Action's curves show, under its name.
-        order: Its place among the library's postures.
-        picture: (S, S, 3) blue, green, red; None keeps the one it has.
+        library: The library, or one with the same details.
+        posture: The posture of the Action's curves, with its name.
+        order: Its index among the library's postures.
+        picture: (S, S, 3) blue, green, red; None keeps the present one.
     """
     details = AssetDetails(
         catalog=catalog_identifier(catalog_of(library, posture)),
@@ -115,7 +115,7 @@ def show_asset(
 
 
 def header_text(library: Library) -> str:
-    """All of a library but its postures, as text."""
+    """A library without its postures, as JSON."""
     return _text(library_to_json(replace(library, postures=())))
 
 
@@ -125,20 +125,20 @@ def _header_text(library: Library) -> str:
 
 
 def stamp_header(action: bpy.types.Action, header: str) -> None:
-    """Write down which library an Action belongs to."""
+    """Write the library's header into an Action."""
     action[HEADER] = header
 
 
 def is_posture(action: bpy.types.Action) -> bool:
-    """Whether an Action says that it is a library's posture."""
+    """Whether an Action is marked as a library's posture."""
     return isinstance(action.get(HEADER), str) and isinstance(action.get(POSTURE), str)
 
 
 def read_asset(action: bpy.types.Action) -> LibraryPosture:
-    """A posture as its Action has it now.
+    """Read the posture of an Action, the animator's changes included.
 
     Raises:
-        InputError: What the Action says of itself is not what Keymark writes, or it has no posture any more.
+        InputError: The Action's properties are not what Keymark writes, or it has no curves of a posture.
     """
     header, own = _fields(action, HEADER), _fields(action, POSTURE)
     where = _where(action)
@@ -160,22 +160,22 @@ def read_asset(action: bpy.types.Action) -> LibraryPosture:
 
 
 def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, ...]:
-    """The libraries that Actions belong to, in the order in which they come; other Actions are passed over.
+    """The libraries that Actions belong to, in order of their first Actions; other Actions are ignored.
 
-    Where Actions say different things of their library, those of its newest version count. Motions keep the
-    steps whose postures are there.
+    Where headers of one library differ, that of its newest version counts. Motions keep the steps whose
+    postures are there.
 
     Raises:
-        InputError: What an Action says of itself is not what Keymark writes.
+        InputError: An Action's properties are not what Keymark writes.
     """
-    return tuple(_joined(members) for members in assets_by_library(actions).values())
+    return tuple(_merged(members) for members in assets_by_library(actions).values())
 
 
 def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
-    """The pose assets of each library, in its order, by its identifier; other Actions are passed over.
+    """The pose assets of each library, in its order, by its identifier; other Actions are ignored.
 
     Raises:
-        InputError: What an Action says of itself is not what Keymark writes.
+        InputError: An Action's properties are not what Keymark writes.
     """
     found: dict[str, list[bpy.types.Action]] = {}
     for action in actions:
@@ -184,7 +184,7 @@ def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy
     return {identifier: sorted(members, key=_order) for identifier, members in found.items()}
 
 
-def _joined(actions: Sequence[bpy.types.Action]) -> Library:
+def _merged(actions: Sequence[bpy.types.Action]) -> Library:
     header = max((_fields(action, HEADER) for action in actions), key=_version)
     postures: list[LibraryPosture] = []
     now: dict[str, str] = {}
@@ -200,18 +200,18 @@ def _joined(actions: Sequence[bpy.types.Action]) -> Library:
 
 
 def stored_name(action: bpy.types.Action) -> str:
-    """The name under which the motions know a pose asset's posture."""
+    """The name of a pose asset's posture in the motions of its header."""
     alone = _alone(action)
     first = alone[0] if isinstance(alone, list) and alone else {}
     return str(first.get("name", "")) if isinstance(first, Mapping) else ""
 
 
 def present_motions(motions: Any, now: Mapping[str, str]) -> Any:
-    """Motions, as in a library's file, of the postures that are there, under the names they have now.
+    """Motions in JSON, reduced to the postures that are there, under their present names.
 
     Args:
-        motions: What stands in the file; what is no motion stays, for the reader to refuse.
-        now: New names by old ones, of those that are there.
+        motions: The JSON value; what is not a motion stays, for the reader to refuse.
+        now: Present names by former ones, of the postures that are there.
     """
     if not isinstance(motions, list):
         return motions
@@ -236,24 +236,24 @@ def _is_step(step: Any) -> bool:
 
 
 def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
-    """What stands in one of an Action's two texts."""
+    """The parsed JSON of one of an Action's two properties."""
     text = action.get(name)
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
     if name == HEADER:
-        with suppress(InputError):  # which would not say whose it is
+        with suppress(InputError):  # parsed again below, where the sentence names the Action
             return _parsed(text)
     return parse_json(text, f"{_where(action)}: its property {name}")
 
 
 @lru_cache(maxsize=4)
 def _parsed(text: str) -> dict[str, Any]:
-    """An object in JSON; not to be changed. All assets of a library carry the same long header."""
+    """A JSON object, not to be mutated; cached, as all assets of a library have the same long header."""
     return parse_json(text, "")
 
 
 def _body(library: Library) -> Body:
-    """Who was posed; the same for all libraries of the same lengths, so that bones and skin are made once."""
+    """The library's body; cached by lengths, so that bones and skin are made once."""
     return _body_of(tuple(library.actor.segments_m.items()))
 
 
@@ -263,7 +263,7 @@ def _body_of(lengths: tuple[tuple[str, float], ...]) -> Body:
 
 
 def _is_named(action: bpy.types.Action, name: Any) -> bool:
-    """Whether an Action has a name still, but for a number that Blender gave it to tell it from another."""
+    """Whether an Action still has a name, but for a number that Blender may have added."""
     stem, _, number = action.name.rpartition(".")
     if not isinstance(name, str) or action.name == name:
         return action.name == name

@@ -1,72 +1,74 @@
-"""An actor's pose as a library keeps it, and a library's posture where an actor stands."""
+"""Transfer of postures: from an actor into a library, from a library to an actor."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from ....core.body.actor import Actor
-from ....core.body.heading import headings_rad, turned_and_shifted
 from ....core.body.kinematics import Body
 from ....core.body.mirror import mirrored
 from ....core.body.posture import Posture
 from ....core.body.soles import lower_sole_m
 from ....core.errors import InputError
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.transfer import transferred
+from ....core.library.posture_shape import headings_rad, moved
+from ....core.library.transfer import applied
 
 
-def as_kept(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> Posture:
-    """Postures of one performance as a library of an actor keeps them.
+def posture_for_library(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> Posture:
+    """Postures of one performance, leveled and scaled for a library.
 
-    The first faces -Y above the world's origin, the others lie to it as they did.
+    The first faces -Y above the world's origin; the others keep their poses relative to it.
 
     Args:
-        body: Whose postures they are.
+        body: The performer's.
         postures: A batch of F, in the world.
         actor: The library's.
-        on_floor: The lowest sole of all stands on the floor; else the floor is the world's, z = 0.
+        on_floor: The lowest sole of all touches the floor; else the floor is the world's, z = 0.
     """
     turn = -headings_rad(postures[:1])[0]
-    turned = turned_and_shifted(postures, turn, np.zeros(3))
-    place = turned.translation[0] * [-1.0, -1.0, 0.0]
+    turned = moved(postures, turn, np.zeros(3))
+    offset = turned.translation[0] * [-1.0, -1.0, 0.0]
     if on_floor:
-        place[2] = -lower_sole_m(body, turned).min()
-    level = turned_and_shifted(turned, np.zeros(1), place)
-    return transferred(level, body.actor, Body(actor))
+        offset[2] = -lower_sole_m(body, turned).min()
+    level = moved(turned, np.zeros(1), offset)
+    return applied(level, body.actor, Body(actor))
 
 
-def on_actor(posture: LibraryPosture | Posture, actor: Actor, body: Body, *, mirror: bool) -> Posture:
-    """A library's posture with a body's proportions, the floor at z = 0.
+def posture_for_actor(
+    posture: LibraryPosture | Posture, actor: Actor, body: Body, *, mirror: bool
+) -> Posture:
+    """A library's posture scaled to a body, the floor at z = 0.
 
     Args:
         posture: The posture.
         actor: The library's.
-        body: Whom it shall fit.
-        mirror: With left and right exchanged.
+        body: The body to scale to.
+        mirror: Whether left and right are exchanged.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
-    fitting = transferred(given, actor, body)
+    fitting = applied(given, actor, body)
     return mirrored(fitting) if mirror else fitting
 
 
-def standing_as(posture: Posture, body: Body, shown: Posture) -> Posture:
-    """A posture with the place and the heading of another, the floor where the other's lower sole is.
+def placed_like(posture: Posture, body: Body, shown: Posture) -> Posture:
+    """A posture moved to the location and heading of another, the floor at the other's lower sole.
 
     Args:
         posture: A single one, the floor at z = 0.
-        body: Whose postures both are.
+        body: The body of both.
         shown: A single one, in the world.
     """
     both = Posture.stack([posture, shown])
     own, wanted = headings_rad(both)
-    turned = turned_and_shifted(both[:1], wanted - own, np.zeros(3))
-    place = shown.translation - turned.translation[0]
-    place[2] = lower_sole_m(body, shown)
-    return turned_and_shifted(turned, np.zeros(1), place)[0]
+    turned = moved(both[:1], wanted - own, np.zeros(3))
+    offset = shown.translation - turned.translation[0]
+    offset[2] = lower_sole_m(body, shown)
+    return moved(turned, np.zeros(1), offset)[0]
 
 
 def named_posture(library: Library, name: str) -> LibraryPosture:
-    """A library's posture.
+    """The posture of a library with a name.
 
     Raises:
         InputError: It has none of that name.
@@ -74,11 +76,11 @@ def named_posture(library: Library, name: str) -> LibraryPosture:
     found = library.by_name.get(name)
     if found is None:
         raise InputError(
-            f"library '{library.title}' has no posture '{name}'; it has {_some(list(library.by_name))}"
+            f"library '{library.title}' has no posture '{name}'; it has {_listed(list(library.by_name))}"
         )
     return found
 
 
-def _some(names: Sequence[str], most: int = 8) -> str:
+def _listed(names: Sequence[str], most: int = 8) -> str:
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more

@@ -1,1 +1,1 @@
-"""The keyframe library that is made in this file: its postures are pose assets, the rest properties."""
+"""The keyframe library that is made in this file: pose assets for its postures, properties for the rest."""

@@ -13,7 +13,7 @@ from .scene_libraries import library_here
 
 
 class KEYMARK_OT_add_motion(BaseOperator, bpy.types.Operator):
-    """Add a motion to the library: an order of its postures, with the times at which they come"""
+    """Add a motion to the library: a sequence of its postures, with their times"""
 
     bl_idname = "keymark.add_motion"
     bl_label = "Add Motion"
@@ -21,18 +21,18 @@ class KEYMARK_OT_add_motion(BaseOperator, bpy.types.Operator):
 
     source: bpy.props.EnumProperty(
         name="From",
-        description="Which postures it leads through",
+        description="Postures of the motion",
         items=[
             ("POSTURES", "The Library's Postures", "All postures in their order, evenly in time"),
             ("KEYFRAMES", "The Take's Keyframes", "Each keyframe becomes a posture and comes at its time"),
         ],
     )
     motion: bpy.props.StringProperty(
-        name="Name", description="What the motion is called, such as Brisk Walking", default="Motion"
+        name="Name", description="Name of the motion, such as Brisk Walking", default="Motion"
     )
     duration_s: bpy.props.FloatProperty(
         name="Duration (s)",
-        description="How long the whole motion takes, where the take's keyframes do not tell",
+        description="Duration of the whole motion, unless the take's keyframes give it",
         default=1.0,
         min=0.01,
         max=600.0,
@@ -50,7 +50,7 @@ class KEYMARK_OT_add_motion(BaseOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self, confirm_text="Add")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what counts for the chosen source."""
+        """Draw the properties that apply to the chosen source."""
         column = self.layout.column()
         column.use_property_split = True
         column.prop(self, "source")

@@ -11,26 +11,26 @@ from .scene_libraries import library_here
 
 
 class KEYMARK_OT_add_posture(BaseOperator, bpy.types.Operator):
-    """Add the actor's pose, as it stands at this frame, to the library that is made in this file"""
+    """Add the actor's pose at this frame to the library that is made in this file"""
 
     bl_idname = "keymark.add_posture"
     bl_label = "Add Posture"
     bl_options = {"REGISTER", "UNDO"}
 
     posture: bpy.props.StringProperty(
-        name="Name", description="What the posture is called, such as Left Heel Strike", default="Posture"
+        name="Name", description="Name of the posture, such as Left Heel Strike", default="Posture"
     )
     tags: bpy.props.StringProperty(
         name="Tags", description="Words to find the posture by, with commas between them"
     )
     on_floor: bpy.props.BoolProperty(
         name="Stands on the Floor",
-        description="Let the lower sole touch the floor; off: as high as it is above z = 0, as in a jump",
+        description="Move the lower sole onto the floor; off: keep the height above z = 0, as in a jump",
         default=True,
     )
     replace: bpy.props.BoolProperty(
         name="Replace",
-        description="Put the pose in the place of the chosen posture, which keeps its name and tags",
+        description="Replace the chosen posture by the pose; name and tags stay",
         options={"SKIP_SAVE"},
     )
 

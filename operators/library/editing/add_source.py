@@ -8,7 +8,7 @@ from .scene_libraries import library_here
 
 
 class KEYMARK_OT_add_source(BaseOperator, bpy.types.Operator):
-    """Add a line that says what the postures are drawn from"""
+    """Add a line that names a source of the postures"""
 
     bl_idname = "keymark.add_source"
     bl_label = "Add Source"

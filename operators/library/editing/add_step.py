@@ -8,11 +8,11 @@ from ...shell.requirements import idle, scene_library
 from .scene_libraries import active_motion, active_posture, library_here
 
 STEP_S = 0.1
-"""After the last step, where nothing tells when the next one comes."""
+"""Time of a new step after the last one, where no earlier steps give it."""
 
 
 class KEYMARK_OT_add_step(BaseOperator, bpy.types.Operator):
-    """Let the chosen motion lead on to the chosen posture"""
+    """Add the chosen posture at the end of the chosen motion"""
 
     bl_idname = "keymark.add_step"
     bl_label = "Add Step"
@@ -20,7 +20,7 @@ class KEYMARK_OT_add_step(BaseOperator, bpy.types.Operator):
     requirements = (scene_library, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Add it behind the last step, as much later as that came after the one before."""
+        """Add a step, as much later than the last one as that is later than the one before."""
         group = library_here(context.scene)
         motion, entry = active_motion(group), active_posture(group)
         if motion is None or entry is None:

@@ -8,7 +8,7 @@ import bpy
 from ....core.body.kinematics import Body
 from ....core.library.texts import unique_name
 from ....core.report.posture_picture import posture_picture
-from ...bridge.library.pose_assets import header_text, show_asset, stamp_header
+from ...bridge.library.pose_assets import header_text, stamp_asset, stamp_header
 from .library_from_scene import library_from_scene, postures_from_scene, unchecked_library
 from .scene_libraries import TAG_SEPARATOR, library_containing, updates_are_suspended, updates_suspended
 
@@ -35,7 +35,7 @@ def update_assets(group: bpy.types.PropertyGroup, redrawn: Sequence[bpy.types.Pr
             entry.action.name = posture.name
             again = any(entry == other for other in redrawn)
             picture = posture_picture(body, posture.posture) if again else None
-            show_asset(entry.action, library, posture, order, picture)
+            stamp_asset(entry.action, library, posture, order, picture)
 
 
 def details_changed(part: bpy.types.PropertyGroup) -> None:

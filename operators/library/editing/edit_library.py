@@ -1,4 +1,4 @@
-"""Bring a library that is at hand into this file, to change it."""
+"""Bring a registered library into this file, to edit it."""
 
 import bpy
 
@@ -25,12 +25,12 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Make its postures pose assets of this file."""
-        from ..registry_files import registered_library
+        """Add the library to the scene, its postures as pose assets."""
+        from ..registry_files import load_registered
         from .library_to_scene import add_library
 
         item = chosen_entry(context)
-        library = registered_library(self.library or (item.name if item is not None else ""))
+        library = load_registered(self.library or (item.name if item is not None else ""))
         if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):
             raise InputError(f"library '{library.title}' is in this file already; remove it there first")
         add_library(context.scene, library)

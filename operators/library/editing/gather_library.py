@@ -1,4 +1,4 @@
-"""Gather the pose assets of keyframe libraries that came into this file by other means."""
+"""Gather pose assets that were appended or dragged into this file into libraries."""
 
 import bpy
 
@@ -17,7 +17,7 @@ class KEYMARK_OT_gather_library(BaseOperator, bpy.types.Operator):
     requirements = (idle,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Put together what belongs together, but for what is listed already."""
+        """Add a library for each header among the pose assets that are not listed yet."""
         from ...bridge.library.pose_assets import assets_by_library, library_from_assets
         from .library_to_scene import add_library
 

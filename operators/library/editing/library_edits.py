@@ -19,7 +19,7 @@ from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ...bridge.actor_lengths import read_body
 from ...bridge.keyframes import NOTICEABLE_M, keyed_frames, read_keyframes
 from ...bridge.library.pose_assets import add_asset
-from ...bridge.library.posture_transfer import as_kept
+from ...bridge.library.posture_transfer import posture_for_library
 from ...bridge.pose import read_posture
 from ...bridge.posture_curves import rewrite_posture_curves
 from .asset_updates import update_assets
@@ -135,7 +135,7 @@ def add_postures(
     _check(group, names, tags)
     if not len(group.postures):
         group.actor = json.dumps(dict(body.actor.segments_m))
-    kept = as_kept(body, postures, actor_of_library(group), on_floor=on_floor)
+    kept = posture_for_library(body, postures, actor_of_library(group), on_floor=on_floor)
     return _add_entries(
         group, [LibraryPosture(name.strip(), kept[row], tags) for row, name in enumerate(names)]
     )
@@ -167,7 +167,7 @@ def replace_posture(
     if entry is None or entry.action is None:
         raise InputError(f"no posture of the library '{group.name}' is chosen; choose the one to replace")
     actor = actor_of_library(group)
-    kept = as_kept(body, postures, actor, on_floor=on_floor)[0]
+    kept = posture_for_library(body, postures, actor, on_floor=on_floor)[0]
     rewrite_posture_curves(entry.action, actor, kept)
     update_assets(group, [entry])
     return entry

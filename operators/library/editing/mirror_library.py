@@ -11,7 +11,7 @@ from .scene_libraries import library_here
 
 
 class KEYMARK_OT_mirror_library(BaseOperator, bpy.types.Operator):
-    """Add postures with left and right exchanged; those of both sides need to be posed only once"""
+    """Add postures with left and right exchanged, so that one-sided ones need to be posed only once"""
 
     bl_idname = "keymark.mirror_library"
     bl_label = "Add Mirrored"
@@ -20,16 +20,16 @@ class KEYMARK_OT_mirror_library(BaseOperator, bpy.types.Operator):
 
     what: bpy.props.EnumProperty(
         name="What",
-        description="What is mirrored",
+        description="Postures to mirror",
         items=[
             ("POSTURE", "Chosen Posture", "Add the chosen posture mirrored"),
-            ("POSTURES", "Whole Library", "Add what all postures and motions lack of the other side"),
+            ("POSTURES", "Whole Library", "Add the missing other side of all postures and motions"),
             ("LIBRARY", "A New Library", "Make a mirrored library beside this one, with its motions"),
         ],
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add them at the end of the list."""
+        """Add mirrored postures at the end of the list, or a mirrored library."""
         from ....core.library.mirroring import mirrored_library
         from .library_edits import add_mirrored
         from .library_from_scene import library_from_scene

@@ -17,7 +17,7 @@ class KEYMARK_OT_move_posture(BaseOperator, bpy.types.Operator):
 
     direction: bpy.props.EnumProperty(
         name="Direction",
-        description="Where to",
+        description="Direction of the move",
         items=[("UP", "Up", "Before the posture above"), ("DOWN", "Down", "Behind the posture below")],
     )
 

@@ -18,10 +18,8 @@ class KEYMARK_OT_new_library(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (idle,)
 
-    title: bpy.props.StringProperty(
-        name="Title", description="What people call the library", default="My Library"
-    )
-    author: bpy.props.StringProperty(name="Author", description="Who makes it")
+    title: bpy.props.StringProperty(name="Title", description="Title of the library", default="My Library")
+    author: bpy.props.StringProperty(name="Author", description="Author of the library")
     license: bpy.props.StringProperty(
         name="License",
         description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
@@ -36,7 +34,7 @@ class KEYMARK_OT_new_library(BaseOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self, confirm_text="Begin")
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add it, without postures yet."""
+        """Add the library, without postures."""
         from ....core.library.library_fields import LONGEST_LINE
 
         settings = context.scene.keymark

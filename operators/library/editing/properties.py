@@ -1,7 +1,7 @@
-"""A keyframe library that is made in this file: what is said of it, its postures and its motions.
+"""Properties of a keyframe library that is made in this file: its details, postures and motions.
 
-Blender's numbers are of single precision. Times and ways are kept as text beside them, to the last digit, so
-that a library goes through a file unchanged.
+Blender's numbers have single precision. Times and travel are stored as text too, to the last digit, so that
+a library passes through a file unchanged.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from ....core.errors import InputError
 from ..licenses import suggest
 
 KEPT_DIGITS = 6
-"""Of a number that was typed in: single precision has no more."""
+"""Decimals of a number that was typed: single precision has no more."""
 
 
 def _get(exact: str) -> Callable[[bpy.types.PropertyGroup], float]:
@@ -35,19 +35,21 @@ def _exact() -> "bpy.types.AnyType":
     return bpy.props.StringProperty(options={"HIDDEN"})
 
 
-def _details_changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _details_changed(part: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Write the library's details into its pose assets."""
-    with suppress(InputError, ModuleNotFoundError):  # half typed; an export or a publication checks it
-        from .asset_updates import details_changed
-
-        details_changed(group)
+    _update_assets(part, is_posture=False)
 
 
 def _posture_changed(posture: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    with suppress(InputError, ModuleNotFoundError):
-        from .asset_updates import posture_changed
+    """Write a posture's name and tags into its pose asset and the motions."""
+    _update_assets(posture, is_posture=True)
 
-        posture_changed(posture)
+
+def _update_assets(part: bpy.types.PropertyGroup, *, is_posture: bool) -> None:
+    with suppress(InputError, ModuleNotFoundError):  # half typed; an export or a publication checks it
+        from .asset_updates import details_changed, posture_changed
+
+        (posture_changed if is_posture else details_changed)(part)
 
 
 class KEYMARK_PG_library_line(bpy.types.PropertyGroup):
@@ -55,7 +57,7 @@ class KEYMARK_PG_library_line(bpy.types.PropertyGroup):
 
     text: bpy.props.StringProperty(
         name="Source",
-        description="Literature, or whatever else the postures are drawn from",
+        description="Source of the postures, such as literature",
         update=_details_changed,
     )
 
@@ -67,7 +69,7 @@ class KEYMARK_PG_library_posture(bpy.types.PropertyGroup):
         name="Name", description="The posture's name, unique in its library", update=_posture_changed
     )
     selected: bpy.props.BoolProperty(
-        name="Selected", description="Mark the posture, for what is done with marked ones only", default=False
+        name="Selected", description="Mark the posture, for operators on marked ones only", default=False
     )
     named: bpy.props.StringProperty(
         name="Named", description="The name that the motions know it by", options={"HIDDEN"}
@@ -78,7 +80,7 @@ class KEYMARK_PG_library_posture(bpy.types.PropertyGroup):
         update=_posture_changed,
     )
     exact_tags: bpy.props.StringProperty(
-        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
+        name="Exact Tags", description="The tags before they were edited, as JSON", options={"HIDDEN"}
     )
     action: bpy.props.PointerProperty(
         name="Pose Asset", description="The Action that holds the posture", type=bpy.types.Action
@@ -86,15 +88,15 @@ class KEYMARK_PG_library_posture(bpy.types.PropertyGroup):
 
 
 class KEYMARK_PG_library_step(bpy.types.PropertyGroup):
-    """A posture's place in a motion."""
+    """A step of a motion: a posture and its time."""
 
     posture: bpy.props.StringProperty(
-        name="Posture", description="Which posture is reached", update=_details_changed
+        name="Posture", description="Posture of the step", update=_details_changed
     )
     time_exact: _exact()
     time_s: bpy.props.FloatProperty(
         name="Time (s)",
-        description="When, from the motion's beginning",
+        description="Time from the start of the motion",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -105,7 +107,7 @@ class KEYMARK_PG_library_step(bpy.types.PropertyGroup):
 
 
 class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
-    """A usual way through postures."""
+    """A motion through postures."""
 
     name: bpy.props.StringProperty(name="Name", description="The motion's name", update=_details_changed)
     cyclic: bpy.props.BoolProperty(
@@ -116,7 +118,7 @@ class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
     duration_exact: _exact()
     duration_s: bpy.props.FloatProperty(
         name="Duration (s)",
-        description="How long the motion takes; of a cyclic one until the first posture comes again",
+        description="Duration of the motion; of a cyclic one until the first posture comes again",
         min=0.0,
         max=3600.0,
         precision=3,
@@ -129,7 +131,7 @@ class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
     travel_turn_exact: _exact()
     travel_x: bpy.props.FloatProperty(
         name="Travel X",
-        description="How far a cycle leads to the performer's left",
+        description="Travel of a cycle to the performer's left",
         subtype="DISTANCE",
         precision=3,
         get=_get("travel_x_exact"),
@@ -137,7 +139,7 @@ class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
     )
     travel_y: bpy.props.FloatProperty(
         name="Y",
-        description="How far a cycle leads backwards; negative: straight ahead",
+        description="Travel of a cycle backwards; negative: straight ahead",
         subtype="DISTANCE",
         precision=3,
         get=_get("travel_y_exact"),
@@ -145,7 +147,7 @@ class KEYMARK_PG_library_motion(bpy.types.PropertyGroup):
     )
     travel_turn: bpy.props.FloatProperty(
         name="Turn",
-        description="How far a cycle turns the performer to the left",
+        description="Turn of the performer to the left in a cycle",
         subtype="ANGLE",
         get=_get("travel_turn_exact"),
         set=_set("travel_turn_exact"),
@@ -161,12 +163,10 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
 
     identifier: bpy.props.StringProperty(
         name="Identifier",
-        description="What the library is known by wherever it is copied: letters a to z, digits, - and _",
+        description="Identifier of the library in all its copies: letters a to z, digits, - and _",
         update=_details_changed,
     )
-    name: bpy.props.StringProperty(
-        name="Title", description="What people call the library", update=_details_changed
-    )
+    name: bpy.props.StringProperty(name="Title", description="Title of the library", update=_details_changed)
     version: bpy.props.IntProperty(
         name="Version",
         description="Raise it with every change that you publish, so that others know which is newer",
@@ -175,7 +175,7 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
         update=_details_changed,
     )
     author: bpy.props.StringProperty(
-        name="Author", description="Who made the library", update=_details_changed
+        name="Author", description="Author of the library", update=_details_changed
     )
     license: bpy.props.StringProperty(
         name="License",
@@ -187,7 +187,7 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
         update=_details_changed,
     )
     description: bpy.props.StringProperty(
-        name="Description", description="What the library is for", update=_details_changed
+        name="Description", description="Purpose of the library", update=_details_changed
     )
     tags: bpy.props.StringProperty(
         name="Tags",
@@ -195,7 +195,7 @@ class KEYMARK_PG_library(bpy.types.PropertyGroup):
         update=_details_changed,
     )
     exact_tags: bpy.props.StringProperty(
-        name="Exact Tags", description="The tags before anybody typed any, as JSON", options={"HIDDEN"}
+        name="Exact Tags", description="The tags before they were edited, as JSON", options={"HIDDEN"}
     )
     sources: bpy.props.CollectionProperty(type=KEYMARK_PG_library_line)
     actor: bpy.props.StringProperty(

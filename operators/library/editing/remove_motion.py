@@ -9,7 +9,7 @@ from .scene_libraries import active_motion, library_here
 
 
 class KEYMARK_OT_remove_motion(BaseOperator, bpy.types.Operator):
-    """Take the chosen motion out of the library; its postures stay"""
+    """Remove the chosen motion from the library; its postures stay"""
 
     bl_idname = "keymark.remove_motion"
     bl_label = "Remove Motion"
@@ -17,7 +17,7 @@ class KEYMARK_OT_remove_motion(BaseOperator, bpy.types.Operator):
     requirements = (scene_library, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Remove it."""
+        """Remove the motion."""
         from .asset_updates import update_assets
 
         group = library_here(context.scene)

@@ -10,7 +10,7 @@ from .scene_libraries import active_posture, library_here
 
 
 class KEYMARK_OT_remove_posture(BaseOperator, bpy.types.Operator):
-    """Take the chosen posture out of the library, with its pose asset; motions lose their steps to it"""
+    """Remove the chosen posture from the library, with its pose asset and the motions' steps to it"""
 
     bl_idname = "keymark.remove_posture"
     bl_label = "Remove Posture"

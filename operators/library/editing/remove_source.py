@@ -9,17 +9,17 @@ from .scene_libraries import library_here
 
 
 class KEYMARK_OT_remove_source(BaseOperator, bpy.types.Operator):
-    """Take out a line that says what the postures are drawn from"""
+    """Remove a line that names a source of the postures"""
 
     bl_idname = "keymark.remove_source"
     bl_label = "Remove Source"
     bl_options = {"REGISTER", "UNDO"}
     requirements = (scene_library, idle)
 
-    line: bpy.props.IntProperty(name="Line", description="Which line, from 0", min=0)
+    line: bpy.props.IntProperty(name="Line", description="Index of the line, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Remove it."""
+        """Remove the line."""
         from .asset_updates import update_assets
 
         group = library_here(context.scene)

@@ -9,7 +9,7 @@ from .scene_libraries import active_motion, library_here
 
 
 class KEYMARK_OT_remove_step(BaseOperator, bpy.types.Operator):
-    """Take the chosen step out of the motion; the posture stays in the library"""
+    """Remove the chosen step from the motion; the posture stays in the library"""
 
     bl_idname = "keymark.remove_step"
     bl_label = "Remove Step"
@@ -17,7 +17,7 @@ class KEYMARK_OT_remove_step(BaseOperator, bpy.types.Operator):
     requirements = (scene_library, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Remove it."""
+        """Remove the step."""
         from .asset_updates import update_assets
 
         group = library_here(context.scene)

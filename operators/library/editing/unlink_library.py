@@ -1,4 +1,4 @@
-"""Remove a keyframe library from this file."""
+"""Unlink a keyframe library from this file."""
 
 import bpy
 
@@ -18,7 +18,7 @@ class KEYMARK_OT_remove_library(BaseOperator, bpy.types.Operator):
     requirements = (scene_library, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it and its Actions."""
+        """Remove the library and its Actions."""
         settings = context.scene.keymark
         group = library_here(context.scene)
         title = group.name

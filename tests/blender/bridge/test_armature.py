@@ -137,7 +137,7 @@ def test_a_mirrored_actor_is_refused(actor: bpy.types.Object) -> None:
 
 
 def test_a_missing_bone_is_named(actor: bpy.types.Object) -> None:
-    """The sentence says which bone is not there."""
+    """The error names the missing bone."""
     actor.data.bones["shin.L"].name = "calf"
     with pytest.raises(InputError, match=r"lacks the bones shin\.L"):
         read_body(actor, HUMAN)

@@ -1,4 +1,4 @@
-"""A clip behind a camera of which nobody may have said anything: lens, place, movement."""
+"""A clip attached to a camera: guessed and known lenses, location, movement."""
 
 from dataclasses import replace
 
@@ -81,7 +81,7 @@ def test_the_animators_lens_stays(clip: bpy.types.MovieClip) -> None:
 
 
 def test_blenders_own_lens_is_no_knowledge(clip: bpy.types.MovieClip) -> None:
-    """A camera just added has 50 mm whatever was filmed; where it was put stays."""
+    """A camera just added has the default of 50 mm, which is replaced; its location stays."""
     mine = own_camera(50.0)
     mine.location = (1.0, -5.0, 2.0)
     attached = attach_footage(bpy.context.scene, clip, mine)

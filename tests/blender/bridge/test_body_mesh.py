@@ -20,7 +20,7 @@ def actor(body: Body) -> bpy.types.Object:
 
 
 def places(mesh_object: bpy.types.Object, group: str) -> np.ndarray:
-    """World places (N, 3) of the vertices of one limb, as the armature moves them."""
+    """World positions (N, 3) of the vertices of one limb, as the armature moves them."""
     shown = mesh_object.evaluated_get(bpy.context.evaluated_depsgraph_get())
     index = mesh_object.vertex_groups[group].index
     vertices = [v for v in shown.data.vertices if any(g.group == index for g in v.groups)]

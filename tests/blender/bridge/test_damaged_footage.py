@@ -1,4 +1,4 @@
-"""What Blender shows of footage that is damaged, turned or cut is what is read, frame for frame."""
+"""Damaged, rotated or cut footage is read frame for frame as Blender shows it."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -35,7 +35,7 @@ def test_beyond_reach_no_other_angles_are_nearer(seed: int) -> None:
 
 
 def test_one_hinge_takes_its_share_of_a_rotation() -> None:
-    """What the hinge cannot follow is left over."""
+    """The rotation that a hinge cannot follow remains as residual."""
     rotation = hinge(X, np.array(0.7)) @ hinge(Y, np.array(0.2))
     (angle,) = nearest_hinges([X], rotation)
     grid = np.linspace(0.5, 0.9, 4001)

@@ -40,7 +40,7 @@ def postures(random_posture: Callable[[int], Posture]) -> tuple[Keyframe, ...]:
 def test_written_keyframes_are_read_back(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, postures: tuple[Keyframe, ...]
 ) -> None:
-    """Posture -> keys -> evaluated pose -> posture, at the same places of the clip."""
+    """Posture -> keys -> evaluated pose -> posture, at the same indices of the clip."""
     write_keyframes(actor, action, postures, CLIP)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
     assert found.notes == ()
@@ -56,7 +56,7 @@ def test_stored_poses_are_keyframes_and_storing_again_replaces(
     action: bpy.types.Action,
     random_posture: Callable[[int], Posture],
 ) -> None:
-    """The pose as it stands is keyed; a second time at the same frame it replaces the first."""
+    """The present pose is keyed; a second one at the same frame replaces the first."""
     write_posture(actor, random_posture(60))
     store_pose(actor, action, HUMAN, 5.0)
     write_posture(actor, random_posture(61))
@@ -75,7 +75,7 @@ def test_keys_that_were_generated_are_not_keyframes(actor: bpy.types.Object, wav
 
 
 def test_keys_of_hands_alone_are_not_keyframes(actor: bpy.types.Object) -> None:
-    """A waving hand says nothing of the body."""
+    """A waving hand makes no keyframe."""
     actor.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=9)
     assert keyed_frames(actor, actor.animation_data.action, HUMAN) == ()
 

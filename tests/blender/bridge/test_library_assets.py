@@ -56,7 +56,7 @@ def library(random_posture: RandomPosture) -> Library:
 
 
 def file_bytes(library: Library, folder: Path) -> bytes:
-    """What the library's file holds."""
+    """The content of the library's file."""
     write_library(folder / "x.json", library)
     return (folder / "x.json").read_bytes()
 
@@ -160,7 +160,7 @@ def test_assets_are_seen_as_such(library: Library) -> None:
     ],
 )
 def test_nonsense_in_an_asset_is_one_sentence(library: Library, name: str, value: str, sentence: str) -> None:
-    """Whatever a stranger writes into the custom properties."""
+    """Any content of the custom properties."""
     action = add_assets(library)[0]
     action[name] = value
     with pytest.raises(InputError, match=sentence) as raised:
@@ -186,7 +186,7 @@ def _spoiled(value: object, rng: np.random.Generator) -> object:
 
 
 def test_spoiled_texts_of_an_asset_are_refused_or_read(library: Library) -> None:
-    """Many ways to spoil what an asset says: a library, or one sentence; never anything else."""
+    """Corrupted properties give a library or an InputError, never anything else."""
     actions = add_assets(library)[:2]
     first = actions[0]
     texts = {name: first[name] for name in (HEADER, POSTURE)}
@@ -229,7 +229,7 @@ def test_a_broken_blend_says_so_and_leaves_nothing(tmp_path: Path, content: byte
 
 
 def test_a_cut_off_blend_says_so(library: Library, tmp_path: Path) -> None:
-    """At every place where it may be cut."""
+    """Cut at several offsets."""
     write_library_blend(tmp_path / "a.blend", library)
     whole = (tmp_path / "a.blend").read_bytes()
     for share in (0.01, 0.3, 0.7, 0.99):

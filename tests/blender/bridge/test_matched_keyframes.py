@@ -57,7 +57,7 @@ def take(matched_take: Take) -> bpy.types.PropertyGroup:
 
 
 def keyframes_in(take: bpy.types.PropertyGroup) -> tuple[Keyframe, ...]:
-    """What a reconstruction is given."""
+    """The keyframes that a reconstruction is given."""
     scene = bpy.context.scene
     reading = read_scene_take(
         footage_of(scene, take),
@@ -70,7 +70,7 @@ def keyframes_in(take: bpy.types.PropertyGroup) -> tuple[Keyframe, ...]:
 
 
 def matched_in(take: bpy.types.PropertyGroup) -> list[Matched | None]:
-    """What each of them was matched with."""
+    """The match of each keyframe."""
     return [keyframe.matched for keyframe in keyframes_in(take)]
 
 
@@ -83,7 +83,7 @@ def key_at(take: bpy.types.PropertyGroup, path: str, index: int, frame: float) -
 def test_a_take_with_matched_keyframes_is_opened_and_saved_as_it_was(
     take: bpy.types.PropertyGroup, matched_take: Take
 ) -> None:
-    """File -> scene -> file keeps what each keyframe was matched with, and its posture."""
+    """File -> scene -> file keeps each keyframe's match and posture."""
     assert keyframes_of(take) == (1.0, 7.0, 13.0)
     assert (matched_frames(take), posed_frames(take)) == ((7.0,), (1.0, 13.0))
     bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
@@ -121,7 +121,7 @@ def test_keying_the_same_frame_by_blender_makes_it_posed(take: bpy.types.Propert
 
 
 def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.PropertyGroup) -> None:
-    """Whoever says when a posture happens has posed it."""
+    """A moved keyframe is the animator's."""
     for curve in existing_channelbag(take.keyframe_action, take.armature).fcurves:
         for key in curve.keyframe_points:
             if key.co[0] == 7.0:
@@ -132,7 +132,7 @@ def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.Proper
 
 
 def test_a_bone_in_another_rotation_mode_shows_something_else(take: bpy.types.PropertyGroup) -> None:
-    """Its curves say nothing any more, so the posture is not the matched one."""
+    """Its curves no longer apply, so the posture is not the matched one."""
     take.armature.pose.bones["chest"].rotation_mode = "XYZ"
     assert matched_in(take) == [None, None, None]
 
@@ -167,7 +167,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
 
 
 def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.PropertyGroup) -> None:
-    """Hands and feet have no degrees of freedom: what is keyed there is always the animator's."""
+    """Hands and feet have no degrees of freedom: their keys are always the animator's."""
     armature_object, action = take.armature, take.keyframe_action
     store_pose(armature_object, action, HUMAN, 7.0)
     remove_keyframes(armature_object, action, HUMAN, (1.0, 7.0, 13.0))
@@ -212,7 +212,7 @@ def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
 def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
     take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A matched keyframe says where the body is about, yet nothing of where its sleeves sit."""
+    """A matched keyframe is a rough pose and cannot calibrate marker placements."""
     asked: list[int] = []
     original = single_frame_fit.calibrated
 

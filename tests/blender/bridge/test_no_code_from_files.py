@@ -1,4 +1,4 @@
-"""A .blend from a stranger: pose assets come out of it, and nothing in it runs, auto-run or not."""
+"""An untrusted .blend: its pose assets are read, and nothing in it runs, with auto-run or without."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -62,7 +62,7 @@ def test_pose_assets_are_read_and_nothing_runs_or_stays(
 
 
 def test_the_proof_would_be_there_had_it_run(library: Library, tmp_path: Path, auto_run: None) -> None:
-    """What the test above looks for does appear where that file is opened with auto-run."""
+    """The marker of the test above does appear when that file is opened with auto-run."""
     proof = tmp_path / "ran"
     hostile_blend(tmp_path / "hostile.blend", library, proof)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hostile.blend"), use_scripts=True)

@@ -26,7 +26,7 @@ def actor(body: Body) -> bpy.types.Object:
 
 
 def assert_round_trip(actor: bpy.types.Object, posture: Posture, shown_points: Points) -> None:
-    """Writing and reading a posture gives it back, and Blender's bones lie where core's kinematics says."""
+    """Reading a written posture restores it, and Blender's bones match core's kinematics."""
     body = read_body(actor, HUMAN)
     write_posture(actor, posture)
     expected = body.points(body.pose(posture))
@@ -46,7 +46,7 @@ def test_round_trip_in_every_rotation_mode(
     mode: str,
     seed: int,
 ) -> None:
-    """Whatever mode the animator has chosen, the posture is exact and the mode stays."""
+    """In every rotation mode the posture is exact and the mode stays."""
     for bone in actor.pose.bones:
         bone.rotation_mode = mode
     assert_round_trip(actor, random_posture(seed), shown_points)
@@ -80,7 +80,7 @@ def test_round_trip_for_an_object_anywhere_in_the_world(
 def test_round_trip_for_an_object_that_hangs_on_another(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points
 ) -> None:
-    """A parent's place and scale count as well."""
+    """A parent's location and scale count as well."""
     parent = bpy.data.objects.new("Stage", None)
     bpy.context.collection.objects.link(parent)
     parent.matrix_world = Matrix.LocRotScale(
@@ -94,7 +94,7 @@ def test_round_trip_for_an_object_that_hangs_on_another(
 def test_round_trip_after_the_objects_transform_was_applied(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points
 ) -> None:
-    """Bones whose rest was turned and scaled by Apply still say the same postures."""
+    """Bones whose rest was rotated and scaled by Apply show the same postures."""
     actor.matrix_world = Matrix.LocRotScale(
         Vector((0.2, 0.3, 0.4)), Euler((0.4, 0.2, -0.7)), Vector((1.2, 1.2, 1.2))
     )
@@ -121,7 +121,7 @@ def test_round_trip_after_the_rest_pose_became_an_a_pose(
 def test_hands_and_feet_keep_what_the_animator_gave_them(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture]
 ) -> None:
-    """A posture says nothing of them, so writing it leaves them alone."""
+    """They are not part of a posture, so writing one leaves them alone."""
     hand = actor.pose.bones["hand.L"]
     hand.rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     write_posture(actor, random_posture(40))
@@ -131,7 +131,7 @@ def test_hands_and_feet_keep_what_the_animator_gave_them(
 def test_a_pose_beyond_the_freedoms_becomes_the_nearest_posture_and_says_so(
     actor: bpy.types.Object, body: Body
 ) -> None:
-    """A forearm bent sideways is projected; the distance is the wrist's way back; the rest stays."""
+    """A forearm bent sideways is projected; the distance is the wrist's displacement; the rest stays."""
     forearm = actor.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.6, 0.2, 0.3)  # bending, pronation, and a sideways turn the elbow cannot make
     reading = read_posture(actor, body)
@@ -159,7 +159,7 @@ def test_a_bone_that_cannot_follow_does_not_turn_what_hangs_on_it(
 
 
 def test_an_evaluated_constraint_counts(actor: bpy.types.Object, body: Body, shown_points: Points) -> None:
-    """What inverse kinematics makes of the leg is what is read."""
+    """The leg is read as inverse kinematics poses it."""
     target = bpy.data.objects.new("Target", None)
     bpy.context.collection.objects.link(target)
     target.location = (0.25, -0.3, 0.3)

@@ -60,7 +60,7 @@ def test_the_mode_and_the_active_object_stay(body: Body, other: Body) -> None:
 
 
 def test_bones_of_another_file_are_left_alone(body: Body, other: Body, tmp_path) -> None:  # noqa: ANN001
-    """The sentence says where they could be changed."""
+    """The error says where they can be changed."""
     armature_object = build_armature(bpy.context.scene, body)
     name = armature_object.name
     file = str(tmp_path / "rig.blend")

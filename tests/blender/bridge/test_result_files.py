@@ -82,7 +82,7 @@ def test_the_bvh_holds_every_frame_and_comes_back_right(
 
 
 def test_the_open_file_is_not_touched(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> None:
-    """What is open in Blender, its scene and its data, is the same afterwards."""
+    """The open file, its scene and its data are the same afterwards."""
     mine = bpy.data.objects.new("Actor", bpy.data.meshes.new("Actor"))
     bpy.context.collection.objects.link(mine)
     scene = bpy.context.scene
@@ -106,19 +106,23 @@ KINDS = [
 ]
 
 
-def test_a_failure_leaves_no_scene_behind(
+def test_a_failure_leaves_the_old_file_and_nothing_else(
     tmp_path: Path, tiny_take: Take, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The temporary scene is removed with all its data; tests/blender/cli holds what becomes of the files."""
+    """Files appear complete or not at all; the temporary scene is removed as well."""
+    target = tmp_path / "motion.blend"
+    target.write_bytes(b"old")
 
-    def fail(_path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
+    def fail(path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
+        path.write_bytes(b"half")
         raise ConversionError("the disk is full")
 
-    before = {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS}
     monkeypatch.setattr(result_files, "write_blend", fail)
     with pytest.raises(ConversionError, match="disk is full"):
-        write_scene(tiny_take, wave_motion, tmp_path / "motion.blend", None)
-    assert {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS} == before
+        write_scene(tiny_take, wave_motion, target, None)
+    assert target.read_bytes() == b"old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["motion.blend", "tiny"]
+    assert len(bpy.data.scenes) == 1
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(

@@ -48,7 +48,7 @@ def views(actor: bpy.types.Object, **options: object) -> Turntable:
 
 
 def seen(camera: bpy.types.Object, actor: bpy.types.Object, bone: str) -> Vector:
-    """Where a bone's head is in a camera's picture, 0 to 1, and how far away [m]."""
+    """Position of a bone's head in a camera's picture, 0 to 1, and its distance [m]."""
     scene = bpy.context.scene
     scene.view_layers[0].update()
     place = actor.matrix_world @ actor.pose.bones[bone].head
@@ -161,7 +161,7 @@ def test_a_reference_clip_lies_behind_a_view_in_its_own_time(
 
 
 def test_another_armature_is_refused() -> None:
-    """One sentence names what it lacks."""
+    """The error names the missing bones."""
     stranger = bpy.data.objects.new("Stranger", bpy.data.armatures.new("Stranger"))
     bpy.context.scene.collection.objects.link(stranger)
     with pytest.raises(InputError, match="lacks the bones"):

@@ -1,4 +1,4 @@
-"""Baking the final Action: what Blender shows of few keys, and what stays of the animator's."""
+"""Baking the final Action: the evaluated motion of few keys, and the animator's own curves."""
 
 from collections.abc import Callable
 
@@ -62,7 +62,7 @@ def take(
 
 
 def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points: ShownPoints) -> np.ndarray:
-    """(F, 13, 3) what Blender shows of an Action, frame by frame."""
+    """(F, 13, 3) evaluated points of an Action, frame by frame."""
     scene = bpy.context.scene
     assign_action(take.armature, action)
     before = scene.frame_current
@@ -151,7 +151,7 @@ def test_every_frame_keeps_everything(take: bpy.types.PropertyGroup, shown_point
 def test_planted_feet_stand_still_in_blender(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, wave_posture: Callable[[np.ndarray], Posture]
 ) -> None:
-    """Ankles that wander while they rest keep to one place, with every frame keyed and with few keys."""
+    """Ankles that stray while they rest are held at one place, with every frame keyed and with few keys."""
     body = read_body(take.armature, HUMAN)
     time = np.arange(FRAMES) / 30.0
     sway = np.zeros((FRAMES, HUMAN.dof_count))
@@ -170,7 +170,7 @@ def test_planted_feet_stand_still_in_blender(
 
 
 def travel(path: np.ndarray) -> np.ndarray:
-    """Mean way per frame of each point of (F, N, 3)."""
+    """Mean distance per frame of each point of (F, N, 3)."""
     return np.linalg.norm(np.diff(path, axis=0), axis=-1).mean(axis=0)
 
 
@@ -211,7 +211,7 @@ def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> N
 
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:
-    """Core's forward kinematics of channels is Blender's: rotation modes, place and scale included."""
+    """Core's forward kinematics of channels equals Blender's: rotation modes, location and scale included."""
     armature_object, action = take.armature, take.motion_action
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
@@ -224,7 +224,7 @@ def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_p
 
 
 def test_without_a_motion_the_tooltip_says_so(take: bpy.types.PropertyGroup) -> None:
-    """The operator cannot run, and says what is missing."""
+    """The operator is disabled, and its tooltip names the missing requirement."""
     take.motion_action = None
     with pytest.raises(RuntimeError, match="Reconstruct the motion first"):
         bpy.ops.keymark.bake_motion()

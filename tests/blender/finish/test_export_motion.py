@@ -1,4 +1,4 @@
-"""What leaves the scene: assets with their catalogs, and files for other programs."""
+"""Assets with their catalogs, and exported files for other programs."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -68,7 +68,7 @@ def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup,
 
 
 def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
-    """The sentence says what to do; without a catalog the motion is marked all the same."""
+    """The error names the remedy; without a catalog the motion is marked nevertheless."""
     with pytest.raises(RuntimeError, match="save it first, or leave Catalog empty"):
         bpy.ops.keymark.mark_asset()
     assert take.motion_action.asset_data is None
@@ -78,7 +78,7 @@ def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_marking_again_replaces_tags_only(take: bpy.types.PropertyGroup) -> None:
-    """No tag stands twice, and what is no longer named goes."""
+    """No tag is repeated, and tags that are no longer named are removed."""
     take.finish.catalog = ""
     for tags in ("a, b", "b, c"):
         take.finish.tags = tags
@@ -123,7 +123,7 @@ def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
 
 
 def state(scene: bpy.types.Scene) -> tuple[object, ...]:
-    """What an export must leave as it was."""
+    """The state that an export must restore."""
     layer = bpy.context.view_layer
     return (
         [o.name for o in layer.objects if o.select_get()],
@@ -147,7 +147,7 @@ IMPORTERS = {
 def test_an_exported_motion_moves_alike_when_read_back(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, tmp_path: Path, kind: str
 ) -> None:
-    """The hand's way through the motion is that of the actor; the scene is as before."""
+    """The hand moves as the actor's; the scene is as before."""
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
     if kind == "GLTF" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
@@ -242,7 +242,7 @@ def test_the_operator_is_made_from_the_registry_of_formats() -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: Path) -> None:
-    """Reconstructed again, the motion is newer than what an export writes; baked again, it is not."""
+    """After another reconstruction the export warns; after another bake it does not."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     take = active_take(bpy.context.scene)
     take.method = "interpolation"

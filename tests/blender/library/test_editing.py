@@ -92,7 +92,7 @@ def _placed(stand: Posture) -> np.ndarray:
 def test_the_place_of_the_actor_is_kept(
     take: bpy.types.PropertyGroup, random_posture: RandomPosture, body: Body
 ) -> None:
-    """Applied where the actor is, the pose it was taken from comes back: place, heading and floor."""
+    """Applied at the actor's location, a posture restores its pose: location, heading and floor."""
     pose(4, random_posture)
     before = matrices(take.armature)
     bpy.ops.keymark.add_posture(posture="Here")

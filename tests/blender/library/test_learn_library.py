@@ -1,4 +1,4 @@
-"""Libraries from motions in Blender: what is learned of an Action, and where it is kept."""
+"""Libraries learned from the motion of an Action, in the scene and in the registry."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -15,7 +15,7 @@ from keymark.operators.bridge.library.library_blend import read_library_blend, w
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.conflicts import resolve_conflicts
 from keymark.operators.library.editing.library_to_scene import add_library
-from keymark.operators.library.registry_files import find_registered, registered_library
+from keymark.operators.library.registry_files import find_registered, load_registered
 from keymark.operators.shell.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -57,7 +57,7 @@ def imported(library: Library, folder: Path, **settings: str) -> set[str]:
 
 
 def titles(folder: Path) -> list[tuple[str, str, int, int]]:
-    """What lies in a folder."""
+    """Identifier, title, version and number of postures of the libraries in a folder."""
     return [
         (entry.identifier, entry.title, entry.version, len(entry.library.postures))
         for entry in registered_libraries([folder])
@@ -93,7 +93,7 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
 def test_another_version_is_asked_about(
     own: Path, library: Library, tmp_path: Path, choice: str, expected: list[tuple[str, str, int, int]]
 ) -> None:
-    """Without a choice nothing changes, and the sentence says what is there; then what was chosen happens."""
+    """Without a choice nothing changes and the report names the library; then the choice is applied."""
     imported(library, tmp_path)
     first, second = library.postures
     newer = replace(library, version=3, postures=(first, replace(second, name="C")))
@@ -105,7 +105,7 @@ def test_another_version_is_asked_about(
 
 
 def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Path) -> None:
-    """A library is imported; a take is opened, or says what is wrong with it; other files are refused."""
+    """A library is imported, a take is opened or its error is reported, other files are refused."""
     write_library(tmp_path / "take.json", library)  # the name does not matter
     assert bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json")) == {"FINISHED"}
     assert titles(own) == [("small", "Small", 2, 2)]
@@ -149,7 +149,7 @@ def test_a_library_is_installed_for_the_asset_browser(
 
 
 def test_without_an_asset_library_the_preferences_are_named(own: Path, library: Library) -> None:
-    """The tooltip says where to add one."""
+    """The tooltip names the place in the preferences."""
     listed = bpy.context.preferences.filepaths.asset_libraries
     for known in list(listed):
         listed.remove(known)
@@ -174,7 +174,7 @@ def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) ->
 
 
 def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
-    """Whatever was exported before; the format counts where the name ends otherwise."""
+    """The suffix decides, not the last export; the format property decides for other suffixes."""
     add_library(bpy.context.scene, library)
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
@@ -186,7 +186,7 @@ def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: 
 def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
     own: Path, library: Library, tmp_path: Path
 ) -> None:
-    """Another library has others; the button beside it always says one that is there."""
+    """After choosing another library, the posture to apply is one of that library."""
     other = replace(library, identifier="other", title="Other", postures=library.postures[1:])
     imported(library, tmp_path)
     at_hand = bpy.context.window_manager.keymark_shelf
@@ -196,7 +196,7 @@ def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
 
 
 def test_a_library_of_this_file_is_published_for_matching(own: Path, library: Library) -> None:
-    """As it is now; after a change, the older one is not replaced unasked."""
+    """In its present state; after a change, the published one is not replaced unasked."""
     add_library(bpy.context.scene, library)
     bpy.ops.keymark.keep_library()
     assert titles(own) == [("small", "Small", 2, 2)]
@@ -208,7 +208,7 @@ def test_a_library_of_this_file_is_published_for_matching(own: Path, library: Li
 
 
 def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
-    """What a file keeps of the choice means the same library after another has come before it in the menu."""
+    """The stored number means the same library after another one is listed before it."""
     take = add_take(bpy.context.scene, "Take")
     imported(library, tmp_path)
     take.matching.library = "small"
@@ -279,10 +279,10 @@ def test_an_older_version_that_shall_replace_does(own: Path, library: Library, t
 
 
 def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Library) -> None:
-    """The list points to libraries by identifier: a stranger's title must not take their place."""
+    """Libraries are found by identifier, even where another library's title equals it."""
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
-    assert registered_library("small").title == "Zoo"
+    assert load_registered("small").title == "Zoo"
 
 
 def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Matching in a scene: what is keyed, what is kept, and what the animator does with it."""
+"""Matching in a scene: keys, stored candidates, and the operators on them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -45,7 +45,7 @@ def library(motion: Motion, identifier: str = "waves") -> Library:
 
 
 def candidate(posture: Posture, name: str, confidence: float, mirrored: bool = False) -> Candidate:
-    """What a frame may show."""
+    """A candidate of a frame."""
     return Candidate(posture, name, mirrored, confidence)
 
 
@@ -71,7 +71,7 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
 
 @pytest.fixture
 def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespace:
-    """What matching finds in this test, and what it was asked; it takes three steps."""
+    """The result of matching in this test, and a record of its arguments; the job takes three steps."""
     waves, other = library(wave_motion), library(wave_motion, "walking")
     asked = SimpleNamespace(
         choice=LibraryChoice(
@@ -139,7 +139,7 @@ def test_matched_postures_are_keyed_and_kept(matched: Group, wave_motion: Motion
 
 
 def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNamespace) -> None:
-    """Nothing is posed, and the panel says what is next."""
+    """Nothing is keyed, and the panel names the next step."""
     assert next_step(unposed) == "Next: match a library, or pose"
     bpy.ops.keymark.match_library()
     take = active_take(bpy.context.scene)
@@ -299,14 +299,14 @@ def test_the_timeline_tells_matched_keyframes_from_posed_ones(matched: Group) ->
 
 
 def test_without_an_actor_nothing_can_be_matched(tiny_take: Take) -> None:
-    """The tooltip says what is missing."""
+    """The tooltip names the first missing requirement."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.match_library()
 
 
 def test_the_menu_holds_the_registry_and_what_was_chosen(unposed: Group) -> None:
-    """A file may come from a machine that had another library; then it says which one is missing."""
+    """A library that only another machine has is listed as missing."""
     state = unposed.matching
     assert state.library == "auto"
     state.library = "walking"
@@ -325,7 +325,7 @@ def test_footage_is_matched_with_a_library_file(
     tmp_path: Path,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """The way as a whole: the library's postures stand where the performer stood when they were drawn."""
+    """End to end: the library's postures are keyed where the performer stood in the drawn clip."""
     steps = tuple(MotionStep(f"Wave {i}", i / 25.0) for i in (0, 6, 12))
     waves = replace(library(wave_motion), motions=(LibraryMotion("wave", steps, 12 / 25.0),))
     write_library(tmp_path / "waves.json", waves)
@@ -340,7 +340,7 @@ def test_footage_is_matched_with_a_library_file(
 
 
 def test_matches_come_back_with_the_file(matched: Group, tmp_path: Path) -> None:
-    """Frames, candidates as Blender keeps them, what was said, and that nobody has touched them."""
+    """Frames, stored candidates, the reason, and that the keys are unchanged."""
     before, reason = known_matches(matched), matched.matching.reason
     place = [tuple(one.place) for match in matched.matching.matches for one in match.candidates]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
@@ -354,7 +354,7 @@ def test_matches_come_back_with_the_file(matched: Group, tmp_path: Path) -> None
 def test_matches_are_keyed_in_any_rotation_mode(
     unposed: Group, given: SimpleNamespace, mode: str, wave_motion: Motion
 ) -> None:
-    """On an actor that is scaled, too: it shows what was found, and that counts as matched."""
+    """On a scaled actor, too: it shows the matched postures, and they count as matched."""
     for bone in unposed.armature.pose.bones:
         bone.rotation_mode = mode
     unposed.armature.scale = (1.5, 1.5, 1.5)

@@ -147,7 +147,7 @@ def test_masks_lie_where_the_view_shows_their_pixels(
 
 
 def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
-    """And let go of when the extension is switched off."""
+    """And released when the extension is disabled."""
     view = FootageView(SimpleNamespace(), (40, 30), np.array([8.0, 60.0]), np.array([80.0, -56.0]), None)
     masks = [
         (ColorMask("a", (1.0, 0.0, 0.0), np.full((30, 40), level, dtype=np.float32), []),)

@@ -11,7 +11,7 @@ def lengths(parts: np.ndarray) -> np.ndarray:
 
 
 def test_a_line_is_cut_at_places_that_are_missing() -> None:
-    """No segment touches a missing place, and a closed line returns."""
+    """No segment touches a missing point, and a closed line returns."""
     line = np.array([[0, 0], [1, 0], [np.nan, 0], [3, 0], [4, 1]])
     assert segments(line).tolist() == [[[0, 0], [1, 0]], [[3, 0], [4, 1]]]
     assert len(segments(line, closed=True)) == 3
@@ -20,7 +20,7 @@ def test_a_line_is_cut_at_places_that_are_missing() -> None:
 
 
 def test_dashes_run_on_around_corners() -> None:
-    """Dash and gap keep their lengths along the line, whatever its corners."""
+    """Dash and gap keep their lengths along the line, also around corners."""
     corner = np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 5.0]])
     parts = dashes(corner, 5.0, 4.0)
     assert parts.tolist() == [[[0, 0], [5, 0]], [[7, 2], [7, 5]]]

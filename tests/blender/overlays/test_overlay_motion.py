@@ -1,4 +1,4 @@
-"""What the overlays of the motion consist of, without a screen."""
+"""Items of the motion overlays, without a screen."""
 
 from types import SimpleNamespace
 
@@ -77,7 +77,7 @@ def drawn(scene: bpy.types.Scene, view: ClipView = CAMERA_VIEW) -> list:
 
 
 def words(items: list) -> list[str]:
-    """What is written."""
+    """The drawn texts."""
     return [item.words for item in items if isinstance(item, Label)]
 
 
@@ -101,7 +101,7 @@ def test_the_frame_that_the_scene_shows_is_drawn(scene: bpy.types.Scene) -> None
 
 
 def test_outlines_have_their_markers_colors_and_lie_on_the_footage(scene: bpy.types.Scene) -> None:
-    """By name, whatever the order in the list; the picture's top left corner is where the region has it."""
+    """Colors go by marker name, in any order of the list; the picture's corner is the region's."""
     switch(scene, "observed")
     scene.frame_set(5)
     first, second = drawn(scene)
@@ -157,7 +157,7 @@ def discs(items: list) -> int:
 
 def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
     """The others are discs."""
-    places = CAMERA_VIEW.places(review, np.array([3]))[0]
+    places = CAMERA_VIEW.point_positions(review, np.array([3]))[0]
     meter = CAMERA_VIEW.pixels_per_meter(review, 3)
     items = skeleton(review, 3, places, meter, 0.05, STYLE)
     assert discs(items) == 12
@@ -188,7 +188,7 @@ def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
 
 
 def test_the_viewports_projection_is_blenders() -> None:
-    """Place by place, and nothing behind the viewer."""
+    """Point by point, with nothing behind the viewer."""
     region = SimpleNamespace(width=640, height=480)
     view = Matrix.LocRotScale(Vector((0.3, -1.0, 0.5)), Matrix.Rotation(0.7, 3, "X").to_quaternion(), None)
     lens = Matrix(((1.9, 0, 0.1, 0), (0, 2.5, 0.0, 0), (0, 0, -1.01, -0.2), (0, 0, -1, 0)))
@@ -208,7 +208,7 @@ def test_the_viewports_projection_is_blenders() -> None:
     at = view @ Vector((0.1, 0.2, -3.0))
     beside = view @ Vector((0.2, 0.2, -3.0))
     pair = SimpleNamespace(points=np.array([[at, beside]], dtype=float))
-    here, there = seen.places(pair, np.array([0]))[0]
+    here, there = seen.point_positions(pair, np.array([0]))[0]
     assert seen.pixels_per_meter(pair, 0)[0] == pytest.approx(10.0 * np.linalg.norm(there - here), rel=1e-4)
 
 

@@ -1,4 +1,4 @@
-"""Handing draw functions to Blender, and what happens when one fails."""
+"""Draw handlers in Blender, and their failures."""
 
 from types import SimpleNamespace
 
@@ -13,7 +13,7 @@ BROKEN = Overlay("Broken", "broken", "SpaceView3D")
 
 @pytest.fixture(autouse=True)
 def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What the handlers set blending to; without a window the real thing is not there."""
+    """Record of the blend modes that handlers set; without a window there is no GPU module."""
     modes: list[str] = []
     monkeypatch.setattr(registry, "gpu", SimpleNamespace(state=SimpleNamespace(blend_set=modes.append)))
     registry.try_again()
@@ -78,7 +78,7 @@ def test_without_a_screen_no_handler_is_added() -> None:
 
 
 def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
-    """A camera of a kind that no footage has, say: no error, and no overlay that stays off."""
+    """An unsupported camera, for example: no error, and the overlay stays enabled."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:

@@ -1,4 +1,4 @@
-"""What is drawn over the timeline: figures as arrays, and what of a take is shown."""
+"""The timeline overlay: figures as arrays, and the items drawn of a take."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.take.take import Take
 from keymark.operators.overlays.picture import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
-from keymark.operators.overlays.timeline_figures import believed_color, graph, in_view, joined, strip
+from keymark.operators.overlays.timeline_figures import confidence_color, graph, in_view, joined, strip
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import keep_reading, keep_review
 from keymark.operators.shell.takes import active_take
@@ -41,7 +41,7 @@ def reading(frames: int = 13) -> Reading:
 
 
 def items_of(take: bpy.types.PropertyGroup, kind: type, view: Timeline = VIEW) -> list:
-    """What is drawn of one kind."""
+    """The drawn items of one kind."""
     return [item for item in picture(bpy.context.scene, take, view) if isinstance(item, kind)]
 
 
@@ -63,7 +63,7 @@ def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -> None:
-    """It comes from what was last read of the clip; proposals then stand on it."""
+    """It comes from the last reading of the clip; proposals are drawn on it."""
     keep_reading(take, reading())
     area = items_of(take, Fill)[0]
     heights = area.corners[:, 3, 1] - VIEW.floor
@@ -85,7 +85,7 @@ def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -
     ground, bars = items_of(take, Fill)
     heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
     assert heights == pytest.approx(ROOMY.strip * made_up_review().confidence)
-    (across, up), reach = ground.corners[0].T, (VIEW.places([0.5]), VIEW.places([13.5]))
+    (across, up), reach = ground.corners[0].T, (VIEW.frame_x([0.5]), VIEW.frame_x([13.5]))
     assert (across.min(), across.max()) == (pytest.approx(reach[0]), pytest.approx(reach[1]))
     assert np.ptp(up) == pytest.approx(ROOMY.strip)
     assert bars.color[0, 2] > bars.color[6, 2] and bars.color[6, 0] > bars.color[0, 0]
@@ -104,7 +104,7 @@ def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -
 
 
 def test_a_long_clip_is_drawn_no_finer_than_can_be_seen() -> None:
-    """Fewer places than pixels, and the extremes survive."""
+    """Fewer positions than pixels, and the extremes survive."""
     x, values = np.linspace(0.0, 300.0, 3000), np.full(3000, 0.9)
     values[1234] = 0.1
     places, lowest = joined(x, values, lowest=True)
@@ -130,8 +130,8 @@ def test_figures_keep_gaps() -> None:
 
 
 def test_colors_and_heights_stay_in_range() -> None:
-    """Also for values beyond what is usual."""
-    colors = believed_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
+    """Also for values out of the usual range."""
+    colors = confidence_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
     assert colors.min() >= 0.0 and colors.max() <= 1.0
     heights = relative(np.array([0.0, 1.0, 1.0, 50.0, np.nan]))
     assert np.nanmax(heights) <= 1.0 and np.isnan(heights[-1])

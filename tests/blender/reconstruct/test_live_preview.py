@@ -28,7 +28,7 @@ def actor(tiny_take: Take) -> bpy.types.Object:
 
 
 def state(actor: bpy.types.Object) -> tuple[object, ...]:
-    """What an animator sees."""
+    """The actor's visible state."""
     data = actor.animation_data
     pose = [tuple(bone.matrix_basis.col[k]) for bone in actor.pose.bones for k in range(4)]
     scene = bpy.context.scene
@@ -38,7 +38,7 @@ def state(actor: bpy.types.Object) -> tuple[object, ...]:
 def test_the_actor_goes_through_the_frames_and_back(
     actor: bpy.types.Object, tiny_take: Take, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """It shows each frame's posture at its place in time, then what was there."""
+    """It shows each frame's posture at its scene frame, then restores the scene."""
     before = state(actor)
     posture = tiny_take.keyframes[1].posture
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
@@ -75,7 +75,7 @@ def test_a_file_saved_meanwhile_holds_nothing_of_the_preview(
 
 
 def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tiny_take: Take) -> None:
-    """Another file was opened, say."""
+    """As after another file was opened."""
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
     preview.show(Preview(0, type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

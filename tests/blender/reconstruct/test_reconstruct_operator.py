@@ -1,4 +1,4 @@
-"""Reconstructing and proposing in a scene: what is kept, what is reused, what is replaced."""
+"""Reconstruction and proposals in a scene: stored, reused and replaced results."""
 
 import bpy
 import numpy as np
@@ -55,7 +55,7 @@ def test_the_clip_is_read_once_for_proposals_and_every_method(
 
 
 def test_another_color_has_the_clip_read_again(take: bpy.types.PropertyGroup, passes: list[int]) -> None:
-    """What was read for the old one is out of date."""
+    """The reading of the old clip is out of date."""
     bpy.ops.keymark.reconstruct()
     before = take.reading_key
     red, green, blue = take.markers[0].color
@@ -145,7 +145,7 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
 
 
 def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
-    """The button is gray and says so, instead of failing once it is pressed; a second one makes it live."""
+    """The button is gray with a reason in its tooltip; a second keyframe enables it."""
     scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
     take.keyframe_action = None
     take.armature.animation_data.action = None
@@ -159,7 +159,7 @@ def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) ->
 
 
 def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
-    """The result is let go; no Action, key or review of it stays."""
+    """The result is discarded: no Action, key or review of it stays."""
     from types import SimpleNamespace
 
     from keymark.core.errors import InputError
@@ -187,7 +187,7 @@ def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.Prop
 
 
 def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.PropertyGroup) -> None:
-    """None or one beside others that lie outside the footage: the sentence says which do not count."""
+    """None or one, beside others outside the footage: the error names those that do not count."""
     take.keyframe_action = bpy.data.actions.new("Elsewhere")
     for frame, said in (
         (40, None),

@@ -33,7 +33,7 @@ def take(tiny_take: Take, wave_motion: Motion) -> bpy.types.PropertyGroup:
 
 
 def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
-    """List, curves and what overlays draw from, all of the same motion; a second run replaces them."""
+    """List, curves and the overlays' data are of the same motion; a second run replaces them."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
     take = active_take(bpy.context.scene)
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -67,7 +67,7 @@ def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -
 
 
 def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> None:
-    """No confidence, and no curve of it from an earlier review; what is known stays."""
+    """No confidence, and no curve of it from an earlier review; the other curves stay."""
     unknown = np.full(13, np.nan)
     show_review(take, replace(made_up_review(), confidence=unknown, sigma_m=np.full((13, 13), np.nan)))
     assert take.review.confidence < 0.0
@@ -120,7 +120,7 @@ def test_curves_disturb_neither_pose_nor_keyframes(
 
 
 def test_a_second_review_replaces_the_first_but_not_the_animators_keys(take: bpy.types.PropertyGroup) -> None:
-    """As everywhere, only generated keys are replaced."""
+    """Only GENERATED keys are replaced."""
     own = curve(take, "Confidence").keyframe_points.insert(4.0, 0.123)
     own.type = "KEYFRAME"
     write_review_curves(take.armature, take.motion_action, made_up_review(frames=9))
