@@ -12,7 +12,7 @@ from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import Skeleton
 from ...core.errors import InputError
 from ...core.finish.hermite import Spline
-from ...core.finish.rig import Rig, Shown, channel_count
+from ...core.finish.rig import Rig, RigPose, channel_count
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import bone_path, moved_paths, posture_columns
@@ -111,7 +111,7 @@ def _unit_quaternions(quaternions: Array) -> Array:
     return continuous_quaternions(unit)
 
 
-def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: Shown, body: Body) -> Posture:
+def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: RigPose, body: Body) -> Posture:
     """The postures nearest to a rig's poses, a batch of F."""
     models = skeleton_bones(armature_object, body.skeleton)
     turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
@@ -132,7 +132,7 @@ def with_planted_legs(
     return changed
 
 
-def largest_leg_distance_m(rig: Rig, shown: Shown, body: Body, posture: Posture) -> float:
+def largest_leg_distance_m(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> float:
     """The largest distance of a leg's joint or end between a rig's poses and postures [m]."""
     pose = body.pose(posture)
     worst = 0.0

@@ -12,7 +12,7 @@ from ...core.body.kinematics import Body
 from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
-from ...core.finish.planted_feet import plant_feet, tolerances
+from ...core.finish.planted_feet import plant_feet, point_tolerances
 from ...core.finish.rig import Rig
 from ...core.progress import Job, Progress, within
 from .actor_lengths import read_body
@@ -126,7 +126,7 @@ def finish_motion(
         values, contacts, notes = yield from planting
     if options.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, contacts, notes)
-    allowed = tolerances(rig, len(frames), options.tolerance_m, contacts)
+    allowed = point_tolerances(rig, len(frames), options.tolerance_m, contacts)
     reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)
@@ -142,7 +142,7 @@ def _plant(
 ) -> Job[tuple[list[Array], tuple[Contact, ...], tuple[Note, ...]]]:
     stage = "Planting the feet"
     yield Progress(stage, READ)
-    shown = rig.show(values)
+    shown = rig.pose(values)
     posture = shown_postures(armature_object, rig, shown, body)
     yield Progress(stage, SEEN)
     planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)

@@ -23,7 +23,7 @@ from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
 from ...core.footage.single_frame_regions import regions_of_frame
 from ...core.observation.depths import DEPTH_STD_M
 from ...core.observation.regions import MarkerPlacement, RegionModel
-from ...core.prior.frame_prior import Belief, belief_from_keyframes, belief_from_pose, belief_from_standing
+from ...core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose, prior_from_standing
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
@@ -135,9 +135,9 @@ def fit_to_frame(
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in frame.segments))
     if start == "POSE":
-        belief = belief_from_pose(read_posture(armature_object, body).posture)
+        belief = prior_from_pose(read_posture(armature_object, body).posture)
     elif start == "KEYFRAMES" and keyframes:
-        belief = belief_from_keyframes(keyframes, frame.index, frame.footage.rate)
+        belief = prior_from_keyframes(keyframes, frame.index, frame.footage.rate)
     else:
         belief = _standing_belief(frame, model, read_posture(armature_object, body).posture)
     regions = frame.regions(expected_in_frame(model, belief, len(posed)))
@@ -154,8 +154,8 @@ def fit_to_frame(
     return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed))
 
 
-def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> Belief:
-    """Belief about the shown posture if it is at the performer's location, else about one placed there."""
+def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> FramePrior:
+    """Prior about the shown posture if it is at the performer's location, else about one placed there."""
     regions = frame.regions()
     placed = posed_standing(frame, model.body, regions)
     both = Posture.stack([shown, placed])
@@ -163,11 +163,11 @@ def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) 
     predicted = model.evaluate(model.body.pose(both), np.array([last, last]))
     apart = np.linalg.norm(predicted.centroid - regions.centroid, axis=-1)
     if not np.isfinite(apart).any():
-        return belief_from_standing(placed)
+        return prior_from_standing(placed)
     of_shown, of_placed = np.nanmean(apart, axis=1)
     if of_shown <= STANDS_HERE * of_placed:
-        return belief_from_standing(shown, DEPTH_STD_M)
-    return belief_from_standing(placed)
+        return prior_from_standing(shown, DEPTH_STD_M)
+    return prior_from_standing(placed)
 
 
 def _keyframes(

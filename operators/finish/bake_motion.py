@@ -10,7 +10,7 @@ from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, motion
-from ..shell.takes import active_take, actor_of, take_called
+from ..shell.takes import active_take, actor_of, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -52,7 +52,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
         """Write the final Action and assign it to the actor."""
-        take, finished = take_called(scene, result.take), result.finished
+        take, finished = take_by_identifier(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:
             raise InputError("the motion has been deleted meanwhile; nothing was changed")

@@ -17,10 +17,10 @@ from ...core.errors import KeymarkError
 from ..markers.mask_previews import (
     ColorMask,
     Preview,
-    forget_previews,
+    clear_previews,
     is_of_frame,
-    look_at_frame,
     preview_of,
+    update_masks,
 )
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
@@ -140,9 +140,9 @@ def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | Non
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
     try:
-        look_at_frame(scene)
+        update_masks(scene)
     except KeymarkError:
-        forget_previews()  # the clip is missing, which the operator that shows masks reports
+        clear_previews()  # the clip is missing, which the operator that shows masks reports
 
 
 def register() -> None:
@@ -156,4 +156,4 @@ def unregister() -> None:
     if _frame_changed in bpy.app.handlers.frame_change_post:
         bpy.app.handlers.frame_change_post.remove(_frame_changed)
     _drawn.clear()
-    forget_previews()
+    clear_previews()

@@ -9,8 +9,9 @@ import numpy as np
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
+from ..shell.lru_cache import LruCache
 from ..shell.messages import label
-from ..shell.results import Remembered, reading_of, review_of
+from ..shell.results import reading_of, review_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
@@ -247,8 +248,8 @@ class Speed:
     """(F,) [px per frame]."""
 
 
-_speeds: Remembered[Speed] = Remembered()
-_views: Remembered[list[Item]] = Remembered(16)
+_speeds: LruCache[Speed] = LruCache()
+_views: LruCache[list[Item]] = LruCache(16)
 """Cache of drawn items: a redraw without a change of view only draws."""
 
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...files.fields import listed
-from ...footage.first_camera import EYE_HEIGHT_M, first_stand, guess_lens
+from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize
 from .clip_survey import ClipSurvey
@@ -83,7 +83,7 @@ def _rate(survey: ClipSurvey) -> dict[str, Any]:
 def _camera(survey: ClipSurvey) -> dict[str, Any]:
     size = survey.sizes.most_common(1)[0][0]
     lens = guess_lens(size)
-    distance = -first_stand(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
+    distance = -default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
     camera: dict[str, Any] = {
         "//lens_mm": f"a guess, as of {lens.reason}; state the one you filmed with, and its sensor's width",
         "lens_mm": lens.lens_mm,

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....core.body.actor import Actor
+from ....core.body.heading import headings_rad, turned_and_shifted
 from ....core.body.kinematics import Body
 from ....core.body.mirror import mirrored
 from ....core.body.posture import Posture
 from ....core.body.soles import lower_sole_m
 from ....core.errors import InputError
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.posture_shape import headings_rad, moved
-from ....core.library.transfer import applied
+from ....core.library.transfer import transferred
 
 
 def posture_for_library(body: Body, postures: Posture, actor: Actor, *, on_floor: bool) -> Posture:
@@ -27,12 +27,12 @@ def posture_for_library(body: Body, postures: Posture, actor: Actor, *, on_floor
         on_floor: The lowest sole of all touches the floor; else the floor is the world's, z = 0.
     """
     turn = -headings_rad(postures[:1])[0]
-    turned = moved(postures, turn, np.zeros(3))
+    turned = turned_and_shifted(postures, turn, np.zeros(3))
     offset = turned.translation[0] * [-1.0, -1.0, 0.0]
     if on_floor:
         offset[2] = -lower_sole_m(body, turned).min()
-    level = moved(turned, np.zeros(1), offset)
-    return applied(level, body.actor, Body(actor))
+    level = turned_and_shifted(turned, np.zeros(1), offset)
+    return transferred(level, body.actor, Body(actor))
 
 
 def posture_for_actor(
@@ -47,7 +47,7 @@ def posture_for_actor(
         mirror: Whether left and right are exchanged.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
-    fitting = applied(given, actor, body)
+    fitting = transferred(given, actor, body)
     return mirrored(fitting) if mirror else fitting
 
 
@@ -61,10 +61,10 @@ def placed_like(posture: Posture, body: Body, shown: Posture) -> Posture:
     """
     both = Posture.stack([posture, shown])
     own, wanted = headings_rad(both)
-    turned = moved(both[:1], wanted - own, np.zeros(3))
+    turned = turned_and_shifted(both[:1], wanted - own, np.zeros(3))
     offset = shown.translation - turned.translation[0]
     offset[2] = lower_sole_m(body, shown)
-    return moved(turned, np.zeros(1), offset)[0]
+    return turned_and_shifted(turned, np.zeros(1), offset)[0]
 
 
 def named_posture(library: Library, name: str) -> LibraryPosture:
