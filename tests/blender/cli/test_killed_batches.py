@@ -14,7 +14,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _results import blend_is_of, hidden, is_whole, same_in_every_run
+from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _shoot import write_shoot
 
 pytestmark = [
@@ -66,7 +66,7 @@ def to_the_end(shoot: Path, out: Path, *words: str) -> dict[str, bytes | None]:
 
 def results(out: Path) -> dict[str, bytes | None]:
     """The files of the takes' folders; the summary is left out, for it has times."""
-    assert not hidden(out)
+    assert not hidden_files(out)
     for record in out.rglob("conversion.json"):
         assert is_whole(record.parent) and blend_is_of(record.parent)
     lines = (out / "summary.jsonl").read_text(encoding="utf-8").splitlines()

@@ -75,7 +75,7 @@ def test_random_frames_lie_as_far_from_keyframes_as_suggested_ones(trial: Trial)
     frames = np.array([0, 12, FRAMES - 1])
     found = suggestions.random_frames(trial, frames)
     assert len(set(found)) == suggestions.RANDOM_FRAMES
-    assert np.abs(np.array(found)[:, None] - frames).min() >= suggestions.NEAREST
+    assert np.abs(np.array(found)[:, None] - frames).min() >= suggestions.NEAREST_FRAMES
     assert found == suggestions.random_frames(trial, frames)
     assert suggestions.middle_of_widest_gap(frames) == 6
 
