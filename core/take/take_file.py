@@ -72,9 +72,10 @@ def read_described(
     optional = keyframes is None and not keyframes_required
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     if not missing and keyframes is None and not os.path.exists(posed):
+        named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
         raise InputError(
-            f"{posed}: no such file; a take needs keyframes posed there, or a keyframe library to match, as "
-            'in "library": "auto"'
+            f"{posed}: no such file{named}; a take needs keyframes posed there, or a keyframe library to "
+            'match, as in "library": "auto"'
         )
     return Take(
         folder=description.folder,
@@ -142,7 +143,12 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
         from_clip["fps"] = clip.fps
     if not sized:
         from_clip["camera"] = {"resolution": list(clip.size)}
-    return Fields(fields.values.overridden_by(from_clip, str(path)), fields.where)
+    merged = fields.values.overridden_by(from_clip, str(path))
+    if (
+        not sized
+    ):  # the clip gives the size alone: what else the camera lacks is missing where it is described
+        merged.sources["camera"] = fields.source_of("camera")
+    return Fields(merged, fields.where)
 
 
 def _camera(fields: Fields, frame_count: int | None) -> Camera:

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from _shoot import shoot_fields as usual_fields
 from _shoot import write_shoot
-from _synthetic_take import write_json
+from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import Description, describe, effective_settings
@@ -231,3 +232,25 @@ def test_links_may_lead_anywhere_in_the_shoot_but_not_out_of_it(tmp_path: Path) 
     take_in(take, clip="frames")
     with pytest.raises(InputError, match=r"1\.png: leads by a link"):
         describe(take)
+
+
+def test_what_the_camera_lacks_is_missing_in_the_file_that_describes_it(tmp_path: Path) -> None:
+    """Also where the clip gives the camera's resolution."""
+    shoot = write_shoot(tmp_path / "shoot", takes=1)
+    fields = usual_fields()
+    del fields["camera"]["lens_mm"]
+    write_json(shoot / "shoot.json", fields)
+    with pytest.raises(InputError) as error:
+        read_take(shoot / "day1" / "take01.mp4")
+    assert str(error.value).startswith(f"{shoot / 'shoot.json'}: camera: lens_mm is missing")
+
+
+def test_a_named_keyframe_file_that_is_missing_is_told_with_the_file_that_names_it(shoot: Path) -> None:
+    """The path alone would not say where to correct it."""
+    take = write_synthetic_take(shoot / "take", 8)
+    fields = json.loads((take / "take.json").read_text(encoding="utf-8"))
+    write_json(take / "take.json", {**fields, "keyframes": "walking"})
+    with pytest.raises(InputError) as error:
+        read_take(take)
+    named = f"{take / 'walking'}: no such file ({take / 'take.json'} names it)"
+    assert str(error.value).startswith(named)
