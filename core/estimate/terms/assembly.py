@@ -23,7 +23,7 @@ from .belief import BeliefTerm
 from .contours import ContourTerm
 from .depths import DepthTerm
 from .ground import GroundTerm
-from .limits import LimitTerm
+from .joint_limits import LimitTerm
 from .quadratic import QuadraticBuilder, QuadraticTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .smoothness import SmoothnessTerm

@@ -10,7 +10,7 @@ from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.belief import BeliefTerm
 from keymark.core.estimate.terms.depths import DepthTerm
 from keymark.core.estimate.terms.ground import GroundTerm
-from keymark.core.estimate.terms.limits import LimitTerm
+from keymark.core.estimate.terms.joint_limits import LimitTerm
 from keymark.core.estimate.terms.quadratic import QuadraticBuilder
 from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
 from keymark.core.estimate.terms.smoothness import SmoothnessTerm
