@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.messages import count_label, label
-from ..shell.panel import SubPanel, draw_progress, draw_sentence
+from ..shell.panel import RowList, SubPanel, draw_progress, draw_sentence
 from ..shell.takes import find_take
 from .editing.scene_libraries import active_motion, active_posture, find_library_here, library_here
 from .registry import chosen_entry
@@ -12,18 +12,11 @@ MOST_LINES = 4
 """Lines of a library's description, or of its problem."""
 
 
-class KEYMARK_UL_shelf(bpy.types.UIList):
+class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
     """Registered libraries, with an icon for shipped, own and unusable ones."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one library: title and number of postures."""
         row = layout.row(align=True)
@@ -39,18 +32,11 @@ class KEYMARK_UL_shelf(bpy.types.UIList):
             facts.label(text=str(len(item.postures)), translate=False)
 
 
-class KEYMARK_UL_library_postures(bpy.types.UIList):
+class KEYMARK_UL_library_postures(RowList, bpy.types.UIList):
     """The postures of the library that is made here, in their order."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one posture: its mark and its name."""
         row = layout.row(align=True)
@@ -60,18 +46,11 @@ class KEYMARK_UL_library_postures(bpy.types.UIList):
         )
 
 
-class KEYMARK_UL_library_motions(bpy.types.UIList):
+class KEYMARK_UL_library_motions(RowList, bpy.types.UIList):
     """The motions of the library that is made here."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one motion: name and duration."""
         row = layout.row(align=True)
@@ -81,18 +60,11 @@ class KEYMARK_UL_library_motions(bpy.types.UIList):
         facts.label(text=label("{duration:.2f} s", duration=item.duration_s), translate=False)
 
 
-class KEYMARK_UL_library_steps(bpy.types.UIList):
+class KEYMARK_UL_library_steps(RowList, bpy.types.UIList):
     """The steps of the chosen motion."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one step: time and posture."""
         row = layout.row(align=True)

@@ -3,25 +3,18 @@
 import bpy
 
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_progress, draw_sentence
+from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take, find_take
 
 LABEL_SHARE = 0.4
 """Share of the width that Blender gives to the labels of its two columns."""
 
 
-class KEYMARK_UL_markers(bpy.types.UIList):
+class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     """Markers with their colors and the number of sampled frames in which they are found."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one marker: color, name, status."""
         row = layout.row(align=True)
@@ -34,7 +27,7 @@ class KEYMARK_UL_markers(bpy.types.UIList):
         status.alignment = "RIGHT"
         if not item.is_picked:
             status.label(text="Not Picked", icon="EYEDROPPER")
-        elif not item.has_readout(data):
+        elif not item.has_readout(active_take(context.scene)):
             status.label(text="Not Checked", icon="QUESTION")
         else:
             status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")

@@ -5,7 +5,7 @@ from math import degrees
 import bpy
 
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_progress, draw_sentence
+from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .matches import state_of
 from .properties import DOUBTFUL, SURE
@@ -19,18 +19,11 @@ NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
 
-class KEYMARK_UL_matches(bpy.types.UIList):
+class KEYMARK_UL_matches(RowList, bpy.types.UIList):
     """Matches: frame, posture and confidence."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one match, or that it is posed or has no key any more."""
         state = state_of(active_take(context.scene), item)

@@ -4,22 +4,15 @@ import bpy
 
 from ..shell.keyed_frames import is_posed
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.panel import RowList, TakePanel
 from ..shell.takes import active_take
 
 
-class KEYMARK_UL_weak_frames(bpy.types.UIList):
+class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
     """Weak frames: frame, reason and worth of another keyframe there."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one frame."""
         row = layout.row(align=True)

@@ -3,6 +3,7 @@
 Each step of the work has its panels in its own folder's `panel.py`.
 """
 
+from abc import abstractmethod
 from textwrap import wrap
 
 import bpy
@@ -44,6 +45,29 @@ class TakePanel(SubPanel):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a take."""
         return find_take(context.scene) is not None
+
+
+class RowList:
+    """Mixin of a list: a subclass gives `draw_row`."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.AnyType,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.AnyType,
+        active_property: str,
+    ) -> None:
+        """Draw one item, as Blender asks for it."""
+        self.draw_row(context, layout, item)
+
+    @abstractmethod
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one item."""
 
 
 def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: str = "") -> bool:

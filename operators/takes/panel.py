@@ -4,7 +4,7 @@ import bpy
 
 from ..library import registry
 from ..shell.job_progress import job_is_running
-from ..shell.panel import SidebarPanel, draw_progress
+from ..shell.panel import RowList, SidebarPanel, draw_progress
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer
@@ -22,18 +22,11 @@ STEPS = (
 BUTTON_SCALE = 1.6
 
 
-class KEYMARK_UL_takes(bpy.types.UIList):
+class KEYMARK_UL_takes(RowList, bpy.types.UIList):
     """Takes by name; the icon tells whether a take has a motion."""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
-        icon: int,
-        active_data: bpy.types.AnyType,
-        active_property: str,
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
         """Draw one take."""
         row = layout.row(align=True)

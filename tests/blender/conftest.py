@@ -159,3 +159,19 @@ def tiny_take(tmp_path: Path, body: Body, camera: Camera, wave_motion: Motion) -
     take = Take(folder, folder / "clip.mp4", FPS, 1, FRAMES, camera, body, STYLES, keyframes)
     write_take(take, folder)
     return take
+
+
+@pytest.fixture
+def opened(registered: None, tiny_take: Take) -> bpy.types.Scene:
+    """The scene with the tiny take opened."""
+    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
+    return bpy.context.scene
+
+
+@pytest.fixture
+def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
+    """The scene with the tiny take opened, and its actor deleted."""
+    take = opened.keymark.takes[opened.keymark.active_take]
+    bpy.data.objects.remove(take.armature)
+    take.armature = take.keyframe_action = None
+    return opened

@@ -20,13 +20,6 @@ from keymark.operators.shell.takes import active_take
 pytestmark = pytest.mark.usefixtures("registered")
 
 
-@pytest.fixture
-def opened(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take opened."""
-    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
-    return bpy.context.scene
-
-
 def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
     """The menu of segments is core's list."""
     assert set(SEGMENTS) == set(marker_segments(body))

@@ -3,38 +3,16 @@
 import bpy
 import numpy as np
 import pytest
+from _posed import posture_of
 from keymark.core.body.human import HUMAN
 from keymark.core.body.standing_posture import hip_height_m, standing_height_m
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames
-from keymark.operators.bridge.pose import read_posture
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
-
-
-@pytest.fixture
-def opened(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take opened."""
-    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
-    return bpy.context.scene
-
-
-@pytest.fixture
-def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
-    """The scene with the tiny take opened, and its actor deleted."""
-    take = active_take(opened)
-    bpy.data.objects.remove(take.armature)
-    take.armature = take.keyframe_action = None
-    return opened
-
-
-def posture_of(scene: bpy.types.Scene):  # noqa: ANN201
-    """The actor's posture."""
-    armature_object = active_take(scene).armature
-    return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
 
 
 def test_one_click_stands_the_actor_at_the_performer(

@@ -5,13 +5,14 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
+from _posed import posture_of
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
-from keymark.operators.bridge.pose import read_posture, write_posture
+from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
 from keymark.operators.markers.marker_styles import marker_styles
 from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
@@ -19,28 +20,6 @@ from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
-
-
-@pytest.fixture
-def opened(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take opened."""
-    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
-    return bpy.context.scene
-
-
-@pytest.fixture
-def unposed_scene(opened: bpy.types.Scene) -> bpy.types.Scene:
-    """The scene with the tiny take opened, and its actor deleted."""
-    take = active_take(opened)
-    bpy.data.objects.remove(take.armature)
-    take.armature = take.keyframe_action = None
-    return opened
-
-
-def posture_of(scene: bpy.types.Scene):  # noqa: ANN201
-    """The actor's posture."""
-    armature_object = active_take(scene).armature
-    return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
 
 
 def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:

@@ -23,13 +23,6 @@ USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
 
 
 @pytest.fixture
-def opened(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take opened."""
-    assert bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json")) == {"FINISHED"}
-    return bpy.context.scene
-
-
-@pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.Scene:
     """The scene with the tiny take's clip and no marker."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
