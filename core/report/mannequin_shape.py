@@ -1,7 +1,8 @@
 """The surface of a mannequin on the body's segments, as points with normals; for pictures alone.
 
-Limbs are the volumes of `body/body_volume`, a little swollen where muscles are; head, hands and feet are shaped so
-that the direction of a person's face and feet shows. The feet's undersides are the soles of `body/soles`.
+Limbs are the volumes of `body/body_volume`, a little swollen where muscles are; head, hands and feet are
+shaped so that the direction of a person's face and feet shows. The feet's undersides are the soles of
+`body/soles`.
 """
 
 from collections.abc import Iterator
