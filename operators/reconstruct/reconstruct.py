@@ -1,6 +1,6 @@
 """Reconstruct the motion between the keyframes from the footage."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
@@ -17,7 +17,6 @@ from ..shell.takes import active_take, footage_of
 
 if TYPE_CHECKING:
     from ...core.progress import Job, Progress
-    from .live_preview import LivePreview
     from .reconstruction_result import ReconstructionResult
 
 TIMES, READ, SOLVED = 0.05, 0.4, 0.97
@@ -31,7 +30,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_label = "Reconstruct"
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, actor, markers, all_colors, two_keyframes, idle)
-    preview: "LivePreview | None" = None
+    preview: Any = None
+    """The running `LivePreview`, whose type is not named: Blender evaluates annotations of what it registers."""
 
     def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
         """Read the scene's take and reconstruct it, starting from the last reading and reconstruction."""

@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import get_type_hints
 
 import bpy
 import keymark
@@ -38,6 +39,14 @@ def test_everything_is_there_and_gone_again_twice() -> None:
         assert "keymark.operators.takes.open_take" in there
         keymark.unregister()
         assert traces() == []
+
+
+def test_annotations_of_registered_classes_can_be_evaluated(registered: None) -> None:
+    """Newer Blenders evaluate them when they register a class, and complain of a name they do not know."""
+    names = [name for name in dir(bpy.types) if name.startswith("KEYMARK_")]
+    assert len(names) > 80
+    for name in names:
+        assert isinstance(get_type_hints(getattr(bpy.types, name)), dict), name
 
 
 @pytest.mark.parametrize("index", [1, 7, len(list(operators.modules()))])
