@@ -19,8 +19,9 @@ from trials import Trial, read_trial
 load_project()
 
 from keymark.core.body.posture import Posture  # noqa: E402
+from keymark.core.estimate.keyframe_evidence import uncalibrated  # noqa: E402
 from keymark.core.estimate.performer_placement import place_standing  # noqa: E402
-from keymark.core.estimate.single_frame import FrameFit, calibrated, fit_frame, uncalibrated  # noqa: E402
+from keymark.core.estimate.single_frame import FrameFit, calibrated, fit_frame  # noqa: E402
 from keymark.core.estimate.terms.regions import ObservedRegions  # noqa: E402
 from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_standing  # noqa: E402

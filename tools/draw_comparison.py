@@ -9,12 +9,13 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from keymark.core.estimate.reconstruct import METHODS, reconstruct
+from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure
+from keymark.core.take.methods import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take_file import read_take
 

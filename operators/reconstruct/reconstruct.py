@@ -31,7 +31,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, actor, markers, all_colors, two_keyframes, idle)
     preview: Any = None
-    """The running `LivePreview`, whose type is not named: Blender evaluates annotations of what it registers."""
+    """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
     def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
         """Read the scene's take and reconstruct it, starting from the last reading and reconstruction."""
