@@ -72,22 +72,6 @@ def compare(mine: Library, theirs: Library) -> Comparison:
     )
 
 
-def choose_version(mine: Library, theirs: Library, choice: Choice | None = None) -> Library:
-    """Choose one of two versions of a library as a whole; mine where they are equal.
-
-    Raises:
-        InputError: They differ and `choice` is None, or they have different identifiers.
-    """
-    if compare(mine, theirs).same or choice is Choice.KEEP:
-        return mine
-    if choice is Choice.REPLACE:
-        return theirs
-    raise InputError(
-        f"library {shown(mine.identifier)} is present in version {mine.version} and differs from the offered "
-        f"version {theirs.version}; choose whether to keep the present one or to replace it"
-    )
-
-
 def merge_versions(mine: Library, theirs: Library, choices: Choices = None) -> Library:
     """Merge two versions of a library: theirs is fitted to my actor's proportions and added to mine.
 

@@ -8,6 +8,7 @@ from ..shell.messages import say, warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 from .licenses import suggest
+from .registry import refresh
 
 DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
@@ -94,6 +95,7 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         self.learned_as = library.identifier
         if self.for_matching:
             replace_in_registry(library)
+            refresh(library.identifier)
         add_library(context.scene, library)
         warn_if_outdated(self, take)
         (learned,) = library.motions

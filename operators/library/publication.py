@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .conflict_dialog import Conflict
+from .registry import refresh
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
@@ -36,4 +37,5 @@ def publish(libraries: "Sequence[Library]", choice: str) -> "list[Library]":
 
     resolved = resolve_conflicts(libraries, find_registered, choice)
     write_to_registry(resolved)
+    refresh(resolved[-1].identifier if resolved else "")
     return resolved

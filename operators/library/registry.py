@@ -5,7 +5,6 @@ was found then.
 """
 
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 from zlib import crc32
 
@@ -14,28 +13,16 @@ from bpy.app import timers
 
 from ...core.library.texts import EVERY_LIBRARY
 from ..shell.redraw import redraw_sidebars
-from ..shell.results import EXTENSION
+from . import user_folder
 
 if TYPE_CHECKING:
     from ...core.library.library import Library
 
-OWN = "libraries"
-"""Name of the user's folder."""
 SOON_S = 0.1
 """Delay before the folders are read, so that the panel is drawn first."""
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
-
-
-def own_folder() -> Path:
-    """Folder of the user's libraries; created if missing."""
-    try:
-        return Path(bpy.utils.extension_path_user(EXTENSION, path=OWN, create=True))
-    except ValueError:  # not installed as an extension
-        folder = Path(bpy.app.tempdir) / OWN
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder
 
 
 def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
@@ -76,7 +63,7 @@ def refresh(choose: str = "") -> None:
     from .registry_files import folders
 
     manager = bpy.context.window_manager
-    listed, own = manager.keymark_shelf, own_folder()
+    listed, own = manager.keymark_shelf, user_folder.own_folder()
     before = chosen_entry(bpy.context)
     wanted = choose or (before.name if before is not None else "")
     listed.libraries.clear()

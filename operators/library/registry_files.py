@@ -8,12 +8,12 @@ from ...core.library.library import Library
 from ...core.library.library_file import write_library
 from ...core.library.registry import SHIPPED, find_library, library_path, registered_libraries
 from ...core.library.texts import EVERY_LIBRARY
-from . import registry
+from . import user_folder
 
 
 def folders() -> list[Path]:
     """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
-    return [registry.own_folder(), SHIPPED]
+    return [user_folder.own_folder(), SHIPPED]
 
 
 def load_registered(identifier: str) -> Library:
@@ -56,28 +56,24 @@ def libraries_to_match(name: str) -> Sequence[Library]:
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:
-    """Write libraries into the user's folder, and choose the last one in the list.
+    """Write libraries into the user's folder.
 
     Raises:
         InputError: The file of that name holds another library, or no library.
         ConversionError: A file cannot be written.
     """
-    identifier = ""
-    files = [(_own_file(registry.own_folder(), library.identifier), library) for library in libraries]
+    files = [(_own_file(user_folder.own_folder(), library.identifier), library) for library in libraries]
     for file, library in files:
         write_library(file, library)
-        identifier = library.identifier
-    registry.refresh(identifier)
 
 
 def replace_in_registry(library: Library) -> None:
-    """Write a library into the user's folder under its own file name, and choose it in the list.
+    """Write a library into the user's folder under its own file name.
 
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_library(library_path(registry.own_folder(), library.identifier), library)
-    registry.refresh(library.identifier)
+    write_library(library_path(user_folder.own_folder(), library.identifier), library)
 
 
 def _own_file(folder: Path, identifier: str) -> Path:

@@ -3,6 +3,7 @@
 import re
 import tomllib
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -82,6 +83,34 @@ def room_graph(sources: dict[str, tuple[bool, str]]) -> dict[str, set[str]]:
         if own:
             graph.setdefault(own, set()).update(room for room in rooms if room and room != own)
     return graph
+
+
+def import_graph(sources: dict[str, tuple[bool, str]]) -> dict[str, set[str]]:
+    """The modules each module imports, anywhere in it; `sources` are (is package, source) by module name."""
+    return {
+        name: {target for _, target in imports(name, is_package, source, set(sources)) if target in sources}
+        for name, (is_package, source) in sources.items()
+    }
+
+
+def test_no_modules_import_each_other_in_a_circle(repository: Path) -> None:
+    """Not even where an import stands in a function or for types alone."""
+    known = modules(repository, "core", "operators")
+    sources = {
+        name: (file.name == "__init__.py", file.read_text(encoding="utf-8")) for name, file in known.items()
+    }
+    order = list(TopologicalSorter(import_graph(sources)).static_order())
+    assert order.index("core.errors") < order.index("core.take.take") < order.index("operators.cli.main")
+
+
+def test_a_circle_is_found() -> None:
+    """Two modules that import each other cannot be put in an order."""
+    sources = {
+        "core.review.score": (False, "from ..take.motion import x"),
+        "core.take.motion": (False, "def late():\n    from ..review import score"),
+    }
+    with pytest.raises(CycleError):
+        list(TopologicalSorter(import_graph(sources)).static_order())
 
 
 def test_every_room_has_a_height(repository: Path) -> None:

@@ -12,7 +12,7 @@ from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.library_file import write_library
 from keymark.core.library.registry import registered_libraries
 from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
-from keymark.operators.library import registry, registry_files
+from keymark.operators.library import registry, registry_files, user_folder
 from keymark.operators.library.conflicts import resolve_conflicts
 from keymark.operators.library.editing.library_to_scene import add_library
 from keymark.operators.library.registry_files import find_registered, load_registered
@@ -26,7 +26,7 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     """The user's folder of libraries, empty; nothing comes with Keymark."""
     folder = tmp_path / "own"
     folder.mkdir()
-    monkeypatch.setattr(registry, "own_folder", lambda: folder)
+    monkeypatch.setattr(user_folder, "own_folder", lambda: folder)
     monkeypatch.setattr(registry_files, "folders", lambda: [folder])
     return folder
 

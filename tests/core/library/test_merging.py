@@ -9,7 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import library_from_json, library_to_json
-from keymark.core.library.merging import Choice, choose_version, compare, join_libraries, merge_versions
+from keymark.core.library.merging import Choice, compare, join_libraries, merge_versions
 
 MINE = small_library()
 NEW = LibraryPosture("Jump", random_posture(9))
@@ -43,20 +43,16 @@ def test_the_comparison_says_what_differs() -> None:
     assert compare(MINE, small_library()).same
 
 
-def test_nothing_is_overwritten_without_a_word() -> None:
-    """Equal libraries need none; a newer one does, and an older one too."""
-    assert choose_version(MINE, small_library()) is MINE
+def test_no_difference_is_overlooked() -> None:
+    """A newer version differs, and so does an older one, or one with another title alone."""
     for offered in (THEIRS, newer(), replace(MINE, version=2), replace(MINE, title="Other")):
-        with pytest.raises(InputError, match=f"differs from the offered version {offered.version}"):
-            choose_version(MINE, offered)
-        assert choose_version(MINE, offered, Choice.KEEP) is MINE
-        assert choose_version(MINE, offered, Choice.REPLACE) is offered
+        assert not compare(MINE, offered).same
 
 
 def test_different_libraries_never_touch() -> None:
-    """Only equal identifiers are compared, chosen between or merged."""
+    """Only equal identifiers are compared or merged."""
     stranger = replace(MINE, identifier="walking")
-    for act in (compare, merge_versions, lambda a, b: choose_version(a, b, Choice.REPLACE)):
+    for act in (compare, merge_versions):
         with pytest.raises(InputError, match="'small_steps' and 'walking' have different identifiers"):
             act(MINE, stranger)
 
