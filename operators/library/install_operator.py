@@ -1,5 +1,6 @@
 """Base of the operators that install keyframe libraries where the asset browser finds them."""
 
+from abc import abstractmethod
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,13 +55,13 @@ class InstallOperator(JobOperator):
     asset_library: str
     _found: list[Conflict] = []
 
+    @abstractmethod
     def libraries(self, context: bpy.types.Context) -> "list[Library]":
         """The libraries to install."""
-        raise NotImplementedError
 
+    @abstractmethod
     def again(self) -> set[str]:
         """Call the operator anew, with the choices of the dialog."""
-        raise NotImplementedError
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the asset library where there are several, and what to do where identifiers are taken."""
