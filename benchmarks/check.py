@@ -27,7 +27,7 @@ NOISE = "noise=alls=6:allf=t"
 """Camera noise: without it, an enlarged clip decodes more easily than a filmed one."""
 KINDS: dict[str, tuple[int, list[str]]] = {
     "as it is": (0, ["-c", "copy"]),
-    "two hours of it": (1800, ["-c", "copy", "-t", "7200"]),
+    "twenty minutes of it": (305, ["-c", "copy", "-t", "1200"]),
     "1920 x 1080, 20 s": (7, ["-vf", f"scale=1920:1080,{NOISE}", "-t", "20", "-preset", "veryfast"]),
     "1920 x 1080, 20 s, HEVC": (7, ["-vf", f"scale=1920:1080,{NOISE}", "-t", "20", "-c:v", "libx265",
                                     "-preset", "ultrafast", "-x265-params", "log-level=none"]),
