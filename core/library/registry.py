@@ -11,7 +11,7 @@ from ..files.fields import listed
 from ..files.json_file import shown
 from .library import Library
 from .library_file import read_library
-from .texts import checked_identifier
+from .texts import EVERY_LIBRARY, checked_identifier
 
 SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
 """The libraries that come with Keymark."""
@@ -94,6 +94,17 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
         f"there is no keyframe library {shown(text)}{hint}; known are {listed(names) or 'none'}, "
         "and the path of a file ends in .json"
     )
+
+
+def find_libraries(name_or_path: str | Path, folders: Sequence[Path]) -> tuple[Library, ...]:
+    """Find the library of an identifier, title or path; every valid one, by title, for `EVERY_LIBRARY`.
+
+    Raises:
+        InputError: One is named and there is no such library, or it is invalid.
+    """
+    if name_or_path != EVERY_LIBRARY:
+        return (find_library(name_or_path, folders),)
+    return tuple(entry.library for entry in registered_libraries(folders) if entry.library is not None)
 
 
 def library_path(folder: Path, identifier: str) -> Path:

@@ -5,8 +5,7 @@ import sys
 from pathlib import Path
 
 from ...core.library.library import Library
-from ...core.library.registry import SHIPPED, find_library, registered_libraries
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.registry import SHIPPED, find_libraries
 
 VARIABLE = "KEYMARK_LIBRARIES"
 """Environment variable with further folders of libraries, separated as in PATH."""
@@ -29,7 +28,4 @@ def requested_libraries(wanted: str) -> tuple[Library, ...]:
     Raises:
         InputError: There is no such library, or none at all, or a file is unusable.
     """
-    folders = library_folders()
-    if wanted != EVERY_LIBRARY:
-        return (find_library(wanted, folders),)
-    return tuple(found.library for found in registered_libraries(folders) if found.library is not None)
+    return find_libraries(wanted, library_folders())

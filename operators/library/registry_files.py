@@ -6,7 +6,7 @@ from pathlib import Path
 from ...core.errors import InputError
 from ...core.library.library import Library
 from ...core.library.library_file import write_library
-from ...core.library.registry import SHIPPED, find_library, library_path, registered_libraries
+from ...core.library.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
 from ...core.library.texts import EVERY_LIBRARY
 from . import user_folder
 
@@ -38,7 +38,7 @@ def registered_identifiers() -> set[str]:
 
 def shipped_libraries() -> list[Library]:
     """All libraries that come with Keymark."""
-    return [entry.library for entry in registered_libraries([SHIPPED]) if entry.library is not None]
+    return list(find_libraries(EVERY_LIBRARY, [SHIPPED]))
 
 
 def libraries_to_match(name: str) -> Sequence[Library]:
@@ -47,12 +47,10 @@ def libraries_to_match(name: str) -> Sequence[Library]:
     Raises:
         InputError: There is none.
     """
-    if name != EVERY_LIBRARY:
-        return [find_library(name, folders())]
-    usable = [entry.library for entry in registered_libraries(folders()) if entry.library is not None]
-    if not usable:
+    libraries = find_libraries(name, folders())
+    if not libraries:
         raise InputError("there is no library to match with; import one, or install Keymark as a whole")
-    return usable
+    return libraries
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:
