@@ -22,6 +22,7 @@ STEPS = (
     "overlays",
     "turntable",
     "finish",
+    "character",
     "library",
 )
 """The steps of the work, in the order in which the sidebar shows their panels."""

@@ -24,6 +24,7 @@ ROOMS = (
     ("core.matching",),
     ("core.estimate",),
     ("core.finish", "core.review"),
+    ("core.retarget",),
     ("core.shoot",),
     ("core.report",),
     ("operators.bridge",),
@@ -36,6 +37,7 @@ ROOMS = (
     ("operators.keyframes", "operators.review"),
     ("operators.reconstruct",),
     ("operators.finish", "operators.turntable"),
+    ("operators.character",),
     ("operators.takes", "operators.cli"),
 )
 HEIGHTS = {room: height for height, rooms in enumerate(ROOMS) for room in rooms}

@@ -1,0 +1,53 @@
+"""What a person chooses for retargeting."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ..finish.contacts import STRAY_M
+
+
+class RootMotion(Enum):
+    """Where the way over the ground goes."""
+
+    AS_FILMED = "as_filmed"
+    """On the hips: the character goes where the performer went."""
+    IN_PLACE = "in_place"
+    """Nowhere: the character stays where it begins, as on a treadmill."""
+    ROOT_BONE = "root_bone"
+    """On the map's root bone: the hips keep only what they do about it."""
+
+
+class Placement(Enum):
+    """Where the character performs."""
+
+    PERFORMER = "performer"
+    """Where the performer stands and faces: the armature object is placed and turned."""
+    CHARACTER = "character"
+    """Where the character stands: its object stays, the motion begins there and is turned to its facing."""
+
+
+class LimbKeys(Enum):
+    """Which controls of a limb are keyed, and which of them shows."""
+
+    FK = "fk"
+    IK = "ik"
+    BOTH = "both"
+    """Both, showing IK."""
+
+
+@dataclass(frozen=True)
+class RetargetOptions:
+    """Options of a retargeted motion."""
+
+    root_motion: RootMotion = RootMotion.AS_FILMED
+    placement: Placement = Placement.PERFORMER
+    arms: LimbKeys = LimbKeys.BOTH
+    legs: LimbKeys = LimbKeys.BOTH
+    """A limb without IK controls is keyed in FK whatever is chosen."""
+    plant_feet: bool = True
+    reach_hands: bool = True
+    stray_m: float = STRAY_M
+    """Distance that the performer's resting foot may stray and still be held [m]."""
+    tolerance_m: float | None = 0.005
+    """Largest distance of any joint, end or sole of the character from the motion [m]; None for a key on
+    every frame."""

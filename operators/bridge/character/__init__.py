@@ -1,0 +1,1 @@
+"""Characters in Blender: armatures read as arrays, their controls probed, retargeted motions written."""
