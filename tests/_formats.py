@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from _character_maps import full_map
 from _libraries import small_library
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
+from keymark.core.retarget.character_map_file import map_to_json, read_character_map
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery.take_list import read_take_list
 from keymark.core.take.clip_check import check_in_front
@@ -49,6 +51,7 @@ def formats(folder: Path) -> dict[str, Format]:
         Format("shoot", _shoot(said), _in_shoot(folder, take)),
         Format("takes", _line(said), _listed(folder, take)),
         Format("library", library_to_json(small_library()), _plain(folder, "library.json", read_library)),
+        Format("character", map_to_json(full_map()), _plain(folder, "map.json", read_character_map)),
         Format("motion", _motion(folder), _plain(folder, "motion.json", read_motion)),
         Format(
             "conversion", _record(), _plain(folder, "conversion.json", lambda path: read_record(path.parent))

@@ -1,6 +1,5 @@
 """Validation of a library file's fields: each mistake is an `InputError` of one sentence."""
 
-import re
 from collections.abc import Sequence
 
 from ..body.actor import Actor
@@ -10,17 +9,26 @@ from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .texts import LONGEST_NAME, checked_identifier, name_key, text_fault
+from .text_fields import (
+    LONGEST_LINE,
+    LONGEST_TAG,
+    LONGEST_TEXT,
+    MOST_TAGS,
+    license_expression,
+    object_list,
+    optional_line,
+    text_line,
+    text_lines,
+)
+from .texts import LONGEST_NAME, checked_identifier, name_key
 
 MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000
 """Most steps in all motions together."""
-MOST_TAGS, MOST_SOURCES = 30, 100
-LONGEST_TAG, LONGEST_LICENSE, LONGEST_LINE, LONGEST_TEXT = 40, 100, 200, 2000
+MOST_SOURCES = 100
 FARTHEST_M = 100.0
 SHORTEST_S, LONGEST_S = 0.001, 600.0
 """Bounds of a motion's duration: a shorter cycle would repeat without end between two frames."""
 HIGHEST_VERSION = 10**6
-SPDX = re.compile(r"[A-Za-z0-9.+:() -]+", re.ASCII)
 HEADER = (
     *("schema", "schema_version", "identifier", "title", "version", "author", "license", "description"),
     *("tags", "sources", "actor", "motions", "postures"),
@@ -38,64 +46,17 @@ def read_library_fields(fields: Fields, skeleton: Skeleton) -> Library:
     postures = _postures(fields, skeleton)
     return Library(
         identifier=checked_identifier(identifier, f"{fields.where}: identifier"),
-        title=_line(fields, "title", LONGEST_NAME),
+        title=text_line(fields, "title", LONGEST_NAME),
         version=fields.integer("version", 1, HIGHEST_VERSION),
-        author=_line(fields, "author", LONGEST_LINE),
-        license=_license(fields),
+        author=text_line(fields, "author", LONGEST_LINE),
+        license=license_expression(fields),
         actor=_actor(fields),
         postures=postures,
         motions=_motions(fields, {posture.name for posture in postures}),
-        description=""
-        if fields.values.get("description", "") == ""
-        else _line(fields, "description", LONGEST_TEXT),
-        sources=_lines(fields, "sources", MOST_SOURCES, LONGEST_TEXT),
-        tags=_lines(fields, "tags", MOST_TAGS, LONGEST_TAG),
+        description=optional_line(fields, "description", LONGEST_TEXT),
+        sources=text_lines(fields, "sources", MOST_SOURCES, LONGEST_TEXT),
+        tags=text_lines(fields, "tags", MOST_TAGS, LONGEST_TAG),
     )
-
-
-def _line(fields: Fields, name: str, longest: int) -> str:
-    text = fields.required(name, f"a text of at most {longest} characters")
-    fault = text_fault(text, longest)
-    if fault:
-        raise InputError(f"{fields.where}: {name} is {shown(text)}; it {fault}")
-    return str(text)
-
-
-def _lines(fields: Fields, name: str, most: int, longest: int) -> tuple[str, ...]:
-    if name not in fields.values:
-        return ()
-    lines = []
-    for index, text in enumerate(_list(fields, name, "texts", 0, most)):
-        fault = text_fault(text, longest)
-        if fault:
-            raise InputError(f"{fields.where}: {name}[{index}] is {shown(text)}; it {fault}")
-        lines.append(str(text))
-    return tuple(lines)
-
-
-def _list(fields: Fields, name: str, of_what: str, least: int, most: int) -> list[object]:
-    valid = f"a list of {least} to {most} {of_what}" if least else f"a list of at most {most} {of_what}"
-    items = fields.required(name, valid)
-    if not isinstance(items, list):
-        raise InputError(f"{fields.where}: {name} is {shown(items)}; it must be {valid}")
-    if not least <= len(items) <= most:
-        raise InputError(f"{fields.where}: {name} has {len(items)} of them; it must be {valid}")
-    return items
-
-
-def _rows(fields: Fields, name: str, of_what: str, least: int, most: int) -> list[Fields]:
-    items = _list(fields, name, of_what, least, most)
-    return [Fields.of(item, f"{fields.where}: {name}[{index}]") for index, item in enumerate(items)]
-
-
-def _license(fields: Fields) -> str:
-    text = _line(fields, "license", LONGEST_LICENSE)
-    if not SPDX.fullmatch(text):
-        raise InputError(
-            f"{fields.where}: license is {shown(text)}; it must be an SPDX expression such as CC0-1.0, "
-            "CC-BY-4.0 or LicenseRef-Proprietary"
-        )
-    return text
 
 
 def _actor(fields: Fields) -> Actor:
@@ -110,12 +71,12 @@ def _actor(fields: Fields) -> Actor:
 
 def _postures(fields: Fields, skeleton: Skeleton) -> tuple[LibraryPosture, ...]:
     postures = []
-    for row in _rows(fields, "postures", "postures", 1, MOST_POSTURES):
+    for row in object_list(fields, "postures", "postures", 1, MOST_POSTURES):
         row.refuse_others(("name", "tags", "posture"))
-        name = _line(row, "name", LONGEST_NAME)
+        name = text_line(row, "name", LONGEST_NAME)
         values = row.child("posture", "an object of meters and radians by degree of freedom")
         posture = read_posture(values, skeleton, FARTHEST_M, zeros_left_out=True)
-        postures.append(LibraryPosture(name, posture, _lines(row, "tags", MOST_TAGS, LONGEST_TAG)))
+        postures.append(LibraryPosture(name, posture, text_lines(row, "tags", MOST_TAGS, LONGEST_TAG)))
     _refuse_alike(fields, "postures", [posture.name for posture in postures])
     return tuple(postures)
 
@@ -125,7 +86,7 @@ def _motions(fields: Fields, known: set[str]) -> tuple[LibraryMotion, ...]:
         return ()
     motions: list[LibraryMotion] = []
     left = MOST_STEPS
-    for row in _rows(fields, "motions", "motions", 0, MOST_MOTIONS):
+    for row in object_list(fields, "motions", "motions", 0, MOST_MOTIONS):
         motions.append(_motion(row, known, left))
         left -= len(motions[-1].steps)
     _refuse_alike(fields, "motions", [motion.name for motion in motions])
@@ -134,7 +95,7 @@ def _motions(fields: Fields, known: set[str]) -> tuple[LibraryMotion, ...]:
 
 def _motion(row: Fields, known: set[str], most_steps: int) -> LibraryMotion:
     row.refuse_others(("name", "cyclic", "duration_s", "travel", "steps"))
-    name = _line(row, "name", LONGEST_NAME)
+    name = text_line(row, "name", LONGEST_NAME)
     cyclic = row.required("cyclic", "true or false")
     if not isinstance(cyclic, bool):
         raise InputError(f"{row.where}: cyclic is {shown(cyclic)}; it must be true or false")
@@ -152,7 +113,7 @@ def _motion(row: Fields, known: set[str], most_steps: int) -> LibraryMotion:
 
 def _steps(row: Fields, known: set[str], most: int) -> tuple[MotionStep, ...]:
     steps: list[MotionStep] = []
-    for step in _rows(row, "steps", f"steps ({MOST_STEPS} in all motions together)", 1, most):
+    for step in object_list(row, "steps", f"steps ({MOST_STEPS} in all motions together)", 1, most):
         step.refuse_others(("time_s", "posture"))
         time_s = step.number("time_s", 0.0, LONGEST_S, "s")
         if steps and time_s <= steps[-1].time_s:

@@ -8,16 +8,14 @@ from pathlib import Path
 
 from ..errors import InputError
 from ..files.fields import listed
-from ..files.json_file import shown
+from ..files.json_file import read_json, shown
+from ..files.json_folder import ENDING, is_other_format, is_path, json_files
 from .library import Library
-from .library_file import read_library
+from .library_file import LARGEST_BYTES, SCHEMA, library_from_json, read_library
 from .texts import EVERY_LIBRARY, checked_identifier
 
 SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
 """The libraries that come with Keymark."""
-ENDING = ".json"
-MOST_FILES = 500
-"""Files read of one folder; further ones are ignored."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +54,7 @@ def registered_libraries(folders: Sequence[Path]) -> tuple[RegisteredLibrary, ..
     broken: list[RegisteredLibrary] = []
     for folder in folders:
         here: dict[str, RegisteredLibrary] = {}
-        for path in _files(folder):
-            entry = _read(path)
+        for entry in filter(None, map(_read, json_files(folder))):
             if entry.library is None:
                 broken.append(entry)
             elif entry.identifier not in here or entry.version > here[entry.identifier].version:
@@ -74,10 +71,9 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
     Raises:
         InputError: There is no such library, or it is invalid.
     """
-    text = os.fspath(name_or_path)
-    parted = any(mark in text for mark in (os.sep, os.altsep, "/") if mark)
-    if isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING):
+    if is_path(name_or_path):
         return read_library(Path(name_or_path))
+    text = os.fspath(name_or_path)
     registered = registered_libraries(folders)
     wanted = text.casefold()
     by_identifier = [entry for entry in registered if entry.identifier.casefold() == wanted]
@@ -116,16 +112,12 @@ def library_path(folder: Path, identifier: str) -> Path:
     return folder / (checked_identifier(identifier, "the library's identifier") + ENDING)
 
 
-def _files(folder: Path) -> list[Path]:
+def _read(path: Path) -> RegisteredLibrary | None:
+    """The library of a file; None for a file of another of Keymark's formats."""
     try:
-        files = [path for path in folder.iterdir() if path.suffix.lower() == ENDING and path.is_file()]
-    except OSError:
-        return []
-    return sorted(files)[:MOST_FILES]
-
-
-def _read(path: Path) -> RegisteredLibrary:
-    try:
-        return RegisteredLibrary(path, read_library(path))
+        value = read_json(path, LARGEST_BYTES)
+        if is_other_format(value, SCHEMA):
+            return None
+        return RegisteredLibrary(path, library_from_json(value, str(path)))
     except InputError as error:
         return RegisteredLibrary(path, None, str(error))

@@ -48,10 +48,10 @@ def checked_identifier(text: object, what: str) -> str:
     return text
 
 
-def identifier_from(title: str, taken: Iterable[str] = ()) -> str:
-    """A valid identifier that resembles a title and is not taken."""
+def identifier_from(title: str, taken: Iterable[str] = (), otherwise: str = "library") -> str:
+    """A valid identifier that resembles a title and is not taken; `otherwise` where it has no such letters."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode().lower()
-    words = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[: LONGEST_IDENTIFIER - 4].strip("_") or "library"
+    words = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[: LONGEST_IDENTIFIER - 4].strip("_") or otherwise
     used = set(taken)
     candidates = (words if number == 1 else f"{words}_{number}" for number in range(1, len(used) + 10))
     return next(candidate for candidate in candidates if is_identifier(candidate) and candidate not in used)

@@ -11,9 +11,9 @@ from ..take.motion import Motion
 from .canvas import GRAY, PALE, Canvas
 from .contact_sheet import LABEL, MARGIN, Cell, frame_label, sheet
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
+from .view_directions import view_directions
 
 PAPER = (250, 249, 248)
-UP = np.array([0.0, 0.0, 1.0])
 COLUMNS = 6
 CELL_WIDTH, CELL_HEIGHT = 220, 240
 LIMB_WIDTH = 4.0
@@ -39,7 +39,7 @@ def view_sheet(view: str, motion: Motion, camera: Camera, frames: Sequence[int])
     Returns:
         (height, width, 3) picture.
     """
-    axes = _axes(view, camera)
+    axes = view_directions(view, camera)
     figure = stick_figure(motion)
     origin = _origin(motion, keep_height=view != "top")
     floor = None if view == "top" else _floor_height(motion)
@@ -62,21 +62,6 @@ class _Window:
     """Pixels a meter."""
     low_m: float
     """Height of the cell's lower edge above the origin."""
-
-
-def _axes(view: str, camera: Camera) -> Array:
-    """World directions (3, 3) that a view shows to the right, upwards, and away from the eye, as rows."""
-    viewing = -camera.matrix_world.reshape(-1, 4, 4)[0, :3, 2]
-    level = viewing - (viewing @ UP) * UP
-    if np.linalg.norm(level) < 0.1:  # looking straight down or up: the picture's upper edge is ahead
-        level = camera.matrix_world.reshape(-1, 4, 4)[0, :3, 1] * [1.0, 1.0, 0.0]
-    ahead = level / np.linalg.norm(level)
-    right = np.cross(ahead, UP)
-    return {
-        "front": np.stack([right, UP, ahead]),
-        "side": np.stack([ahead, UP, -right]),
-        "top": np.stack([right, ahead, -UP]),
-    }[view]
 
 
 def _origin(motion: Motion, keep_height: bool) -> Array:

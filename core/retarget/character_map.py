@@ -83,10 +83,28 @@ class CharacterMap:
     """Roles that are not moved."""
     preset: str | None = None
     """Identifier of the preset that gave it."""
+    author: str = ""
+    license: str = ""
+    """SPDX expression, as in a keyframe library."""
+    description: str = ""
+    tags: tuple[str, ...] = ()
 
     def bones(self, role: str) -> tuple[str, ...]:
         """The role's bones; () where it is missing."""
         return self.roles[role].bones if role in self.roles else ()
+
+    @property
+    def named_bones(self) -> tuple[str, ...]:
+        """All bones that it names, each once, those of roles first."""
+        named = [bone for role in self.roles.values() for bone in role.bones]
+        named += [bone for bones in self.fk.values() for bone in bones if bone is not None]
+        for controls in self.ik.values():
+            switch = None if controls.switch is None else controls.switch.bone
+            named += [
+                name for name in (controls.goal, controls.pole, controls.toe, switch) if name is not None
+            ]
+        named += [setting.bone for setting in self.settings]
+        return tuple(dict.fromkeys([*named, *([] if self.root is None else [self.root])]))
 
     def bone(self, role: str) -> str | None:
         """The role's first bone, whose head is its joint; None where it is missing."""

@@ -1,4 +1,4 @@
-"""The folders in which the command line finds libraries, and those that `--library` means."""
+"""The folders in which the command line finds libraries and character maps."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ from ...core.library.library import Library
 from ...core.library.registry import SHIPPED, find_libraries
 
 VARIABLE = "KEYMARK_LIBRARIES"
-"""Environment variable with further folders of libraries, separated as in PATH."""
+"""Environment variable with further folders of libraries and character maps, separated as in PATH."""
 
 
 def library_folders() -> list[Path]:

@@ -20,8 +20,8 @@ from ....core.body.kinematics import Body
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.library_fields import LONGEST_TAG
 from ....core.library.library_file import library_from_json, library_to_json
+from ....core.library.text_fields import LONGEST_TAG
 from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ....core.report.posture_picture import posture_picture
 from ..assets.catalogs import catalog_identifier

@@ -13,8 +13,9 @@ from ....core.body.kinematics import Body
 from ....core.body.posture import Posture
 from ....core.errors import InputError
 from ....core.library.library import LibraryMotion, LibraryPosture, MotionStep
-from ....core.library.library_fields import LONGEST_TAG, MOST_POSTURES
+from ....core.library.library_fields import MOST_POSTURES
 from ....core.library.mirroring import with_mirrored
+from ....core.library.text_fields import LONGEST_TAG
 from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ...bridge.actor_lengths import read_body
 from ...bridge.keyframes import NOTICEABLE_M, keyed_frames, read_keyframes

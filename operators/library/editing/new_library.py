@@ -35,7 +35,7 @@ class KEYMARK_OT_new_library(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Add the library, without postures."""
-        from ....core.library.library_fields import LONGEST_LINE
+        from ....core.library.text_fields import LONGEST_LINE
 
         settings = context.scene.keymark
         fault = text_fault(self.title.strip(), LONGEST_NAME)

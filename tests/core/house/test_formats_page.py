@@ -11,6 +11,7 @@ from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
+from keymark.core.retarget import character_map_file
 from keymark.core.shoot import shoot
 from keymark.core.shoot.discovery import take_list
 from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
@@ -22,8 +23,9 @@ LIMITS = {
     f"{motion_file.LARGEST_BYTES // MIB} MiB": "`motion.json`",
     f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
     f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
-    f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
-    f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list",
+    f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
+    f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
+    f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
     f"{safe_path.LONGEST_PATH} characters; {safe_path.LONGEST_NAME_BYTES} bytes": "a path; a name in it",
     f"{shoot.MOST_TAKES}": "takes of a shoot",

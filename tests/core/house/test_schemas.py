@@ -17,7 +17,7 @@ from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
 from referencing import Registry, Resource
 
-NAMES = ("take", "keyframes", "shoot", "takes", "library", "motion", "conversion", "truth")
+NAMES = ("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "truth")
 
 
 @pytest.fixture(scope="module")
@@ -180,6 +180,22 @@ MISTAKES: list[tuple[str, Change]] = [
     ("library", at("postures", to=[])),
     ("library", at("motions", 1, "travel", to={"x_m": 1, "y_m": 0, "heading_rad": 0})),
     ("library", at("titel", to="x")),
+    ("character", at("roles", to={})),
+    ("character", at("roles", "tail", to={"bones": ["tail"]})),
+    ("character", at("roles", "hips", "bones", to=["a", "b"])),
+    ("character", at("roles", "spine", "bones", to=["a", "a"])),
+    ("character", at("roles", "spine", "shares", to=[0.5, 1.5])),
+    ("character", at("roles", "hips", "confidence", to=1.1)),
+    ("character", at("roles", "hips", "source", to="guess")),
+    ("character", at("ik", "arm.L", "toe", to="toe")),
+    ("character", at("ik", "leg.R", "goal", to=None)),
+    ("character", at("ik", "arm.L", "switch", "fk", to="1")),
+    ("character", at("settings", 0, "value", to="on")),
+    ("character", at("soles", "foot.L", 0, to=[0, 1])),
+    ("character", at("soles", "hand.L", to=[[0, 0, 0]])),
+    ("character", at("rest_corrections", "upper_arm.L", to=[2, 0, 0, 0])),
+    ("character", at("left_alone", to=["tail"])),
+    ("character", at("bones", to=[])),
     ("motion", at("points", "head", 0, to=[0, 1])),
     ("motion", at("points", "head", 0, 0, to="1.5")),
     ("motion", at("time_s", 0, to=True)),

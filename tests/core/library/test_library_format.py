@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from keymark.core.library import library_fields, library_file, texts
+from keymark.core.library import library_fields, library_file, text_fields, texts
 from keymark.core.library.library_file import library_from_json, read_library, write_library
 
 
@@ -36,11 +36,11 @@ def test_every_field_has_its_row(page: str) -> None:
         f"1 to {texts.LONGEST_IDENTIFIER} of a-z",
         f"| {texts.LONGEST_NAME} characters |",
         f"1 to {library_fields.HIGHEST_VERSION} |",
-        f"{library_fields.LONGEST_LINE} characters",
-        f"{library_fields.LONGEST_LICENSE} characters",
-        f"{library_fields.LONGEST_TEXT} characters",
-        f"{library_fields.MOST_TAGS} tags of {library_fields.LONGEST_TAG} characters",
-        f"{library_fields.MOST_SOURCES} sources of {library_fields.LONGEST_TEXT}",
+        f"{text_fields.LONGEST_LINE} characters",
+        f"{text_fields.LONGEST_LICENSE} characters",
+        f"{text_fields.LONGEST_TEXT} characters",
+        f"{text_fields.MOST_TAGS} tags of {text_fields.LONGEST_TAG} characters",
+        f"{library_fields.MOST_SOURCES} sources of {text_fields.LONGEST_TEXT}",
         f"{library_fields.MOST_MOTIONS}, together {library_fields.MOST_STEPS} steps",
         f"1 to {library_fields.MOST_POSTURES} |",
         f"({library_fields.SHORTEST_S:g} to {library_fields.LONGEST_S:g} s)",

@@ -1,0 +1,99 @@
+"""A character's shape in the current frame, for pictures: its meshes, or its bones where it has none."""
+
+from collections.abc import Mapping
+
+import bpy
+import numpy as np
+
+from ....core.arrays import Array
+from ....core.report.canvas import LEFT, RIGHT
+from ....core.report.character_figure import SKIN, CharacterFigure
+from ..object_space import evaluated
+
+MOST_TRIANGLES = 200_000
+"""With more, bones are drawn: a picture need not take half a minute."""
+WAIST, THICKNESS = 0.15, 0.09
+"""An octahedral bone's widest place and its half-width there, in bone lengths."""
+CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+
+
+def character_figure(armature_object: bpy.types.Object, sides: Mapping[str, str]) -> CharacterFigure:
+    """The character as its scene shows it now.
+
+    Args:
+        armature_object: The armature.
+        sides: `L`, `R` or an empty text for each bone that plays a role; these are drawn where there is no
+            mesh.
+    """
+    meshes = [_mesh(one) for one in _skins(armature_object)]
+    if meshes and sum(len(triangles) for _, triangles in meshes) <= MOST_TRIANGLES:
+        starts = np.cumsum([0, *(len(points) for points, _ in meshes)])
+        points = np.concatenate([points for points, _ in meshes])
+        triangles = np.concatenate(
+            [rows + start for (_, rows), start in zip(meshes, starts[:-1], strict=True)]
+        )
+        return CharacterFigure(points, triangles, np.tile(np.array(SKIN, dtype=float), (len(triangles), 1)))
+    return _bones(armature_object, sides)
+
+
+def _skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
+    """The visible meshes that the armature deforms or carries."""
+    found = []
+    for scene in armature_object.users_scene[:1]:
+        for one in scene.objects:
+            deformed = any(
+                modifier.type == "ARMATURE" and modifier.object == armature_object
+                for modifier in one.modifiers
+            )
+            if one.type == "MESH" and not one.hide_render and (deformed or one.parent == armature_object):
+                found.append(one)
+    return found
+
+
+def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:
+    """World points (N, 3) and triangles (T, 3) of an evaluated mesh."""
+    shown = evaluated(mesh_object)
+    mesh = shown.to_mesh()
+    try:
+        mesh.calc_loop_triangles()
+        points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+        mesh.vertices.foreach_get("co", points)
+        triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+        mesh.loop_triangles.foreach_get("vertices", triangles)
+    finally:
+        shown.to_mesh_clear()
+    matrix = np.array(shown.matrix_world, dtype=np.float64)
+    return (
+        points.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3],
+        triangles.reshape(-1, 3).astype(np.intp),
+    )
+
+
+def _bones(armature_object: bpy.types.Object, sides: Mapping[str, str]) -> CharacterFigure:
+    """Octahedra along the bones that play a role."""
+    shown = evaluated(armature_object)
+    world = np.array(shown.matrix_world, dtype=np.float64)
+    points: list[Array] = []
+    triangles: list[tuple[int, int, int]] = []
+    colors: list[tuple[int, int, int]] = []
+    for name, side in sides.items():
+        pose_bone = shown.pose.bones.get(name)
+        if pose_bone is None:
+            continue
+        matrix = world @ np.array(pose_bone.matrix, dtype=np.float64)
+        along = matrix[:3, 1] * pose_bone.bone.length
+        size = float(np.linalg.norm(along))
+        x, z = (matrix[:3, column] / np.linalg.norm(matrix[:3, column]) for column in (0, 2))
+        waist = matrix[:3, 3] + WAIST * along
+        ring = [waist + THICKNESS * size * (a * x + b * z) for a, b in CORNERS]
+        first = 6 * len(points)
+        points.append(np.array([matrix[:3, 3], matrix[:3, 3] + along, *ring]))
+        for corner in range(4):
+            a, b = first + 2 + corner, first + 2 + (corner + 1) % 4
+            triangles += [(first, a, b), (first + 1, b, a)]
+        colors += [{"L": LEFT, "R": RIGHT}.get(side, SKIN)] * 8
+    return CharacterFigure(
+        np.concatenate(points) if points else np.zeros((0, 3)),
+        np.array(triangles, dtype=np.intp).reshape(-1, 3),
+        np.array(colors, dtype=np.float64).reshape(-1, 3),
+    )
