@@ -16,6 +16,5 @@ MODULES = (
     "show_result",
     "remove_result",
     "mark_result_asset",
-    "map_panel",
     "panel",
 )

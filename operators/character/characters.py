@@ -2,10 +2,12 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ...core.retarget.roles import REQUIRED
 from ..bridge.actor_bones import is_actor
 from ..shell.messages import label
 from ..shell.takes import find_take
+from .map_conversion import map_of
 from .map_properties import PART_TITLES, PARTS, role_title
 
 MOST_NAMED = 3
@@ -36,9 +38,21 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
     return chosen or visible or free
 
 
-def find_character(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-    """The character that is chosen in the active take's list; None where there is none."""
-    take = find_take(context.scene)
+def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+    """Return the character that is chosen in the active take's list.
+
+    Raises:
+        InputError: There is none.
+    """
+    character = find_character(scene)
+    if character is None:
+        raise InputError(f"scene '{scene.name}' has no character; add one to the take first")
+    return character
+
+
+def find_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
+    """Return the character that is chosen in the active take's list; None where there is none."""
+    take = find_take(scene)
     if take is None or not len(take.characters):
         return None
     return take.characters[min(take.active_character, len(take.characters) - 1)]
@@ -85,15 +99,7 @@ def lost_bones(character: bpy.types.PropertyGroup) -> list[str]:
     if character.armature is None:
         return []
     there = character.armature.data.bones
-    named: dict[str, None] = {}
-    for role in character.character_map.roles:
-        for entry in role.bones:
-            named |= dict.fromkeys((entry.bone, entry.control))
-    for limb in character.character_map.limbs:
-        named |= dict.fromkeys((limb.goal, limb.pole, limb.toe, limb.switch_bone))
-    named |= dict.fromkeys(setting.bone for setting in character.character_map.settings)
-    named[character.character_map.root] = None
-    return [name for name in named if name and name not in there]
+    return [name for name in map_of(character.character_map).named_bones if name not in there]
 
 
 def full_title(role: str) -> str:

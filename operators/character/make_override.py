@@ -6,7 +6,7 @@ from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
-from .characters import find_character
+from .characters import active_character, find_character
 from .map_conversion import map_of, show_map
 from .requirements import armature, is_linked
 
@@ -16,7 +16,7 @@ def linked(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    return None if is_linked(find_character(context).armature) else "The character is not linked"
+    return None if is_linked(find_character(context.scene).armature) else "The character is not linked"
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
@@ -29,7 +29,7 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Override the character and all that belongs to it, and choose the override."""
-        character = find_character(context)
+        character = active_character(context.scene)
         original = character.armature
         instance = _instance_of(context.scene, original)
         overridden = _override(context, original, instance)

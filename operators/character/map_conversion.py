@@ -10,6 +10,7 @@ from .map_properties import is_chain
 
 DIGITS = 7
 """Significant digits of values that Blender keeps as float32."""
+WORDS = ("author", "license", "description")
 NO_DOUBTS: Mapping[str, str] = {}
 
 
@@ -25,9 +26,7 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
         bones = tuple(entry.bone for entry in chosen)
         roles[role.name] = RoleBones(bones, _rounded(role.confidence), role.source, shares)
         if any(entry.control or not entry.keyed for entry in chosen):
-            fk[role.name] = tuple(
-                (entry.control or entry.bone) if entry.keyed else None for entry in chosen
-            )
+            fk[role.name] = tuple((entry.control or entry.bone) if entry.keyed else None for entry in chosen)
     return CharacterMap(
         title=group.title,
         roles=roles,
@@ -49,6 +48,10 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
         },
         left_alone=tuple(role.name for role in group.roles if role.left_alone),
         preset=group.preset or None,
+        author=group.author,
+        license=group.license,
+        description=group.description,
+        tags=tuple(tag.strip() for tag in group.tags.split(",") if tag.strip()),
     )
 
 
@@ -65,6 +68,9 @@ def show_map(
     clear_map(group)
     group.title, group.root = character_map.title, character_map.root or ""
     group.preset = character_map.preset or ""
+    for name in WORDS:
+        setattr(group, name, getattr(character_map, name))
+    group.tags = ", ".join(character_map.tags)
     for name in ROLES:
         _show_role(group.roles.add(), name, character_map, doubts.get(name, ""))
     for name in LIMBS:
@@ -77,7 +83,7 @@ def show_map(
 
 def clear_map(group: bpy.types.PropertyGroup) -> None:
     """Empty the properties of a map."""
-    for name in ("title", "roles", "limbs", "settings", "root", "preset"):
+    for name in ("title", *WORDS, "tags", "roles", "limbs", "settings", "root", "preset"):
         group.property_unset(name)
 
 

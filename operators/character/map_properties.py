@@ -156,6 +156,16 @@ class KEYMARK_PG_character_map(bpy.types.PropertyGroup):
     title: bpy.props.StringProperty(
         name="Title", description="Name of the map for people: the character's, or its convention's"
     )
+    author: bpy.props.StringProperty(name="Author", description="Who made the map")
+    license: bpy.props.StringProperty(
+        name="License", description="Terms under which others may use the map, as in CC0-1.0"
+    )
+    description: bpy.props.StringProperty(
+        name="Description", description="What others should know of the map"
+    )
+    tags: bpy.props.StringProperty(
+        name="Tags", description="Words to find the map by, with commas between them"
+    )
     roles: bpy.props.CollectionProperty(type=KEYMARK_PG_role)
     limbs: bpy.props.CollectionProperty(type=KEYMARK_PG_limb_controls)
     settings: bpy.props.CollectionProperty(type=KEYMARK_PG_map_setting)

@@ -8,7 +8,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import active_take
-from .characters import find_character, shown_result
+from .characters import active_character, shown_result
 from .requirements import result
 
 
@@ -22,10 +22,10 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Mark the Action; its picture is the performer's, who moves alike."""
-        take, made = active_take(context.scene), shown_result(find_character(context))
+        take, made = active_take(context.scene), shown_result(active_character(context.scene))
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")
-        mark_motion_asset(context, take, made.action, made.source_action)
+        mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
         if made.outdated:
             say(self, "WARNING", "The character's motion is of an earlier one; retarget it for the newest")
         say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=made.action.name)

@@ -5,9 +5,8 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
-from .characters import few, find_character, full_title
+from .characters import active_character, few, full_title
 from .map_conversion import map_of, show_map
-from .recognition import show_doubts
 from .requirements import armature
 
 SIDES = (
@@ -31,7 +30,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
         from ...core.retarget.mirroring import mirrored_map
         from ..bridge.character.read_character import read_character
 
-        character = find_character(context)
+        character = active_character(context.scene)
         before = map_of(character.character_map)
         after, missing = mirrored_map(read_character(character.armature), before, self.side)
         if missing:
@@ -39,10 +38,12 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
             say(self, "WARNING", "No bones were found that mirror those for {roles}", roles=names)
         if after == before:
             return {"CANCELLED"}
-        doubts = {role.name: role.doubt for role in character.character_map.roles if role.doubt}
-        kept = {role: doubt for role, doubt in doubts.items() if after.roles.get(role) == before.roles.get(role)}
-        show_map(character.character_map, after, kept)
-        show_doubts(character, ())
+        doubts = {
+            role.name: role.doubt
+            for role in character.character_map.roles
+            if role.doubt and after.roles.get(role.name) == before.roles.get(role.name)
+        }
+        show_map(character.character_map, after, doubts)
         return None
 
 

@@ -54,7 +54,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if not clicked and event.type != "MOUSEMOVE":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-        character = find_character(context)
+        character = find_character(context.scene)
         if character is None or character.armature is None:
             self.cancel(context)
             return {"CANCELLED"}
@@ -85,7 +85,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Give the bone to the role."""
-        give_bone(find_character(context), self.role, self.index, self.bone)
+        give_bone(find_character(context.scene), self.role, self.index, self.bone)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_bone,))

@@ -12,7 +12,11 @@ DEFAULTS = RetargetOptions()
 LIMB_KEYS = (
     ("FK", "FK", "Key the bones of the chain, or their FK controls, and show FK"),
     ("IK", "IK", "Key the IK controls and show IK; a limb that has none is keyed in FK"),
-    ("BOTH", "Both", "Key FK and IK alike and show IK, so that you may switch; a limb without IK is keyed in FK"),
+    (
+        "BOTH",
+        "Both",
+        "Key FK and IK alike and show IK, so that you may switch between them",
+    ),
 )
 ROOT_MOTIONS = (
     ("AS_FILMED", "As Filmed", "The character goes where the performer went, by its hips"),
@@ -32,7 +36,11 @@ PLACEMENTS = (
     ),
 )
 KEYS = (
-    ("TOLERANCE", "Within Tolerance", "As few keys as keep the character within the tolerance in every frame"),
+    (
+        "TOLERANCE",
+        "Within Tolerance",
+        "The fewest keys that keep the character within the tolerance",
+    ),
     ("EVERY_FRAME", "Every Frame", "A key on every frame"),
 )
 SOURCES = (
@@ -88,6 +96,9 @@ class KEYMARK_PG_retargeted(bpy.types.PropertyGroup):
     )
     source_action: bpy.props.PointerProperty(
         name="Source Action", description="The Action it was made from", type=bpy.types.Action
+    )
+    source_actor: bpy.props.PointerProperty(
+        name="Of Actor", description="The actor that the source Action moves", type=bpy.types.Object
     )
     outdated: bpy.props.BoolProperty(
         name="Outdated",
@@ -172,6 +183,10 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
         name="Problem", description="Why the armature's bones could not be recognized"
     )
     doubts: bpy.props.CollectionProperty(type=KEYMARK_PG_result_line)
+    suggested: bpy.props.StringProperty(
+        name="Map at Hand",
+        description="Title of a map in your library folder for this armature's bones",
+    )
     character_map: bpy.props.PointerProperty(type=KEYMARK_PG_character_map)
     source: bpy.props.EnumProperty(
         name="Motion", description="Which motion the character performs", items=SOURCES

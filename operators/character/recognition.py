@@ -1,14 +1,14 @@
 """A character's bones recognized, and shown in its properties."""
 
 from contextlib import suppress
+from pathlib import Path
 
 import bpy
 
 from ...core.errors import InputError, KeymarkError
+from ..library.user_folder import own_folder
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
-
-SCIPY_MISSING = ModuleNotFoundError
 
 
 def recognize_bones(character: bpy.types.PropertyGroup) -> None:
@@ -44,18 +44,33 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     """
     clear_map(character.character_map)
     show_doubts(character)
-    character.problem = ""
+    character.problem = character.suggested = ""
     if character.armature is None:
         return
     known = other_with(character, character.armature)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
         return
-    with suppress(SCIPY_MISSING):  # operators report it
+    with suppress(ModuleNotFoundError):  # operators report it
         try:
             recognize_bones(character)
+            suggest_map(character)
         except KeymarkError as error:
             character.problem = str(error)
+
+
+def suggest_map(character: bpy.types.PropertyGroup) -> None:
+    """Show the title of the map in the user's folder that is for the bones of a character's armature."""
+    from ...core.retarget.map_registry import map_for
+    from ..bridge.character.read_character import read_character
+
+    found = map_for(read_character(character.armature), map_folders())
+    character.suggested = "" if found is None else found.title
+
+
+def map_folders() -> list[Path]:
+    """Folders in which character maps are looked for: that of the user's keyframe libraries."""
+    return [own_folder()]
 
 
 def _not_a_character(armature_object: bpy.types.Object | None) -> str:

@@ -5,7 +5,7 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
-from .characters import find_character
+from .characters import active_character
 from .recognition import recognize_bones
 from .requirements import armature
 
@@ -20,7 +20,7 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Recognize the bones, and show them."""
-        character = find_character(context)
+        character = active_character(context.scene)
         recognize_bones(character)
         if len(character.doubts):
             for doubt in character.doubts:

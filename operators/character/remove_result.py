@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.requirements import idle
-from .characters import find_character
+from .characters import active_character
 from .requirements import character
 
 
@@ -21,9 +21,11 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Remove it."""
-        chosen = find_character(context)
+        chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
-            raise InputError(f"there is no result number {self.index}; the character has {len(chosen.results)}")
+            raise InputError(
+                f"there is no result number {self.index}; the character has {len(chosen.results)}"
+            )
         chosen.results.remove(self.index)
         chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))
 

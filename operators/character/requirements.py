@@ -15,12 +15,12 @@ def take(context: bpy.types.Context) -> str | None:
 
 def character(context: bpy.types.Context) -> str | None:
     """A character is chosen."""
-    return None if find_character(context) is not None else "Add a character first"
+    return None if find_character(context.scene) is not None else "Add a character first"
 
 
 def armature(context: bpy.types.Context) -> str | None:
     """The chosen character has an armature, in this scene."""
-    chosen = find_character(context)
+    chosen = find_character(context.scene)
     if chosen is None:
         return character(context)
     if chosen.armature is None:
@@ -35,7 +35,7 @@ def editable(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    chosen = find_character(context).armature
+    chosen = find_character(context.scene).armature
     if is_linked(chosen):
         return label("'{name}' is linked; make a library override of it first", name=chosen.name)
     if chosen.name not in context.scene.objects:
@@ -48,7 +48,7 @@ def recognized(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    chosen = find_character(context)
+    chosen = find_character(context.scene)
     if not len(chosen.character_map.roles):
         return "Recognize the character's bones first"
     missing = [full_title(role) for role in missing_roles(chosen)]
@@ -66,13 +66,13 @@ def recognized(context: bpy.types.Context) -> str | None:
 
 def source(context: bpy.types.Context) -> str | None:
     """There is a motion for the character to perform."""
-    chosen = find_character(context)
+    chosen = find_character(context.scene)
     return character(context) if chosen is None else missing_source(find_take(context.scene), chosen)
 
 
 def result(context: bpy.types.Context) -> str | None:
     """The chosen character has a result."""
-    chosen = find_character(context)
+    chosen = find_character(context.scene)
     if chosen is None:
         return character(context)
     made = any(each.action is not None for each in chosen.results)
@@ -84,7 +84,7 @@ def active_bone(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    if find_character(context).armature.data.bones.active is None:
+    if find_character(context.scene).armature.data.bones.active is None:
         return "Make a bone of the character active first: click on it in Pose Mode"
     return None
 

@@ -33,7 +33,7 @@ def add_result(
         character.results.add()
     result = character.results[index]
     result.action, result.outdated = action, False
-    result.source, result.source_action = source.kind, source.action
+    result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
     character.active_result = index
     return result
 

@@ -6,20 +6,25 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ...core.progress import stretch
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
-from .characters import find_character
+from .characters import active_character
+from .figures import figures
 from .map_conversion import map_of
+from .options import options_of
 from .requirements import editable, recognized, source
-from .results import result_to_write, show_lines
-from .source_motion import source_of
+from .results import add_result, result_to_replace, show_lines
+from .source_motion import SourceMotion, source_of
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from ...core.retarget.options import RetargetOptions
     from ..bridge.character.retarget import Retargeted
+
+READ = 0.1
+"""Share of the job at which the motion is read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +33,12 @@ class RetargetedCharacter:
 
     take: str
     """The take's identifier."""
-    armature: int
-    """The armature's session number, by which the character is found again."""
+    uids: tuple[int, int, int]
+    """Session numbers of the character's armature, the source Action and its actor."""
     kind: str
     """The kind of source motion."""
-    source_action: int
-    """The source Action's session number."""
     title: str
+    """What a new Action is named after, beside the character."""
     retargeted: "Retargeted"
 
 
@@ -51,24 +55,51 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         from ..bridge.character.retarget import retarget
         from ..bridge.character.source import read_source
 
-        take, character = active_take(scene), find_character(bpy.context)
+        take = active_take(scene)
+        character = active_character(scene)
         motion = source_of(take, character)
         identifier, armature_object = take.identifier, character.armature
+        uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
         character_map, options = map_of(character.character_map), options_of(character.options)
-        numbers = armature_object.session_uid, motion.action.session_uid
         del take, character  # Blender may move them while the job runs
-        job = retarget(armature_object, motion.actor, motion.action, character_map, options)
-        retargeted = yield from job
-        return RetargetedCharacter(identifier, numbers[0], motion.kind, numbers[1], motion.title, retargeted)
+        source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, READ)
+        job = retarget(armature_object, source, frames, character_map, options)
+        retargeted = yield from stretch(job, READ, 1.0)
+        return RetargetedCharacter(identifier, uids, motion.kind, motion.title, retargeted)
 
     def finish(self, scene: bpy.types.Scene, result: RetargetedCharacter) -> None:
         """Write the Action, and list it with what was measured of it."""
         take = take_by_identifier(scene, result.take)
-        character = next(
-            (each for each in take.characters if _number(each.armature) == result.armature), None
+        character = next((each for each in take.characters if _uid(each.armature) == result.uids[0]), None)
+        source_action = next((each for each in bpy.data.actions if _uid(each) == result.uids[1]), None)
+        actor = next((each for each in bpy.data.objects if _uid(each) == result.uids[2]), None)
+        if character is None or source_action is None or actor is None:
+            raise InputError(
+                "the character or its motion was removed while the job ran; nothing was changed, run it again"
+            )
+        earlier = None
+        if not character.keep_earlier:
+            earlier = result_to_replace(character, result.kind, source_action)
+        into = earlier.action if earlier is not None else f"{result.title} {character.armature.name}"
+        action = result.retargeted.write(scene, into)
+        action.use_fake_user = True
+        source = SourceMotion(result.kind, source_action, actor, result.title)
+        listed = add_result(character, source, action)
+        show_lines(listed, figures(result.retargeted), result.retargeted.notes)
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        for note in result.retargeted.notes:
+            self.report({"WARNING"}, note[:1].upper() + note[1:])
+        say(
+            self,
+            "INFO",
+            "'{name}' performs '{action}'",
+            name=character.armature.name,
+            action=action.name,
         )
-        if character is None:
-            raise InputError("the character of this job was removed while it ran; nothing was changed")
+
+
+def _uid(block: bpy.types.ID | None) -> int:
+    return -1 if block is None else int(block.session_uid)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_retarget,))

@@ -30,7 +30,9 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
     if role not in ROLES:
         raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
     if bone not in character.armature.data.bones:
-        raise InputError(f"'{character.armature.name}' has no bone '{bone}'; give the name of one of its bones")
+        raise InputError(
+            f"'{character.armature.name}' has no bone '{bone}'; give the name of one of its bones"
+        )
     shown = role_named(character.character_map, role)
     if index >= len(shown.bones):
         raise InputError(
@@ -41,7 +43,7 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
 
 def told(context: bpy.types.Context, role: str) -> str:
     """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
-    character = find_character(context)
+    character = find_character(context.scene)
     if character is None or role not in character.character_map.roles:
         return ""
     shown = character.character_map.roles[role]

@@ -6,7 +6,7 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.base_operator import BaseOperator
 from ..shell.requirements import idle
-from .characters import find_character
+from .characters import active_character
 from .requirements import editable, result
 
 
@@ -22,7 +22,7 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Assign the Action, and choose the result."""
-        character = find_character(context)
+        character = active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
             raise InputError(f"there is no result number {self.index}; retarget the motion again")
         assign_action(character.armature, character.results[self.index].action)

@@ -78,9 +78,7 @@ def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> 
     return "FINAL" if final.action is not None and not newer else "MOTION"
 
 
-def _actor(
-    take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
-) -> bpy.types.Object | None:
+def _actor(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> bpy.types.Object | None:
     if character.source == "ACTION" and character.source_actor is not None:
         return character.source_actor
     return take.armature

@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from .characters import find_character
+from .characters import active_character
 from .requirements import active_bone
 from .role_bone import RoleBoneOperator, give_bone
 
@@ -18,7 +18,7 @@ class KEYMARK_OT_use_active_bone(RoleBoneOperator, BaseOperator, bpy.types.Opera
 
     def run(self, context: bpy.types.Context) -> None:
         """Give it to the role."""
-        character = find_character(context)
+        character = active_character(context.scene)
         give_bone(character, self.role, self.index, character.armature.data.bones.active.name)
 
 
