@@ -23,9 +23,10 @@ def quaternion_rig(body: Body = BODY) -> Rig:
         first = segment.joint
         while skeleton.joints[first].parent != above:
             first = skeleton.joints[first].parent
-        origin = body.offsets[first]
-        bones.append(RigBone(segment.name, parent, "QUATERNION", np.eye(3), np.eye(3), origin, ends))
-    return Rig(tuple(bones), np.eye(3), np.zeros(3))
+        origin = np.zeros(3) if parent < 0 else body.offsets[first]
+        axes = np.eye(3) if parent < 0 else None
+        bones.append(RigBone(segment.name, parent, "QUATERNION", np.eye(3), np.eye(3), origin, ends, axes))
+    return Rig(tuple(bones))
 
 
 def rig_values(rig: Rig, posture: Posture, body: Body = BODY) -> list[np.ndarray]:

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..arrays import Array
+from .extremities import Extremities, segment_ends, segment_turn
 from .kinematics import Body
+from .posture import Posture
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,3 +23,24 @@ class SegmentMotion:
     """(F, 3) by segment: its joint nearer to the trunk [m]."""
     end: Mapping[str, Array]
     """(F, 3) by segment: its other end [m]."""
+
+
+def segment_motion(body: Body, posture: Posture, time_s: Array, extremities: Extremities) -> SegmentMotion:
+    """The motion of every segment.
+
+    Args:
+        body: The body.
+        posture: A batch of F postures.
+        time_s: (F,) time of each frame [s].
+        extremities: Its hands and feet, as `finish/natural_extremities` gives them or as they are posed.
+    """
+    pose = body.pose(posture)
+    names = [segment.name for segment in body.skeleton.segments]
+    ends = {name: segment_ends(body, pose, extremities, name) for name in names}
+    return SegmentMotion(
+        body,
+        time_s,
+        {name: segment_turn(body, pose, extremities, name) for name in names},
+        {name: start for name, (start, _) in ends.items()},
+        {name: end for name, (_, end) in ends.items()},
+    )

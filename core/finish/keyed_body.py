@@ -142,13 +142,15 @@ class KeyedBody:
         rig, every = self.rig, slice(None)
         joint = rig.point_slices[bone].start
         error = self.pose.local(rig, bone, every) @ np.swapaxes(self.target.local(rig, bone, every), -1, -2)
-        vector = rotations.logarithm(error)[:, None]  # (F, 1, 3) in the parent's frame
+        vector = rotations.logarithm(error)[:, None]  # (F, 1, 3) in the turner's frame
         shift = np.zeros_like(vector)
-        above = rig.bones[bone].parent
-        if above >= 0:
-            vector = vector @ np.swapaxes(self.target.rotation[above], -1, -2)
-        else:
-            shift = (self.pose.points - self.target.points)[:, joint, None]
+        turner, above = rig.bones[bone].turner, rig.bones[bone].parent
+        if turner >= 0:
+            vector = vector @ np.swapaxes(self.target.rotation[turner], -1, -2)
+        if rig.bones[bone].location_axes is not None:
+            shift = (self.pose.place(rig, bone, every) - self.target.place(rig, bone, every))[:, None]
+            if above >= 0:
+                shift = shift @ np.swapaxes(self.target.rotation[above], -1, -2)
         carried = np.concatenate(
             [
                 np.arange(where.start, where.stop)

@@ -14,6 +14,8 @@ from scipy.spatial.transform import Rotation
 from ..arrays import Array
 
 LEAST_LENGTH = 1e-12
+NO_TURN = "NONE"
+"""Rotation mode of a bone that is placed and not turned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,40 +26,45 @@ class RigBone:
     parent: int
     """Index of its parent; -1 for the root."""
     mode: str
-    """QUATERNION (w, x, y, z), AXIS_ANGLE (angle, x, y, z) or the order of Euler angles such as XYZ."""
+    """QUATERNION (w, x, y, z), AXIS_ANGLE (angle, x, y, z), the order of Euler angles such as XYZ, or
+    `NO_TURN` for a bone whose rotation has no channels."""
     left: Array
-    """(3, 3) and `right`: `left @ rotation @ right` is the joint's frame in its parent's joint's frame."""
+    """(3, 3) and `right`: `left @ rotation @ right` is the joint's frame in its turner's joint's frame."""
     right: Array
     """(3, 3)."""
     origin: Array
-    """(3,) the joint in the parent's joint's frame [m]; unused for the root."""
+    """(3,) the joint in the parent's joint's frame [m], in the world for a root, before its own location."""
     points: Array
     """(N, 3) points fixed to the bone, in its joint's frame [m]: its end, and the ends of rigid leaves."""
+    location_axes: Array | None = None
+    """(3, 3) takes its location channels to the parent's joint's frame, for a root to the world; None for a
+    bone that has none."""
+    turned_by: int | None = None
+    """Index of the bone that turns it, -1 for none; None for its parent."""
+
+    @property
+    def turner(self) -> int:
+        """Index of the bone in whose joint's frame it turns; -1 for none."""
+        return self.parent if self.turned_by is None else self.turned_by
 
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Bones, parents first; the first is the root.
+    """Bones, those that carry others before them.
 
-    A bone's *values* over F frames are (F, C): its rotation channels, for the root followed by three of
-    location.
+    A bone's *values* over F frames are (F, C): its rotation channels, followed by three of location where it
+    has `location_axes`.
     """
 
     bones: tuple[RigBone, ...]
-    root_turn: Array
-    """(3, 3) takes the root's location channels to the world ..."""
-    root_origin: Array
-    """(3,) ... from here [m]."""
 
     @cached_property
     def subtrees(self) -> tuple[tuple[int, ...], ...]:
-        """For each bone the indices of itself and all its descendants, parents first."""
-        found: list[list[int]] = [[index] for index in range(len(self.bones))]
-        for index in range(len(self.bones)):
-            above = self.bones[index].parent
-            while above >= 0:
-                found[above].append(index)
-                above = self.bones[above].parent
+        """For each bone the indices of itself and all that it carries or turns, parents first."""
+        found: list[set[int]] = [{index} for index in range(len(self.bones))]
+        for index in reversed(range(len(self.bones))):
+            for above in {self.bones[index].parent, self.bones[index].turner} - {-1}:
+                found[above] |= found[index]
         return tuple(tuple(sorted(indices)) for indices in found)
 
     @cached_property
@@ -79,42 +86,46 @@ class Rig:
         """The pose at some frames when some bones take other values (N, C) there."""
         part = RigPose(pose.rotation[:, frames].copy(), pose.points[frames].copy())
         touched = sorted({index for bone in changed for index in self.subtrees[bone]})
-        local = {index: pose.local(self, index, frames) for index in touched if index not in changed}
+        kept = {
+            index: (pose.local(self, index, frames), pose.place(self, index, frames))
+            for index in touched
+            if index not in changed
+        }
         for index in touched:
-            turn = self._turn(index, changed[index]) if index in changed else local[index]
-            location = self._root_location(changed[index]) if index == 0 and index in changed else None
-            self._fill_bone(part, index, turn, location)
+            turn, place = kept[index] if index in kept else self._local(index, changed[index])
+            self._fill_bone(part, index, turn, place)
         return part
 
     def _fill(self, pose: "RigPose", values: list[Array], bones: range) -> None:
         for index in bones:
-            location = self._root_location(values[0]) if index == 0 else None
-            self._fill_bone(pose, index, self._turn(index, values[index]), location)
+            self._fill_bone(pose, index, *self._local(index, values[index]))
 
-    def _fill_bone(self, pose: "RigPose", index: int, turn: Array, location: Array | None) -> None:
+    def _fill_bone(self, pose: "RigPose", index: int, turn: Array, place: Array) -> None:
         bone, where = self.bones[index], self.point_slices[index]
+        pose.rotation[index] = turn if bone.turner < 0 else pose.rotation[bone.turner] @ turn
         if bone.parent < 0:
-            pose.rotation[index] = turn
-            if location is not None:
-                pose.points[:, where.start] = location
+            pose.points[:, where.start] = place
         else:
-            above = pose.rotation[bone.parent]
-            pose.rotation[index] = above @ turn
-            start = pose.points[:, self.point_slices[bone.parent].start]
-            pose.points[:, where.start] = start + above @ bone.origin
+            above, start = pose.rotation[bone.parent], pose.points[:, self.point_slices[bone.parent].start]
+            pose.points[:, where.start] = start + _turned(above, place)
         joint = pose.points[:, where.start, None]
         pose.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(
             pose.rotation[index], -1, -2
         )
+
+    def _local(self, index: int, values: Array) -> tuple[Array, Array]:
+        """A bone's turn (F, 3, 3) and place, (F, 3) or (3,) without location, in the frames of others."""
+        bone = self.bones[index]
+        place = bone.origin
+        if bone.location_axes is not None:
+            place = bone.origin + values[:, -3:] @ bone.location_axes.T
+        return self._turn(index, values), place
 
     def _turn(self, index: int, values: Array) -> Array:
         """(F, 3, 3) the joint's frame in its parent's joint's frame."""
         bone = self.bones[index]
         channels = values[:, : channel_count(bone.mode)]
         return np.asarray(bone.left @ rotation_matrices(channels, bone.mode) @ bone.right)
-
-    def _root_location(self, values: Array) -> Array:
-        return np.asarray(self.root_origin + values[:, -3:] @ self.root_turn.T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,19 +138,32 @@ class RigPose:
     """(F, P, 3) joints and ends in the world [m], in the order of `Rig.point_slices`."""
 
     def local(self, rig: Rig, index: int, frames: slice) -> Array:
-        """(N, 3, 3) a bone's joint's frame in its parent's."""
+        """(N, 3, 3) a bone's joint's frame in that of the bone that turns it."""
         own = self.rotation[index, frames]
-        above = rig.bones[index].parent
+        above = rig.bones[index].turner
         return own if above < 0 else np.swapaxes(self.rotation[above, frames], -1, -2) @ own
+
+    def place(self, rig: Rig, index: int, frames: slice) -> Array:
+        """A bone's joint in its parent's joint's frame: (N, 3), or (3,) where it has no location."""
+        bone = rig.bones[index]
+        if bone.location_axes is None:
+            return bone.origin
+        own = self.points[frames, rig.point_slices[index].start]
+        if bone.parent < 0:
+            return own
+        start = self.points[frames, rig.point_slices[bone.parent].start]
+        return _turned(np.swapaxes(self.rotation[bone.parent, frames], -1, -2), own - start)
 
 
 def channel_count(mode: str) -> int:
     """Number of rotation channels of a rotation mode."""
-    return 4 if mode in ("QUATERNION", "AXIS_ANGLE") else 3
+    return {"QUATERNION": 4, "AXIS_ANGLE": 4, NO_TURN: 0}.get(mode, 3)
 
 
 def rotation_matrices(channels: Array, mode: str) -> Array:
     """Rotations (F, 3, 3) of channels (F, C) in a rotation mode, as Blender evaluates them."""
+    if mode == NO_TURN:
+        return np.broadcast_to(np.eye(3), (len(channels), 3, 3))
     if mode == "QUATERNION":
         return np.asarray(Rotation.from_quat(channels[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
@@ -149,3 +173,8 @@ def rotation_matrices(channels: Array, mode: str) -> Array:
     order = ["XYZ".index(letter) for letter in mode]
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.
     return np.asarray(Rotation.from_euler(mode.lower(), channels[:, order]).as_matrix())
+
+
+def _turned(turn: Array, vectors: Array) -> Array:
+    """(F, 3) vectors, (F, 3) or a single (3,), turned by (F, 3, 3)."""
+    return np.asarray(turn @ vectors if vectors.ndim == 1 else (turn @ vectors[..., None])[..., 0])

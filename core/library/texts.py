@@ -49,7 +49,7 @@ def checked_identifier(text: object, what: str) -> str:
 
 
 def identifier_from(title: str, taken: Iterable[str] = (), otherwise: str = "library") -> str:
-    """A valid identifier that resembles a title and is not taken; `otherwise` where it has no such letters."""
+    """A valid identifier that resembles a title and is not taken; `otherwise` where it has no letters."""
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode().lower()
     words = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[: LONGEST_IDENTIFIER - 4].strip("_") or otherwise
     used = set(taken)

@@ -39,7 +39,7 @@ def rig_channels(rig: Rig) -> tuple[Channel, ...]:
         count = channel_count(model.mode)
         path = bone_path(model.name, rotation_path(model.mode))
         found += [(bone, index, path, index) for index in range(count)]
-        if model.parent < 0:
+        if model.location_axes is not None:
             found += [(bone, count + i, bone_path(model.name, "location"), i) for i in range(3)]
     return tuple(found)
 

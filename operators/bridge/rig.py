@@ -54,8 +54,13 @@ def rig_at_rest(
     bones = []
     for model in turning:
         own = rest[model.name][:3, :3]
+        origin, location_axes = body.offsets[model.chain[0]], None
         if model.parent is None:
             left = space.rotation @ own
+            origin, location_axes = (
+                space.to_world(rest[model.name][:3, 3]),
+                space.scale * space.rotation @ own,
+            )
         else:
             left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
         bones.append(
@@ -65,12 +70,12 @@ def rig_at_rest(
                 mode=modes[model.name],
                 left=left,
                 right=axes[model.name].T,
-                origin=body.offsets[model.chain[0]],
+                origin=origin,
                 points=_fixed_points(model, models),
+                location_axes=location_axes,
             )
         )
-    root = rest[names[0]]
-    return Rig(tuple(bones), space.scale * space.rotation @ root[:3, :3], space.to_world(root[:3, 3]))
+    return Rig(tuple(bones))
 
 
 def _fixed_points(model: BoneModel, models: tuple[BoneModel, ...]) -> np.ndarray:

@@ -7,7 +7,7 @@ from _scene import BODY, exercise
 from keymark.core.body.posture import Posture
 from keymark.core.finish.hermite import fit_keys
 from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys
-from keymark.core.finish.rig import Rig, RigBone, rotation_matrices
+from keymark.core.finish.rig import NO_TURN, Rig, RigBone, channel_count, rotation_matrices
 from keymark.core.progress import run
 from scipy.spatial.transform import Rotation
 
@@ -150,4 +150,72 @@ def test_bones_hang_together() -> None:
         RigBone(name, parent, "XYZ", np.eye(3), np.eye(3), np.zeros(3), np.zeros((1, 3)))
         for name, parent in (("a", -1), ("b", 0), ("c", 1), ("d", 0))
     )
-    assert Rig(bones, np.eye(3), np.zeros(3)).subtrees == ((0, 1, 2, 3), (1, 2), (2,), (3,))
+    assert Rig(bones).subtrees == ((0, 1, 2, 3), (1, 2), (2,), (3,))
+
+
+@pytest.fixture(scope="module")
+def control_rig() -> Rig:
+    """Two roots; a bone that moves on the first, one on it that the second turns, one that only moves."""
+    turn = rotation_matrices(np.array([[0.3, -0.2, 0.5]]), "XYZ")[0]
+    none, one = np.zeros((0, 3)), np.array([[0.0, 0.3, 0.1]])
+    return Rig(
+        (
+            RigBone("torso", -1, "QUATERNION", np.eye(3), np.eye(3), np.zeros(3), one, np.eye(3)),
+            RigBone("goal", -1, "XYZ", turn, turn.T, np.array([0.5, 0.0, 0.0]), one, turn),
+            RigBone("foot", 0, "ZXY", turn, np.eye(3), np.array([0.0, 0.2, 0.0]), one, 0.01 * turn),
+            RigBone("toe", 2, "XYZ", np.eye(3), turn, np.array([0.0, 0.1, 0.0]), one, turned_by=1),
+            RigBone("pole", 1, NO_TURN, np.eye(3), np.eye(3), np.array([0.0, 0.0, 1.0]), none, np.eye(3)),
+        )
+    )
+
+
+@pytest.fixture(scope="module")
+def control_values(control_rig: Rig) -> list[np.ndarray]:
+    """Smooth values of every control."""
+    rng = np.random.default_rng(8)
+    time = np.linspace(0.0, 1.0, FRAMES)[:, None]
+    values = []
+    for bone in control_rig.bones:
+        count = channel_count(bone.mode) + (0 if bone.location_axes is None else 3)
+        wave = 0.3 * np.sin(2.0 * np.pi * (rng.uniform(0.5, 2.0, count) * time + rng.uniform(0, 1, count)))
+        values.append(wave + np.eye(count)[0] * (bone.mode == "QUATERNION"))
+    return values
+
+
+def test_bones_of_a_control_rig_move_on_what_carries_them(
+    control_rig: Rig, control_values: list[np.ndarray]
+) -> None:
+    """A place follows the parent, a turn the bone that turns it, and locations have axes of their own."""
+    pose = control_rig.pose(control_values)
+    joints = [pose.points[:, where.start] for where in control_rig.point_slices]
+    foot, above = control_values[2], pose.rotation[0]
+    local = control_rig.bones[2].origin + 0.01 * foot[:, 3:] @ control_rig.bones[2].left.T
+    assert joints[2] == pytest.approx(joints[0] + (above @ local[..., None])[..., 0], abs=1e-12)
+    toe = rotation_matrices(control_values[3], "XYZ") @ control_rig.bones[3].right
+    assert pose.rotation[3] == pytest.approx(pose.rotation[1] @ toe, abs=1e-12)
+    assert pose.rotation[4] == pytest.approx(pose.rotation[1], abs=1e-12)
+    assert control_rig.subtrees == ((0, 2, 3), (1, 3, 4), (2, 3), (3,), (4,))
+
+
+def test_changing_one_control_shows_what_showing_all_does(
+    control_rig: Rig, control_values: list[np.ndarray]
+) -> None:
+    """What one carries and another turns follows either of them."""
+    frames = slice(5, 25)
+    for control in range(len(control_rig.bones)):
+        changed = list(control_values)
+        changed[control] = control_values[control] + 0.07
+        part = control_rig.pose_changed(
+            control_rig.pose(control_values), frames, {control: changed[control][frames]}
+        )
+        assert part.points == pytest.approx(control_rig.pose(changed).points[frames], abs=1e-12)
+
+
+def test_keys_of_controls_stay_within_the_tolerance(
+    control_rig: Rig, control_values: list[np.ndarray]
+) -> None:
+    """Roots, bones with locations and bones turned by another are reduced together."""
+    reduced = run(reduce_keys(control_rig, TIMES, control_values, 0.005, np.zeros(0, dtype=np.intp)))
+    distance = np.linalg.norm(shown(control_rig, reduced) - control_rig.pose(control_values).points, axis=-1)
+    assert 0.001 < distance.max() <= 0.005
+    assert key_count(reduced) < 0.5 * FRAMES * len(control_rig.bones)
