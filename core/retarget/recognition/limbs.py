@@ -66,7 +66,7 @@ def find_legs(frame: Frame, chains: Chains) -> Limbs:
     score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
     unit = np.maximum(length, SHORT_LEG)
     score += near((ankle[:, 2] - frame.floor) / unit, 0.1, 0.1, 5.0)
-    score += near(hip[:, 0] / length, 0.13, 0.07, 4.0)
+    score += near(hip[:, 0] / unit, 0.13, 0.07, 4.0)
     score += near(length, 0.45, 0.15, 3.0)
     for column, part in enumerate(LEG[:3]):
         score += part_scores(frame, part)[chains.bones[:, column]]
