@@ -16,7 +16,7 @@ STATES = ("below", "hips", "spine", "neck", "head", "end")
 UNLIKELY = -6.0
 NO_HEAD = -5.0
 """Score of a trunk without a head."""
-SURE = 0.8
+SURE = 0.75
 """Probability from which a bone's part is not doubted."""
 SAME_JOINT = 0.02
 """A bone this near above another, in heights of the trunk, begins where it does."""
