@@ -54,8 +54,8 @@ def find_chains(frame: Frame) -> Chains:
     chains = Chains(table, np.array(attached, dtype=np.intp))
     places = frame.place
     ends = np.where(table[:, 2] >= 0, table[:, 2], table[:, 1])
-    reach = _length(places[table[:, 1]] - places[table[:, 0]]) + _length(places[ends] - places[table[:, 1]])
-    return chains.taken(np.flatnonzero(reach > SHORTEST_LIMB))
+    length = _length(places[table[:, 1]] - places[table[:, 0]]) + _length(places[ends] - places[table[:, 1]])
+    return chains.taken(np.flatnonzero(length > SHORTEST_LIMB))
 
 
 def _line(bones: Bones, frame: Frame, end: int) -> tuple[list[int], int]:

@@ -66,6 +66,29 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
     return found
 
 
+def name_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
+    """Roles of sides that a bone plays although another has the name for it."""
+    readings = dict(zip(figure.frame.bones.names, figure.frame.bones.readings, strict=True))
+    found = []
+    for part in (*ARM, *LEG):
+        for side in "LR":
+            role = f"{part}.{side}"
+            bone = roles[role].bones[0] if role in roles else None
+            named = [
+                name
+                for name, reading in readings.items()
+                if (reading.clear_part, reading.side) == (part, side)
+            ]
+            if not named or (bone is not None and readings[bone].clear_part == part):
+                continue
+            if bone is None:
+                found.append(f"{role} not found, but {shown(named[0])} has the name for it")
+            else:
+                why = f"{shown(named[0])} has the name for it"
+                found.append(f"{role} is doubtful: {shown(bone)} was chosen by its place, and {why}")
+    return found
+
+
 def missing_doubts(character_map: CharacterMap) -> list[str]:
     """Roles that most characters have and this one lacks."""
     found = []

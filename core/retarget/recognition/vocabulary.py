@@ -15,6 +15,8 @@ TRUNK_WORDS: Mapping[tuple[str, ...], Mapping[str, float]] = {
     ("hip",): {"hips": 2.0},
     ("pelvis",): {"hips": 2.8},
     ("lower", "body"): {"hips": 2.5},
+    ("lower", "torso"): {"hips": 2.5},
+    ("upper", "torso"): {"spine": 3.0},
     ("下半身",): {"hips": 2.0},
     ("腰",): {"hips": 1.5},
     ("センター",): {"hips": 1.0},
