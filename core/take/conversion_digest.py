@@ -14,7 +14,7 @@ from .description import Description
 from .methods import METHODS
 from .shoot_file import FILE_FIELDS, SETTING_FIELDS
 
-FORMAT = 1
+FORMAT = 2
 """Raised whenever the same input gives another result without a new version."""
 
 
