@@ -172,7 +172,9 @@ def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_mot
     assert len(found) == CHANNELS
     keys = found['pose.bones["hand.R"].rotation_quaternion', 1].keyframe_points
     assert [key.co.x for key in keys] == [1.0, 13.0]
-    assert len(found['pose.bones["hand.L"].rotation_quaternion', 1].keyframe_points) == len(wave_motion.time_s)
+    assert len(found['pose.bones["hand.L"].rotation_quaternion', 1].keyframe_points) == len(
+        wave_motion.time_s
+    )
 
 
 def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
