@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ...body.heading import turn_headings_rad
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
@@ -22,7 +23,7 @@ from .hands import ARM_SOFT, floor_goals, hand_goals, reach
 from .hips import LEG_SOFT, lowered_m, needed_drop_m
 from .rest_body import RestBody
 from .root_motion import root_poses, smooth_headings_rad, smooth_way
-from .stage import Stage, facings_rad, find_stage
+from .stage import Stage, find_stage
 from .turns import bone_turns, joint_places
 from .two_bone import LimbPose, reach_for
 
@@ -270,10 +271,10 @@ def _root_motion(
             none,
             None,
             (
-                f"{character.name} has no root bone apart from the hips, so the way over the ground stays on the hips",
+                f"{character.name} has no root bone apart from its hips, which keep the way over the ground",
             ),
         )
-    heading = smooth_headings_rad(facings_rad(solution.source.turn["pelvis"]), time_s)
+    heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
     rest = np.eye(4)
     rest[:3, :3] = body.stance @ character.bone(name).rest[:3, :3]
     rest[:3, 3] = character.scale * body.stance @ character.bone(name).head
