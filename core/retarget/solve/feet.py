@@ -148,7 +148,10 @@ def _rolled(
     """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
+    tip = (
+        source.start[f"foot.{side}"]
+        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
+    )
     over = tip[:, 2] - ground.height_m[:, point]
     pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
     share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)

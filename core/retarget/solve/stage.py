@@ -75,4 +75,3 @@ def source_leg_m(source: SegmentMotion) -> float:
     """Mean length of the performer's legs [m]."""
     lengths = source.body.actor.segments_m
     return 0.5 * sum(lengths[f"{part}.{side}"] for part in ("thigh", "shin") for side in "LR")
-
