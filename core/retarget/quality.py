@@ -15,11 +15,14 @@ from ..arrays import Array, BoolArray
 from ..body.skeleton import SIDES
 from .character_motion import CharacterMotion, FootRest
 
-ARM_BONES = tuple(
-    (f"{a}.{s}", f"{b}.{s}") for s in SIDES for a, b in (("upper_arm", "forearm"), ("forearm", "hand"))
-)
+
+def _both(*bones: tuple[str, str]) -> tuple[tuple[str, str], ...]:
+    return tuple((f"{start}.{side}", f"{end}.{side}") for side in SIDES for start, end in bones)
+
+
+ARM_BONES = _both(("upper_arm", "forearm"), ("forearm", "hand"))
 """Joints at the ends of the long bones of arms."""
-LEG_BONES = tuple((f"{a}.{s}", f"{b}.{s}") for s in SIDES for a, b in (("thigh", "shin"), ("shin", "foot")))
+LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))
 """Joints at the ends of the long bones of legs."""
 FULL_SHARE = 0.95
 """Share from which a hand's goal counts in full."""

@@ -24,7 +24,7 @@ from ..stance import find_stance
 SHORTEST_SHARE = 0.005
 """Least length of a long bone, as a share of the body's extent."""
 MEETING_SHARE = 0.02
-"""Distance from a tail to the nearest child's head that still counts as met, as a share of the bone's length."""
+"""Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
 
 
 @dataclass(frozen=True, eq=False)

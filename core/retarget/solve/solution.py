@@ -1,4 +1,4 @@
-"""A motion of a character on its stage while it is solved: directions, feet, hips, hands, one after another."""
+"""A character's motion on its stage while it is solved: directions, feet, hips, hands, one by one."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

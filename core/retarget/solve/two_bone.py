@@ -118,7 +118,7 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> 
 
 
 def smallest_rotation(source: Array, target: Array) -> Array:
-    """(..., 3, 3) the smallest rotations that take unit vectors to others, about any axis for opposite ones."""
+    """(..., 3, 3) the smallest rotations of unit vectors to others, about any axis for opposite ones."""
     axis = rotations.cross(source, target)
     cos = np.sum(source * target, axis=-1)[..., None, None]
     K = rotations.cross_matrix(axis)
