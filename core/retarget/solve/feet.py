@@ -14,9 +14,10 @@ from ...arrays import Array, BoolArray
 from ...body import rotations
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
+from ...body.soles import sole_offsets
 from ...finish.contacts import RELEASE_SPEED_M_S, Contact
 from .foot_shape import FootShape
-from .ground import Ground, is_rigid, sole_offsets
+from .ground import Ground, is_rigid
 from .holds import Hold, faded
 from .smoothing import ease
 from .stage import Stage
@@ -147,7 +148,10 @@ def _rolled(
     """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body, side)[1]
+    tip = (
+        source.start[f"foot.{side}"]
+        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
+    )
     over = tip[:, 2] - ground.height_m[:, point]
     pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
     share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
@@ -179,7 +183,7 @@ def _standing(turn: Array) -> Array:
 def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:
     """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
     turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
-    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body, side))
+    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
     ball = ankle + BALL_AHEAD * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, BoolArray
 from ...body import rotations
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
+from ..character_motion import HandGoal
 from .body_frames import distances_m, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
@@ -88,16 +89,6 @@ def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float])
     return np.clip(smoothed(share, source.time_s, CHANGE_S), 0.0, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class HandGoals:
-    """Where the wrists belong."""
-
-    place: Mapping[str, Array]
-    """(F, 3) by side [m]."""
-    share: Mapping[str, Array]
-    """(F,) by side: how much that counts against the directions of the arm, 0 to 1."""
-
-
 def hand_goals(
     body: RestBody,
     source: SegmentMotion,
@@ -107,8 +98,8 @@ def hand_goals(
     turns: Sequence[Array],
     alignment: Mapping[str, Array],
     arms: Mapping[str, LimbPose],
-) -> HandGoals:
-    """Where the wrists belong by the body, the floor and the other hand.
+) -> dict[str, HandGoal]:
+    """Where the wrists belong by the body, the floor and the other hand, by side.
 
     Args:
         body: The character at rest.
@@ -140,13 +131,15 @@ def hand_goals(
         height = floor_m + stage.size * (wrist[:, 2] - ground.height_m.min(axis=1))
         goal[:, 2] += nearness.floor[side] * (height - goal[:, 2])
         goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - nearness.floor[side])
-    if len(arms) < len(SIDES):
-        return HandGoals(goals, shares)
-    between = source.start["hand.R"] - source.start["hand.L"]
-    apart = _arm_ratio(body, source) * between @ stage.turn.T
-    goals = _brought_together(goals, arms, apart, nearness.together)
-    shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
-    return HandGoals(goals, shares)
+    if len(arms) == len(SIDES):
+        between = source.start["hand.R"] - source.start["hand.L"]
+        apart = _arm_ratio(body, source) * between @ stage.turn.T
+        goals = _brought_together(goals, arms, apart, nearness.together)
+        shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
+    return {
+        side: HandGoal(goals[side], shares[side], nearness.floor[side], _in_reach(arms[side], goals[side]))
+        for side in arms
+    }
 
 
 def floor_goals(
@@ -188,15 +181,15 @@ def _brought_together(
 
 def _reachable(arm: LimbPose, goal: Array) -> Array:
     way = goal - arm.start
-    length_m = float(
-        np.median(
-            np.linalg.norm(arm.middle - arm.start, axis=-1) + np.linalg.norm(arm.end - arm.middle, axis=-1)
-        )
-    )
     wanted_m = np.linalg.norm(way, axis=-1)
-    return np.asarray(
-        arm.start + unit(way) * stretched_m(wanted_m, arm.extension_m, length_m, ARM_SOFT)[:, None]
-    )
+    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT)
+    return np.asarray(arm.start + unit(way) * reached_m[:, None])
+
+
+def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
+    """(F,) whether an arm reaches a goal without resisting."""
+    wanted_m = np.linalg.norm(goal - arm.start, axis=-1)
+    return np.asarray(stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT) >= wanted_m - 1e-6)
 
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:

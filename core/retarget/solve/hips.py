@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from .smoothing import smooth_above
-from .two_bone import STRAIGHTEST
+from .two_bone import STRAIGHTEST, LimbPose
 
 LEG_SOFT = 0.985
 """Share of its length from which a leg resists being stretched."""
@@ -14,25 +14,20 @@ DEEPEST_SHARE = 0.08
 """Deepest that they go, as a share of the legs' length."""
 
 
-def needed_drop_m(
-    start: Array, goal: Array, own_m: Array, length_m: float, needed: BoolArray, soft: float = LEG_SOFT
-) -> Array:
+def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float) -> Array:
     """(F,) how much lower a limb must begin to reach its goal [m].
 
     Args:
-        start: (F, 3) hip or shoulder [m].
+        limb: The limb by the performer's directions.
         goal: (F, 3) ankle or wrist [m].
-        own_m: (F,) extension by the performer's directions [m].
-        length_m: Length of the limb.
         needed: (F,) whether the goal must be reached.
         soft: Share of its length from which the limb resists.
     """
-    allowed = np.maximum(soft, np.minimum(own_m / length_m, 1.0)) * STRAIGHTEST * length_m
-    way = goal - start
+    allowed = np.maximum(soft, np.minimum(limb.extension_m / limb.length_m, 1.0))
+    way = goal - limb.start
     aside = np.sum(way[:, :2] ** 2, axis=-1)
-    below = np.sqrt(np.maximum(allowed**2 - aside, 0.0))
-    drop = -way[:, 2] - below
-    return np.where(needed, np.maximum(drop, 0.0), 0.0)
+    below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))
+    return np.where(needed, np.maximum(-way[:, 2] - below, 0.0), 0.0)
 
 
 def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:
