@@ -25,6 +25,19 @@ from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8
 SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+CHARACTER = {
+    "file": "characters/anna.blend",
+    "object": "rig",
+    "map": "anna.json",
+    "root_motion": "in-place",
+    "place": "character",
+    "arms": "fk",
+    "legs": "both",
+    "plant_feet": False,
+    "reach_hands": True,
+    "tolerance_mm": 2.5,
+    "//": "a comment",
+}
 
 
 @dataclass(frozen=True)
@@ -76,6 +89,7 @@ def _said(take: Path) -> dict[str, Any]:
     said["markers"]["sleeve"] = {"segment": "head", "color_srgb": [1, 2, 3]}
     said["actor"]["height_m"] = 1.75
     said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
+    said["character"] = dict(CHARACTER)
     return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
 
 
@@ -89,6 +103,7 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    settings["character"] = {"file": "anna.VRM"}
     shared = {name: said[name] for name in SHARED}
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 

@@ -4,8 +4,6 @@ Both are made from a scene of their own, which exists only meanwhile: what the r
 its undo history and its window are not touched.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -21,6 +19,7 @@ from .export_formats import write_bvh
 from .fcurves import write_motion
 from .footage import clip_rate
 from .footage_to_scene import load_footage, show_footage
+from .own_scene import own_scene
 from .scene_frames import scene_frames
 
 VIEW_TRANSFORM = "Standard"
@@ -79,34 +78,3 @@ def _set_look(scene: bpy.types.Scene) -> None:
     scene.view_settings.view_transform = VIEW_TRANSFORM
     scene.world = bpy.data.worlds.new("Soft Light")
     scene.world.color = (0.8, 0.8, 0.8)
-
-
-@contextmanager
-def own_scene(name: str) -> Iterator[bpy.types.Scene]:
-    """A scene for the time being; it and everything made meanwhile is removed again."""
-    collections = [
-        getattr(bpy.data, kind)
-        for kind in (
-            "objects",
-            "meshes",
-            "armatures",
-            "cameras",
-            "materials",
-            "actions",
-            "movieclips",
-            "worlds",
-        )
-    ]
-    before = [{block.as_pointer() for block in blocks} for blocks in collections]
-    scene = bpy.data.scenes.new(name)
-    try:
-        yield scene
-    finally:
-        bpy.data.scenes.remove(scene)
-        made = [
-            block
-            for blocks, known in zip(collections, before, strict=True)
-            for block in blocks
-            if block.as_pointer() not in known
-        ]
-        bpy.data.batch_remove(made)
