@@ -98,7 +98,8 @@ def _draw_role(
         field.prop_search(entry, "bone", character.armature.data, "bones", text="", icon=icon)
         _draw_buttons(row, role, index)
     if role.doubt:
-        draw_sentence(column, context, role.doubt, "BLANK1", MOST_LINES)
+        why = role.doubt.partition(": ")[2] or role.doubt
+        draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
 
 
 def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:

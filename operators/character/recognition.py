@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError, KeymarkError
+from ...core.retarget.roles import ROLES
 from ..library.user_folder import own_folder
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
@@ -24,17 +25,30 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     if not may_be_character(armature_object):
         raise InputError(_not_a_character(armature_object))
     found = recognize(read_character(armature_object))
-    show_map(character.character_map, found.character_map)
-    show_doubts(character, found.doubts)
+    by_role = {_role_of(sentence): sentence for sentence in found.doubts}
+    show_map(character.character_map, found.character_map, by_role)
+    show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
     character.problem = ""
 
 
 def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
-    """Show what is doubtful about a character's map."""
+    """Show what is doubtful about a character's map as a whole."""
     character.doubts.clear()
     for sentence in doubts:
         line = character.doubts.add()
         line.text, line.level = sentence[:1].upper() + sentence[1:], "ERROR"
+
+
+def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
+    """All that is doubtful about a character's map, in sentences."""
+    doubted = [role.doubt for role in character.character_map.roles if role.doubt]
+    return [line.text for line in character.doubts] + doubted
+
+
+def _role_of(sentence: str) -> str:
+    """The role that a doubt is about, with whose name it begins; empty where it is about none alone."""
+    word = sentence.partition(" ")[0]
+    return word if word in ROLES else ""
 
 
 def armature_chosen(character: bpy.types.PropertyGroup) -> None:
