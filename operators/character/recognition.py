@@ -7,7 +7,7 @@ import bpy
 
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.roles import ROLES
-from ..library.user_folder import own_folder
+from ..library import user_folder
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 
@@ -18,7 +18,7 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     Raises:
         InputError: It is no character; the properties keep what they held.
     """
-    from ...core.retarget.recognition import recognize
+    from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
 
     armature_object = character.armature
@@ -84,7 +84,7 @@ def suggest_map(character: bpy.types.PropertyGroup) -> None:
 
 def map_folders() -> list[Path]:
     """Folders in which character maps are looked for: that of the user's keyframe libraries."""
-    return [own_folder()]
+    return [user_folder.own_folder()]
 
 
 def _not_a_character(armature_object: bpy.types.Object | None) -> str:
