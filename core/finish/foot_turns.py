@@ -73,10 +73,10 @@ def foot_turns(
 
 
 def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array]:
-    """Turns as of `foot_turns`, of single postures: rigid but where heel or tip would pass a floor."""
-    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.clearance_m(shins))
+    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip into the floor."""
+    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.flat_m)
     nothing = np.zeros_like(height)
-    pitch = soles.above_ground(shins.pitch, height, np.cos(shins.roll), shins)
+    pitch = soles.ahead(shins.pitch, height, np.cos(shins.roll))
     return _by_side(shins, pitch, nothing, nothing)
 
 
