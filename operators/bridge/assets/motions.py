@@ -21,7 +21,7 @@ from ..bones import bone_models, rest_matrices, usual_mode
 from ..fcurves import channel_columns
 from ..keys import add_generated_keys
 from ..object_space import AT_ORIGIN
-from ..result_files import own_scene
+from ..own_scene import own_scene
 from ..scene_frames import scene_frames
 from .asset_blend import write_asset_blend
 from .marking import AssetDetails, mark_asset

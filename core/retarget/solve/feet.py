@@ -1,0 +1,237 @@
+"""Feet: how they are turned, and where their ankles go so that resting feet stand and none is in the ground.
+
+A resting foot lies flat and stands still. Before the rest the heel stands still while the toes come down,
+after it the ball of the foot (its tip, where it has no toe bone) while the heel rises. What that changes
+fades to either side.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ...arrays import Array, BoolArray
+from ...body import rotations
+from ...body.segment_motion import SegmentMotion
+from ...body.skeleton import SIDES
+from ...body.soles import sole_offsets
+from ...finish.contacts import RELEASE_SPEED_M_S, Contact
+from .foot_shape import FootShape
+from .ground import Ground, is_rigid
+from .holds import Hold, faded
+from .smoothing import ease
+from .stage import Stage
+from .two_bone import LimbPose, smallest_rotation
+
+UP = np.array([0.0, 0.0, 1.0])
+FLAT_RAD = (np.radians(15.0), np.radians(30.0))
+"""Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
+LOW_M = (0.02, 0.10)
+"""Height of an ankle over its resting height up to which a foot without a turn of its own lies flat, and from
+which it is rigid with the shin."""
+TOUCHING_M = (0.01, 0.04)
+"""Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
+POINTING_RAD = (np.radians(3.0), np.radians(10.0))
+"""Pitch from which a foot on the ground rolls over its front, and does so in full."""
+LARGEST_CHANGE_RAD = np.radians(45.0)
+"""Largest change of a foot's pitch for a foot of another shape."""
+BALL_AHEAD = 0.62
+"""Place of the ball between ankle and tip of the performer's foot."""
+LONGEST_ROLL_S = 0.5
+STRAIGHT = 0.01
+"""What a leg's length exceeds that between its ends by, as a share, when it counts as nearly straight."""
+MOST_TOE_BEND_RAD = np.radians(75.0)
+
+
+@dataclass(frozen=True, eq=False)
+class FootPath:
+    """A foot over F frames."""
+
+    turn: Array
+    """(F, 3, 3) turn of the foot from its rest, canonical."""
+    ankle: Array
+    """(F, 3) where the ankle shall be [m]."""
+    planted: BoolArray
+    """(F,) whether the ankle must get there: the foot stands on the ground."""
+    ground_m: Array
+    """(F,) height of the ground under it [m]."""
+
+
+def foot_turns(source: SegmentMotion, stage: Stage, ground: Ground, side: str) -> Array:
+    """(F, 3, 3) turns of the performer's foot on the stage; made flat near the ground where it has none."""
+    turn = np.asarray(stage.turn @ source.turn[f"foot.{side}"])
+    if not is_rigid(source, side):
+        return turn
+    over = source.start[f"foot.{side}"][:, 2] - ground.height_m[:, SIDES.index(side)] - ground.ankle_m
+    return leveled(turn, 1.0 - ease(over, *LOW_M))
+
+
+def leveled(turn: Array, share: Array) -> Array:
+    """Turns (F, 3, 3) of feet tilted back toward flat soles by shares (F,), headings kept."""
+    tilt = rotations.logarithm(smallest_rotation(turn[..., :, 2], np.broadcast_to(UP, turn.shape[:-1])))
+    return np.asarray(rotations.exponential(share[..., None] * tilt) @ turn)
+
+
+def plan_foot(
+    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
+) -> FootPath:
+    """Plan a foot.
+
+    Args:
+        source: The performer's motion.
+        stage: Where the character performs.
+        ground: The performer's ground.
+        shape: The character's foot.
+        side: `L` or `R`.
+        leg: The leg by the performer's directions, canonical [m].
+    """
+    point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
+    ground_m = stage.heights(ground.height_m[:, point])
+    turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
+    rests = [rest for rest in ground.rests if rest.point == point]
+    stands = [_standing(turn[rest.first : rest.last + 1]) for rest in rests]
+    turning = [
+        Hold(rest.first, rotations.logarithm(stand @ np.swapaxes(turn[rest.first : rest.last + 1], -1, -2)))
+        for rest, stand in zip(rests, stands, strict=True)
+    ]
+    turn = np.asarray(rotations.exponential(faded(turning, time_s)) @ turn)
+    depth_m = sole_depth_m(turn, shape)
+    planted = np.zeros(len(time_s), dtype=bool)
+    holds = []
+    still = _still(source, ground, side)
+    for number, (rest, stand) in enumerate(zip(rests, stands, strict=True)):
+        first, last = _with_rolls(number, rests, still, time_s)
+        frames = slice(first, last + 1)
+        place = _footprint(rest, stand, turn[frames], shape, leg, first)
+        place[:, 2] = ground_m[frames] + depth_m[frames]
+        holds.append(Hold(first, place - ankle[frames]))
+        planted[frames] = True
+    path = ankle + faded(holds, time_s)
+    path[:, 2] = np.maximum(path[:, 2], ground_m + depth_m)
+    return FootPath(turn, path, planted, ground_m)
+
+
+def sole_depth_m(turn: Array, shape: FootShape) -> Array:
+    """(F,) depth of the foot's lowest point under the ankle, the toes bent up as far as they bend [m]."""
+    up = turn[:, 2]  # the world's up in the foot's axes
+    depth = -(up @ shape.foot.T).min(axis=1)
+    if shape.toe_joint is not None and len(shape.toe):
+        bend = np.full(len(turn), MOST_TOE_BEND_RAD)
+        toe = shape.toe_joint + shape.toe @ np.swapaxes(_about_x(-bend), -1, -2)
+        depth = np.maximum(depth, -(toe @ up[..., None])[..., 0].min(axis=1))
+    return np.asarray(depth)
+
+
+def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
+    """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ground demands.
+
+    Args:
+        turn: (F, 3, 3) of the foot.
+        shape: The foot, with a toe.
+        height_m: (F,) height of the ankle over the ground [m].
+    """
+    if shape.toe_joint is None or not len(shape.toe):
+        return turn
+    joint_m = height_m + turn[:, 2] @ shape.toe_joint
+    bend = np.zeros(len(turn))
+    for point in shape.toe:
+        # Height of the point over the toe joint: level + a cos(bend) + b sin(bend).
+        level, a, b = _heights(turn, point)
+        ratio = np.clip((-joint_m - level) / np.maximum(np.hypot(a, b), 1e-9), -1.0, 1.0)
+        middle = (np.arctan2(-b, a) + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi
+        bend = np.maximum(bend, middle - np.arccos(ratio))
+    bend = np.minimum(bend, MOST_TOE_BEND_RAD)
+    return np.asarray(turn @ _about_x(-bend))
+
+
+def _rolled(
+    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, height_m: Array
+) -> Array:
+    """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
+    turn = foot_turns(source, stage, ground, side)
+    point = SIDES.index(side)
+    tip = (
+        source.start[f"foot.{side}"]
+        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
+    )
+    over = tip[:, 2] - ground.height_m[:, point]
+    pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
+    share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
+    level, a, b = _heights(turn, shape.front)
+    ratio = np.clip((-height_m - level) / np.maximum(np.hypot(a, b), 1e-9), -1.0, 1.0)
+    middle = (np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi
+    change = np.clip(middle + np.arccos(ratio), -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)
+    return np.asarray(turn @ _about_x(share * change))
+
+
+def _heights(turn: Array, point: Array) -> tuple[Array, Array, Array]:
+    """l, a, b (F,): the height of a foot's point pitched by p, toes down, is l + a cos(p) + b sin(p) [m]."""
+    x, y, z = point
+    up = turn[:, 2]
+    return up[:, 0] * x, up[:, 1] * y + up[:, 2] * z, up[:, 2] * y - up[:, 1] * z
+
+
+def _about_x(angle_rad: Array) -> Array:
+    return rotations.hinge(np.array([1.0, 0.0, 0.0]), angle_rad)
+
+
+def _standing(turn: Array) -> Array:
+    """(3, 3) the turn of a foot throughout a rest: its mean, flat where it nearly is."""
+    mean = Rotation.from_matrix(turn).mean().as_matrix()
+    tilt = np.arccos(np.clip(mean[2, 2], -1.0, 1.0))
+    return np.asarray(leveled(mean[None], 1.0 - ease(np.array([tilt]), *FLAT_RAD))[0])
+
+
+def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:
+    """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
+    turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
+    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
+    ball = ankle + BALL_AHEAD * (tip - ankle)
+    ground_m = ground.height_m[:, SIDES.index(side)]
+    pitch = turn[:, 2, 1]
+    slow = [
+        np.linalg.norm(np.gradient(path, source.time_s, axis=0), axis=-1) < RELEASE_SPEED_M_S
+        for path in (heel, tip, ball)
+    ]
+    on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
+    on_front = (slow[1] | slow[2]) & (tip[:, 2] - ground_m < TOUCHING_M[1]) & (pitch >= 0.0)
+    return on_heel, on_front
+
+
+def _with_rolls(
+    number: int, rests: list[Contact], still: tuple[BoolArray, BoolArray], time_s: Array
+) -> tuple[int, int]:
+    """First and last frame of a rest together with the roll onto the sole and off it."""
+    rest = rests[number]
+    before = rests[number - 1].last if number else -1
+    after = rests[number + 1].first if number + 1 < len(rests) else len(time_s)
+    earliest = max(
+        (before + rest.first) // 2 + 1, int(np.searchsorted(time_s, time_s[rest.first] - LONGEST_ROLL_S))
+    )
+    latest = min((rest.last + after) // 2, int(np.searchsorted(time_s, time_s[rest.last] + LONGEST_ROLL_S)))
+    on_heel = still[0][earliest : rest.first][::-1]
+    on_front = still[1][rest.last + 1 : latest]
+    return rest.first - _run(on_heel), rest.last + _run(on_front)
+
+
+def _run(flags: BoolArray) -> int:
+    """How many of the first flags are set."""
+    return len(flags) if flags.all() else int(np.argmin(flags))
+
+
+def _footprint(
+    rest: Contact, stand: Array, turn: Array, shape: FootShape, leg: LimbPose, first: int
+) -> Array:
+    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant.
+
+    The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the leg is
+    nearly straight count more: there a knee bends a lot for a little way.
+    """
+    frames = slice(rest.first, rest.last + 1)
+    weight = 1.0 / (STRAIGHT + 1.0 - leg.extension_m[frames] / leg.length_m)
+    place = np.average(leg.end[frames], axis=0, weights=weight)
+    found = np.broadcast_to(place, (len(turn), 3)).copy()
+    into, out = rest.first - first, rest.last + 1 - first
+    found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel
+    found[out:] = place + stand @ shape.front - turn[out:] @ shape.front
+    return found

@@ -1,0 +1,166 @@
+"""The shape of a character's foot: its sole at rest, and the places about which it rolls."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ...body.skeleton import SIDES
+from ...body.soles import HEEL_BEHIND
+from .rest_body import RestBody
+
+TOE_ROOM = 0.05
+"""Largest height of the lowest joint or toe over the armature's origin, as a share of the leg, at which the
+origin is the ground that the character stands on."""
+ANKLE_ROOM = 0.12
+"""The same where nothing is known of the foot but its ankle."""
+TOE_THICKNESS = 0.02
+"""Height of joints at the toes over the sole, as a share of the leg."""
+ANKLE_HEIGHT = 0.08
+"""Height of the ankle over the sole, as a share of the leg: 0.039 of a stature of which the leg is 0.49
+(Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
+FOOT_AHEAD = 0.21
+"""Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells."""
+TOE_BEYOND = 0.4
+"""Length of the toes, as a share of that from ankle to ball, where no bone tells."""
+HALF_WIDTH = 0.2
+"""Half-width of a sole, as a share of the length from ankle to tip."""
+
+
+@dataclass(frozen=True, eq=False)
+class FootShape:
+    """A foot at rest, in canonical axes."""
+
+    foot: Array
+    """(N, 3) points of the sole fixed to the foot, from the ankle [m]."""
+    toe: Array
+    """(M, 3) points fixed to the toe bone, from its joint [m]; none without one."""
+    toe_joint: Array | None
+    """(3,) the toe's joint from the ankle [m]; None without one."""
+    front: Array
+    """(3,) where it rolls when the heel rises, from the ankle [m]: the ball; the tip without a toe."""
+    heel: Array
+    """(3,) where it rolls when the toes rise, from the ankle [m]."""
+
+    @property
+    def ankle_m(self) -> float:
+        """Height of the resting ankle over the ground [m]."""
+        return float(-self.foot[:, 2].min())
+
+
+def rest_floor_m(body: RestBody) -> float:
+    """Height of the ground that the resting character stands on, along canonical up [m]."""
+    soles = [point for points in body.character_map.soles.values() for point in points]
+    if soles:
+        return float((body.character.scale * np.array(soles) @ body.stance.T)[:, 2].min())
+    ankles = [body.joint(f"foot.{side}") for side in SIDES]
+    below = [point for side in SIDES for point in _beyond_ankle(body, side)]
+    lowest = float(min(point[2] for point in (*ankles, *below)))
+    room, thickness = (TOE_ROOM, TOE_THICKNESS) if below else (ANKLE_ROOM, ANKLE_HEIGHT)
+    if 0.0 <= lowest <= room * body.leg_m:
+        return 0.0
+    return lowest - thickness * body.leg_m
+
+
+def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
+    """The foot of a side, from the map's soles or from the bones.
+
+    Args:
+        body: The character at rest.
+        side: `L` or `R`.
+        floor_m: Height of the ground it stands on at rest [m].
+    """
+    ankle = body.joint(f"foot.{side}")
+    toe = body.joint(f"toe.{side}") if f"toe.{side}" in body.first else None
+    given = {
+        part: _given_sole(body, f"{part}.{side}")
+        for part in ("foot", "toe")
+        if f"{part}.{side}" in body.character_map.soles
+    }
+    if "foot" not in given:
+        given = _sole_of_bones(body, side, ankle, toe, floor_m)
+    foot = given["foot"] if toe is not None or "toe" not in given else np.concatenate(list(given.values()))
+    ahead = _ahead(foot - ankle if toe is None else (toe - ankle)[None])
+    front = foot[np.argmax((foot - ankle) @ ahead)] if toe is None else toe
+    heel = foot[np.argmin((foot - ankle) @ ahead)]
+    level = np.array([1.0, 1.0, 0.0])
+    ground = np.array([0.0, 0.0, float(foot[:, 2].min())])
+    middle = ankle + ((heel - ankle) @ ahead) * ahead
+    return FootShape(
+        foot - ankle,
+        np.empty((0, 3)) if toe is None else given.get("toe", np.empty((0, 3))) - toe,
+        None if toe is None else toe - ankle,
+        front * level + ground - ankle,
+        middle * level + ground - ankle,
+    )
+
+
+def sole_points(body: RestBody, shapes: Mapping[str, FootShape]) -> dict[str, Array]:
+    """(N, 3) by role of foot and toe: the sole at rest in the armature's space and units."""
+    found = {}
+    for side, shape in shapes.items():
+        ankle = body.joint(f"foot.{side}")
+        found[f"foot.{side}"] = ankle + shape.foot
+        if shape.toe_joint is not None and len(shape.toe):
+            found[f"toe.{side}"] = ankle + shape.toe_joint + shape.toe
+    return {role: points @ body.stance / body.character.scale for role, points in found.items()}
+
+
+def _given_sole(body: RestBody, role: str) -> Array:
+    return np.asarray(body.character.scale * np.array(body.character_map.soles[role]) @ body.stance.T)
+
+
+def _sole_of_bones(
+    body: RestBody, side: str, ankle: Array, toe: Array | None, floor_m: float
+) -> dict[str, Array]:
+    """Heel, ball and tip on the ground, inside and outside, by part."""
+    tip = _tip(body, side, ankle, toe)
+    along = (tip - ankle) * [1.0, 1.0, 0.0]
+    length = float(np.linalg.norm(along))
+    ahead = along / length
+    across = HALF_WIDTH * length * np.array([-ahead[1], ahead[0], 0.0])
+    heel = ankle - HEEL_BEHIND * length * ahead
+    ball = ankle + 0.6 * length * ahead if toe is None else toe
+    parts = {"foot": [heel + 0.7 * across, heel - 0.7 * across, ball + across, ball - across], "toe": [tip]}
+    ground = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, floor_m])
+    return {part: np.stack(points) * ground[0] + ground[1] for part, points in parts.items()}
+
+
+def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:
+    """(3,) the tip of the toes at rest [m]."""
+    if toe is not None:
+        ball = (toe - ankle) * [1.0, 1.0, 0.0]
+        tip = body.tip(f"toe.{side}")
+        if tip is not None and (tip - toe) @ ball > 0.0:
+            return tip
+        return np.asarray(toe + TOE_BEYOND * ball)
+    beyond = [point for point in _beyond_ankle(body, side) if point[1] < ankle[1]]
+    if beyond:
+        return min(beyond, key=lambda point: float(point[1]))
+    return np.asarray(ankle + FOOT_AHEAD * body.leg_m * np.array([0.0, -1.0, 0.0]))
+
+
+def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
+    """Joints below the ankle, and ends of bones where those mean something, canonical [m]."""
+    character = body.character
+    roles = [role for role in (f"foot.{side}", f"toe.{side}") if role in body.last]
+    open_ = [character.index[body.bones[body.last[role]].name] for role in roles]
+    found: list[Array] = []
+    while open_:
+        index = open_.pop()
+        bone = character.bones[index]
+        if bone.name != body.bones[body.first[f"foot.{side}"]].name:
+            found.append(bone.head)
+        if body.tails_are_meant and not character.children[index]:
+            found.append(bone.tail)
+        open_ += character.children[index]
+    return [character.scale * body.stance @ point for point in found]
+
+
+def _ahead(ways: Array) -> Array:
+    """(3,) the level direction of the way that leads farthest."""
+    level = ways * [1.0, 1.0, 0.0]
+    longest = level[np.linalg.norm(level, axis=-1).argmax()]
+    length = float(np.linalg.norm(longest))
+    return longest / length if length > 1e-6 else np.array([0.0, -1.0, 0.0])

@@ -1,0 +1,207 @@
+"""Hands: where they belong on another body, by what the performer's hands are near.
+
+The directions of the arms alone leave hands centimeters off, since shoulders are wider or narrower and arms
+longer or shorter. A hand near the own body, the other hand or the floor is brought to where it belongs, by
+as much as it is near; everywhere else the directions hold.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array, BoolArray
+from ...body import rotations
+from ...body.segment_motion import SegmentMotion
+from ...body.skeleton import SIDES
+from ..character_motion import HandGoal
+from .body_frames import distances_m, in_segment, part_shapes, places_by_part
+from .ground import Ground
+from .rest_body import RestBody
+from .smoothing import ease, smoothed
+from .stage import Stage
+from .two_bone import LimbPose, reach_for, stretched_m, unit
+
+NEAR_M = (0.03, 0.12)
+"""Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
+like the others for a performer of `OF_STATURE_M`."""
+TOGETHER_M = (0.15, 0.40)
+"""The same for the distance of the wrists from each other."""
+FLOOR_M = (0.12, 0.35)
+"""The same for the height of a wrist over the floor."""
+PASSING_M_S = (0.25, 0.75)
+"""Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
+OF_STATURE_M = 1.75
+CHANGE_S = 0.1
+"""Standard deviation in time of the smoothing of what counts how much."""
+ARM_SOFT = 0.97
+"""Share of its length from which an arm resists being stretched."""
+FULL_SHARE = 0.2
+"""Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
+ROUNDS = 4
+"""Rounds in which two hands find a place that both reach."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nearness:
+    """What the performer's hands are near, by how much (0 to 1)."""
+
+    parts: Mapping[str, Array]
+    """(K, F) by side: the parts of the body."""
+    floor: Mapping[str, Array]
+    """(F,) by side."""
+    together: Array
+    """(F,) the hands themselves."""
+
+
+def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]) -> Nearness:
+    """Find what the performer's hands are near.
+
+    Args:
+        source: The performer's motion.
+        ground: The ground.
+        segments: The parts of the body to look at.
+    """
+    parts = {}
+    for side in SIDES:
+        wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]
+        along = [wrist, 0.5 * (wrist + end), end]
+        parts[side] = np.stack([_near_part(source, name, along) for name in segments])
+    floor = {side: near_floor(source, ground, side) for side in SIDES}
+    apart_m = np.linalg.norm(source.start["hand.R"] - source.start["hand.L"], axis=-1)
+    return Nearness(parts, floor, _near(source, apart_m, TOGETHER_M))
+
+
+def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
+    """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
+    distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
+    inside = in_segment(source, segment, hand[0])
+    speed = np.linalg.norm(np.gradient(inside, source.time_s, axis=0), axis=-1)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, CHANGE_S), *PASSING_M_S)
+    return _near(source, distance_m, NEAR_M) * touching
+
+
+def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
+    """(F,) how near the performer's hand is to the floor, 0 to 1."""
+    height_m = source.start[f"hand.{side}"][:, 2] - ground.height_m.min(axis=1)
+    return _near(source, height_m, FLOOR_M)
+
+
+def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float]) -> Array:
+    unit_m = source.body.actor.stature_m / OF_STATURE_M
+    share = 1.0 - ease(distance_m / unit_m, *bounds)
+    return np.clip(smoothed(share, source.time_s, CHANGE_S), 0.0, 1.0)
+
+
+def hand_goals(
+    body: RestBody,
+    source: SegmentMotion,
+    stage: Stage,
+    ground: Ground,
+    places: Sequence[Array],
+    turns: Sequence[Array],
+    alignment: Mapping[str, Array],
+    arms: Mapping[str, LimbPose],
+) -> dict[str, HandGoal]:
+    """Where the wrists belong by the body, the floor and the other hand, by side.
+
+    Args:
+        body: The character at rest.
+        source: The performer's motion.
+        stage: Where the character performs.
+        ground: The performer's ground.
+        places: (F, 3) the joint of each of the character's bones, trunk and legs solved [m].
+        turns: (F, 3, 3) turn of each bone from its rest.
+        alignment: (3, 3) by role.
+        arms: By side, by their directions.
+    """
+    shapes = part_shapes(body, source, stage.size)
+    nearness = find_nearness(source, ground, [shape.segment for shape in shapes])
+    aligned = {
+        index: alignment[bone.role] if body.is_moved(bone.role) else np.eye(3)
+        for index, bone in enumerate(body.bones)
+    }
+    floor_m = stage.heights(ground.height_m.min(axis=1))
+    goals, shares = {}, {}
+    for side in arms:
+        wrist, own = source.start[f"hand.{side}"], arms[side].end
+        by_part = places_by_part(shapes, source, stage, places, turns, aligned, wrist)
+        weight = nearness.parts[side]
+        mean = (weight[..., None] * (by_part - own)).sum(axis=0) / np.maximum(weight.sum(axis=0), 1e-9)[
+            :, None
+        ]
+        share = 1.0 - np.prod(1.0 - weight, axis=0)
+        goal = own + share[:, None] * mean
+        height = floor_m + stage.size * (wrist[:, 2] - ground.height_m.min(axis=1))
+        goal[:, 2] += nearness.floor[side] * (height - goal[:, 2])
+        goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - nearness.floor[side])
+    if len(arms) == len(SIDES):
+        between = source.start["hand.R"] - source.start["hand.L"]
+        apart = _arm_ratio(body, source) * between @ stage.turn.T
+        goals = _brought_together(goals, arms, apart, nearness.together)
+        shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
+    return {
+        side: HandGoal(goals[side], shares[side], nearness.floor[side], _in_reach(arms[side], goals[side]))
+        for side in arms
+    }
+
+
+def floor_goals(
+    source: SegmentMotion, stage: Stage, ground: Ground, arm: LimbPose, side: str
+) -> tuple[Array, Array]:
+    """The wrist's goal (F, 3) by the floor alone [m], and how much it counts (F,)."""
+    low = ground.height_m.min(axis=1)
+    goal = arm.end.copy()
+    goal[:, 2] = stage.heights(low) + stage.size * (source.start[f"hand.{side}"][:, 2] - low)
+    return goal, near_floor(source, ground, side)
+
+
+def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
+    """An arm that reaches for a goal where that counts, and keeps its directions where not."""
+    solved = reach_for(arm, arm.start, goal, ARM_SOFT)
+    blend = ease(share, 0.0, FULL_SHARE)[:, None]
+    upper, lower = (
+        rotations.exponential(blend * rotations.logarithm(new @ np.swapaxes(old, -1, -2))) @ old
+        for new, old in ((solved.upper_turn, arm.upper_turn), (solved.lower_turn, arm.lower_turn))
+    )
+    hinge = unit(arm.hinge + blend * (solved.hinge - arm.hinge))
+    middle = arm.middle + blend * (solved.middle - arm.middle)
+    end = arm.end + blend * (solved.end - arm.end)
+    return LimbPose(upper, lower, arm.start, middle, end, hinge)
+
+
+def _brought_together(
+    goals: Mapping[str, Array], arms: Mapping[str, LimbPose], apart: Array, share: Array
+) -> dict[str, Array]:
+    """Goals of two hands at their distance from each other, about a point that both reach."""
+    found = dict(goals)
+    for _ in range(ROUNDS):
+        reached = {side: _reachable(arms[side], found[side]) for side in SIDES}
+        middle = 0.5 * (reached["L"] + reached["R"])
+        for side, sign in (("L", -0.5), ("R", 0.5)):
+            found[side] = goals[side] + share[:, None] * (middle + sign * apart - goals[side])
+    return found
+
+
+def _reachable(arm: LimbPose, goal: Array) -> Array:
+    way = goal - arm.start
+    wanted_m = np.linalg.norm(way, axis=-1)
+    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT)
+    return np.asarray(arm.start + unit(way) * reached_m[:, None])
+
+
+def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
+    """(F,) whether an arm reaches a goal without resisting."""
+    wanted_m = np.linalg.norm(goal - arm.start, axis=-1)
+    return np.asarray(stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT) >= wanted_m - 1e-6)
+
+
+def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
+    """Length of the character's arms over the performer's."""
+    lengths = source.body.actor.segments_m
+    own, other = 0.0, 0.0
+    for side in SIDES:
+        own += body.length_m(f"upper_arm.{side}", f"forearm.{side}")
+        own += body.length_m(f"forearm.{side}", f"hand.{side}")
+        other += lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"]
+    return own / other

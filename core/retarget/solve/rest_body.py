@@ -1,0 +1,205 @@
+"""A character's rest pose as its roles see it: joints in canonical axes and meters, and what carries what.
+
+Joints are the heads of bones; tails, which importers put anywhere, are not believed before they are found to
+meet the heads of children. The chain of the body is the logical one (hips, spine, neck, head; upper arm,
+forearm, hand ...), whatever the armature's hierarchy: feet that hang on a root bone follow the shins.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import Array
+from ...body.skeleton import SIDES
+from ...errors import InputError
+from ...files.json_file import shown
+from ..character import Character
+from ..character_map import CharacterMap
+from ..map_check import check_map
+from ..roles import LIMBS, MIDDLE
+from ..stance import find_stance
+
+SHORTEST_SHARE = 0.005
+"""Least length of a long bone, as a share of the body's extent."""
+MEETING_SHARE = 0.02
+"""Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
+
+
+@dataclass(frozen=True, eq=False)
+class RestBone:
+    """A bone that plays a role."""
+
+    name: str
+    role: str
+    number: int
+    """Its place in the role's chain, from 0."""
+    carrier: int
+    """Index of the bone that carries its joint; -1 for the hips."""
+    head: Array
+    """(3,) its joint, canonical [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class RestBody:
+    """The rest pose of a character's role bones."""
+
+    character: Character
+    character_map: CharacterMap
+    stance: Array
+    """(3, 3) from the armature's axes to canonical ones."""
+    bones: tuple[RestBone, ...]
+    """Carriers before what they carry; the hips first."""
+
+    @classmethod
+    def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
+        """The rest pose by a map.
+
+        Raises:
+            InputError: A required role is missing, a bone is not there, or a limb has no length.
+        """
+        check_map(character_map, character)
+        _check_single_roles(character_map)
+        stance = find_stance(character, character_map)
+        bones: list[RestBone] = []
+        for role in _order():
+            for number, name in enumerate(character_map.bones(role)):
+                carrier = _carrier(character, bones, role, name)
+                head = character.scale * stance @ character.bone(name).head
+                bones.append(RestBone(name, role, number, carrier, head))
+        body = cls(character, character_map, stance, tuple(bones))
+        body.check_limbs()
+        return body
+
+    @cached_property
+    def first(self) -> Mapping[str, int]:
+        """Index of the first bone of each role that is there."""
+        return {bone.role: index for index, bone in reversed(list(enumerate(self.bones)))}
+
+    @cached_property
+    def last(self) -> Mapping[str, int]:
+        """Index of the last bone of each role that is there."""
+        return {bone.role: index for index, bone in enumerate(self.bones)}
+
+    def joint(self, role: str) -> Array:
+        """(3,) the joint of a role that is there, canonical [m]."""
+        return self.bones[self.first[role]].head
+
+    def is_moved(self, role: str) -> bool:
+        """Whether a role is there and not left alone."""
+        return role in self.first and role not in self.character_map.left_alone
+
+    def length_m(self, role: str, below: str) -> float:
+        """Distance of two roles' joints [m]."""
+        return float(np.linalg.norm(self.joint(below) - self.joint(role)))
+
+    @cached_property
+    def leg_m(self) -> float:
+        """Mean length of the legs, hip to ankle along the bones [m]."""
+        lengths = [
+            self.length_m(f"thigh.{s}", f"shin.{s}") + self.length_m(f"shin.{s}", f"foot.{s}") for s in SIDES
+        ]
+        return float(np.mean(lengths))
+
+    @cached_property
+    def hip_joints(self) -> Array:
+        """(3,) midpoint of the hip joints [m]."""
+        return np.asarray(0.5 * (self.joint("thigh.L") + self.joint("thigh.R")))
+
+    @cached_property
+    def shoulder_joints(self) -> Array:
+        """(3,) midpoint of the shoulder joints [m]."""
+        return np.asarray(0.5 * (self.joint("upper_arm.L") + self.joint("upper_arm.R")))
+
+    @cached_property
+    def tails_are_meant(self) -> bool:
+        """Whether most bones end at a child's head, so that the tails of the others mean something too."""
+        character = self.character
+        met = [
+            min(float(np.linalg.norm(bone.tail - character.bones[child].head)) for child in children)
+            <= MEETING_SHARE * float(np.linalg.norm(bone.tail - bone.head))
+            for bone, children in zip(character.bones, character.children, strict=True)
+            if children
+        ]
+        return bool(met) and float(np.mean(met)) > 0.5
+
+    def tip(self, role: str) -> Array | None:
+        """(3,) the end of a role's last bone: the farthest head of a child, else a tail that means something.
+
+        None where neither is there.
+        """
+        if role not in self.last:
+            return None
+        index = self.character.index[self.bones[self.last[role]].name]
+        bone = self.character.bones[index]
+        scale = self.character.scale
+        ends = [self.character.bones[child].head for child in self.character.children[index]]
+        ends = [end for end in ends if np.linalg.norm(end - bone.head) * scale > SHORTEST_SHARE * self.leg_m]
+        if not ends and self.tails_are_meant:
+            ends = [bone.tail]
+        if not ends:
+            return None
+        farthest = max(ends, key=lambda end: float(np.linalg.norm(end - bone.head)))
+        return np.asarray(scale * self.stance @ farthest)
+
+    def check_limbs(self) -> None:
+        """Refuse limbs without length.
+
+        Raises:
+            InputError: Two joints of a limb lie in one place.
+        """
+        extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
+        for limb, roles in LIMBS.items():
+            there = [role for role in roles[1:] if role in self.first]
+            for role, below in zip(there, there[1:], strict=False):
+                if not self.length_m(role, below) > SHORTEST_SHARE * extent:
+                    raise InputError(
+                        f"{self.character.name}: {self.bones[self.first[role]].name} ({role}) and "
+                        f"{self.bones[self.first[below]].name} ({below}) begin at the same place; "
+                        f"the bones of {limb} must have a length"
+                    )
+
+
+def _check_single_roles(character_map: CharacterMap) -> None:
+    seen: dict[str, str] = {}
+    for role in _order():
+        for name in character_map.bones(role):
+            if name in seen:
+                raise InputError(
+                    f"character map {shown(character_map.title)} gives bone {shown(name)} for both "
+                    f"{seen[name]} and {role}; a bone plays one role"
+                )
+            seen[name] = role
+
+
+def _order() -> tuple[str, ...]:
+    return (*MIDDLE, *(role for roles in LIMBS.values() for role in roles))
+
+
+def _carrier(character: Character, bones: list[RestBone], role: str, name: str) -> int:
+    """Index of the bone that carries a joint.
+
+    Along a limb it is the one before. Where a limb or the neck begins, it is the bone of the trunk that the
+    armature hangs it on, else the upper end of what is there below it.
+    """
+    if not bones:
+        return -1
+    part, _, side = role.partition(".")
+    same_limb = [index for index, bone in enumerate(bones) if side and bone.role.endswith(f".{side}")]
+    limb = next((roles for roles in LIMBS.values() if role in roles), ())
+    inner = [index for index in same_limb if bones[index].role in limb]
+    if inner:
+        return inner[-1]
+    trunk = {bone.name: index for index, bone in enumerate(bones) if bone.role in MIDDLE}
+    if part in ("spine", "neck", "head"):
+        return len(bones) - 1
+    above = character.bone(name).parent
+    while above >= 0:
+        if character.bones[above].name in trunk:
+            return trunk[character.bones[above].name]
+        above = character.bones[above].parent
+    if part == "thigh":
+        return 0
+    spine = [index for index in trunk.values() if bones[index].role in ("hips", "spine")]
+    return spine[-1]

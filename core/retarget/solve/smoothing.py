@@ -1,0 +1,59 @@
+"""Signals over time: smoothed, eased between two bounds, and the least smooth signal above a needed one."""
+
+import numpy as np
+from scipy.ndimage import convolve1d, gaussian_filter1d, maximum_filter1d
+
+from ...arrays import Array
+from ...finish.foot_ground import smooth_step
+
+
+def ease(value: Array, start: float, end: float) -> Array:
+    """0 up to `start`, 1 from `end` on (or the other way round, where `end` is below), smooth between."""
+    return smooth_step((np.asarray(value) - start) / (end - start))
+
+
+def smoothed(values: Array, time_s: Array, deviation_s: float) -> Array:
+    """Values (F, ...) smoothed by a Gaussian in time; the ends keep their values and slopes.
+
+    Args:
+        values: (F, ...).
+        time_s: (F,) time of each frame [s].
+        deviation_s: Standard deviation of the Gaussian [s].
+    """
+    if len(values) < 3:
+        return np.array(values)
+    even, step = _evenly(time_s)
+    columns = values.reshape(len(values), -1)
+    sampled = np.stack([np.interp(even, time_s, column) for column in columns.T], axis=1)
+    # Odd extension: mirrored in time and in value about either end, so that the ends do not lag behind.
+    reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
+    before = 2.0 * sampled[0] - sampled[reach:0:-1]
+    after = 2.0 * sampled[-1] - sampled[-2 : -reach - 2 : -1]
+    extended = np.concatenate([before, sampled, after])
+    filtered = gaussian_filter1d(extended, deviation_s / step, axis=0, mode="nearest")
+    filtered = filtered[reach : reach + len(even)]
+    back = np.stack([np.interp(time_s, even, column) for column in filtered.T], axis=1)
+    return back.reshape(values.shape)
+
+
+def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
+    """A smooth signal (F,) that is nowhere below the needed one: its running maximum, smoothed.
+
+    Args:
+        needed: (F,).
+        time_s: (F,) time of each frame [s].
+        reach_s: Time over which it rises and falls to either side [s].
+    """
+    if len(needed) < 3 or not needed.any():
+        return np.array(needed)
+    step = float(np.median(np.diff(time_s)))
+    frames = max(1, int(np.ceil(reach_s / step)))
+    highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
+    window = np.hanning(2 * frames + 3)[1:-1]
+    return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
+
+
+def _evenly(time_s: Array) -> tuple[Array, float]:
+    """As many even times as there are frames, and the step between them [s]."""
+    even = np.linspace(time_s[0], time_s[-1], len(time_s))
+    return even, max(float(even[1] - even[0]), 1e-6)

@@ -1,0 +1,111 @@
+"""A performer's motion solved for a character: what its role bones do, before any control."""
+
+import numpy as np
+
+from ...arrays import Array
+from ...body.heading import turn_headings_rad
+from ...body.segment_motion import SegmentMotion
+from ...body.skeleton import SIDES
+from ...progress import Job, Progress
+from ..character import Character
+from ..character_map import CharacterMap
+from ..character_motion import CharacterMotion, Similarity
+from ..options import Placement, RetargetOptions, RootMotion
+from .alignment import rest_alignment
+from .foot_shape import foot_shape, rest_floor_m, sole_points
+from .ground import find_ground
+from .rest_body import RestBody
+from .root_motion import root_poses, smooth_headings_rad, smooth_way
+from .solution import Solution
+from .stage import find_stage
+
+
+def solve_motion(
+    character: Character,
+    character_map: CharacterMap,
+    source: SegmentMotion,
+    options: RetargetOptions,
+    object_space: Similarity,
+) -> Job[CharacterMotion]:
+    """Solve a motion for a character.
+
+    Args:
+        character: The character at rest.
+        character_map: Which of its bones play which role.
+        source: The performer's motion, F frames.
+        options: What a person chose.
+        object_space: Where the armature object stands now; it stays there with `Placement.CHARACTER`.
+
+    Yields:
+        Progress.
+
+    Returns:
+        The poses of the role bones.
+
+    Raises:
+        InputError: The map does not fit the character.
+    """
+    yield Progress("Aligning rest poses", 0.0)
+    body = RestBody.of(character, character_map)
+    alignment = rest_alignment(body)
+    floor_m = rest_floor_m(body)
+    shapes = {side: foot_shape(body, side, floor_m) for side in SIDES}
+    yield Progress("Finding where the feet rest", 0.1)
+    ground = find_ground(source, options.stray_m)
+    stand = np.array([*body.hip_joints[:2], floor_m])
+    ankle_m = float(np.mean([shape.ankle_m for shape in shapes.values()]))
+    stage = find_stage(source, ground, stand, body.leg_m, ankle_m)
+    yield Progress("Turning bones", 0.2)
+    solution = Solution.by_directions(body, alignment, source, stage, ground)
+    yield Progress("Planting feet", 0.4)
+    feet = solution.plan_feet(shapes) if options.plant_feet else {}
+    arms = solution.arms() if options.reach_hands else {}
+    solution.lower_hips(feet, arms)
+    solution.plant(feet, shapes)
+    yield Progress("Reaching with hands", 0.6)
+    hands = solution.reach_with_hands() if arms else {}
+    yield Progress("Going over the ground", 0.8)
+    way, root, notes = _root_motion(solution, options)
+    filmed = options.placement is Placement.PERFORMER
+    to_world = stage.to_world(body.stance, character.scale) if filmed else object_space
+    return CharacterMotion(
+        poses=solution.poses(way),
+        bends=solution.bends(),
+        root=root,
+        to_world=to_world,
+        rests=solution.rests(feet),
+        soles=sole_points(body, shapes),
+        size=stage.size,
+        stance=body.stance,
+        facing=to_world.rotation @ body.stance.T @ stage.turn,
+        way_m=way,
+        ground_m={f"leg.{side}": foot.ground_m for side, foot in feet.items()},
+        hands=hands,
+        notes=notes,
+    )
+
+
+def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, Array | None, tuple[str, ...]]:
+    """What is taken off the way (F, 3) [m], the root bone's poses in the armature's space, and notes."""
+    body, time_s = solution.body, solution.source.time_s
+    none = np.zeros_like(solution.hips)
+    way = smooth_way(solution.hips, time_s)
+    if options.root_motion is RootMotion.IN_PLACE:
+        return way, None, ()
+    if options.root_motion is RootMotion.AS_FILMED:
+        return none, None, ()
+    name, character = body.character_map.root, body.character
+    if name is None or name not in character.index or name in {bone.name for bone in body.bones}:
+        return (
+            none,
+            None,
+            (f"{character.name} has no root bone apart from its hips, which keep the way over the ground",),
+        )
+    heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
+    rest = np.eye(4)
+    rest[:3, :3] = body.stance @ character.bone(name).rest[:3, :3]
+    rest[:3, 3] = character.scale * body.stance @ character.bone(name).head
+    poses = root_poses(rest, solution.stage.stand, way, heading)
+    poses[:, :3, :3] = body.stance.T @ poses[:, :3, :3]
+    poses[:, :3, 3] = poses[:, :3, 3] @ body.stance / character.scale
+    return none, poses, ()

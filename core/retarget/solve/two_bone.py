@@ -1,0 +1,150 @@
+"""Two-bone inverse kinematics: a limb's joints for a goal of its end, and how far a limb stretches.
+
+The limb bends in the plane of its own hinge, whose axis the performer's limb has at every moment, straight or
+bent: no direction is guessed from a nearly straight limb, so that nothing flips.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ...body import rotations
+
+SOFT = 0.97
+"""Share of its length from which a limb resists being stretched further by a goal."""
+STRAIGHTEST = 0.9999
+"""Largest extension as a share of a limb's length; beyond it the bend would have no direction left."""
+LEAST_M = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class LimbPose:
+    """The two long bones of a limb over F frames."""
+
+    upper_turn: Array
+    """(F, 3, 3) turn of the upper bone from its aligned rest."""
+    lower_turn: Array
+    """(F, 3, 3)."""
+    start: Array
+    """(F, 3) hip or shoulder joint [m]."""
+    middle: Array
+    """(F, 3) knee or elbow [m]."""
+    end: Array
+    """(F, 3) ankle or wrist [m]."""
+    hinge: Array
+    """(F, 3) unit axis about which it bends."""
+
+    @property
+    def extension_m(self) -> Array:
+        """(F,) distance of its ends [m]."""
+        return np.asarray(np.linalg.norm(self.end - self.start, axis=-1))
+
+    @property
+    def upper_m(self) -> float:
+        """Length of the upper bone [m]."""
+        return float(np.median(np.linalg.norm(self.middle - self.start, axis=-1)))
+
+    @property
+    def lower_m(self) -> float:
+        """Length of the lower bone [m]."""
+        return float(np.median(np.linalg.norm(self.end - self.middle, axis=-1)))
+
+    @property
+    def length_m(self) -> float:
+        """Length of both bones [m]."""
+        return self.upper_m + self.lower_m
+
+    @property
+    def bend(self) -> Array:
+        """(F, 3) unit direction from the line through its ends toward knee or elbow, bent or straight."""
+        line = unit(self.end - self.start)
+        across = self.hinge - np.sum(self.hinge * line, axis=-1, keepdims=True) * line
+        return unit(rotations.cross(line, across))
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors (..., 3) made one long."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
+
+
+def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SOFT) -> Array:
+    """(F,) extension that a limb takes on for a goal, smooth where the goal goes out of reach [m].
+
+    Args:
+        wanted_m: (F,) distance of the goal.
+        own_m: (F,) extension of the limb without a goal: as far as that it follows without resistance.
+        length_m: Length of the limb.
+        soft: Share of its length from which it resists.
+    """
+    limit = STRAIGHTEST * length_m
+    free = soft * limit
+    room = limit - free
+    resisted = limit - room * np.exp(-np.maximum(wanted_m - free, 0.0) / room)
+    softly = np.where(wanted_m > free, resisted, wanted_m)
+    return np.asarray(np.maximum(softly, np.minimum(np.minimum(wanted_m, own_m), limit)))
+
+
+def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> LimbPose:
+    """The limb with its end at a goal, or as near to it as it stretches.
+
+    Args:
+        limb: The limb as the performer's directions give it.
+        start: (F, 3) where its hip or shoulder is now [m].
+        goal: (F, 3) of ankle or wrist [m].
+        soft: Share of its length from which it resists being stretched.
+    """
+    upper_m, lower_m = limb.upper_m, limb.lower_m
+    way = goal - start
+    wanted_m = np.linalg.norm(way, axis=-1)
+    distance = stretched_m(wanted_m, limb.extension_m, upper_m + lower_m, soft)
+    distance = np.maximum(distance, abs(upper_m - lower_m) + LEAST_M)
+    old = unit(limb.end - limb.start)
+    line = np.where(wanted_m[:, None] > LEAST_M, unit(way), old)
+    hinge = unit(_carried(old, line, limb.hinge))
+    out = rotations.cross(line, hinge)
+    along = (upper_m**2 - lower_m**2 + distance**2) / (2.0 * distance)
+    aside = np.sqrt(np.maximum(upper_m**2 - along**2, 0.0))
+    middle = start + along[:, None] * line + aside[:, None] * out
+    end = start + distance[:, None] * line
+    return LimbPose(
+        _redirected(limb.upper_turn, limb.middle - limb.start, limb.hinge, middle - start, hinge),
+        _redirected(limb.lower_turn, limb.end - limb.middle, limb.hinge, end - middle, hinge),
+        start,
+        middle,
+        end,
+        hinge,
+    )
+
+
+def smallest_rotation(source: Array, target: Array) -> Array:
+    """(..., 3, 3) the smallest rotations of unit vectors to others, about any axis for opposite ones."""
+    axis = rotations.cross(source, target)
+    cos = np.sum(source * target, axis=-1)[..., None, None]
+    K = rotations.cross_matrix(axis)
+    smallest = np.eye(3) + K + K @ K / np.maximum(1.0 + cos, 1e-9)
+    if np.all(cos > -1.0 + 1e-9):
+        return np.asarray(smallest)
+    across = np.where(np.abs(source[..., :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    half = unit(rotations.cross(source, across))
+    about = 2.0 * half[..., :, None] * half[..., None, :] - np.eye(3)
+    return np.asarray(np.where(cos > -1.0 + 1e-9, smallest, about))
+
+
+def _carried(old: Array, new: Array, axis: Array) -> Array:
+    """Axes (F, 3) turned as the lines they are across were turned, and across the new ones again."""
+    turned = (smallest_rotation(old, new) @ axis[..., None])[..., 0]
+    return np.asarray(turned - np.sum(turned * new, axis=-1, keepdims=True) * new)
+
+
+def _redirected(turn: Array, old: Array, old_hinge: Array, new: Array, new_hinge: Array) -> Array:
+    """Turns of a bone whose direction and hinge became others."""
+    before, after = _frame(old, old_hinge), _frame(new, new_hinge)
+    return np.asarray(after @ np.swapaxes(before, -1, -2) @ turn)
+
+
+def _frame(direction: Array, hinge: Array) -> Array:
+    """(F, 3, 3) axes of a bone as columns: along it, about it, across both."""
+    along = unit(direction)
+    about = unit(hinge - np.sum(hinge * along, axis=-1, keepdims=True) * along)
+    return np.stack([along, about, rotations.cross(along, about)], axis=-1)
