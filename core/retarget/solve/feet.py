@@ -32,8 +32,11 @@ LOW_M = (0.02, 0.10)
 which it is rigid with the shin."""
 TOUCHING_M = (0.01, 0.04)
 """Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
-POINTING_RAD = (np.radians(3.0), np.radians(10.0))
-"""Pitch from which a foot on the ground rolls over its front, and does so in full."""
+SLIDING_M_S = (0.4, 1.2)
+"""Speed of the tip up to which the foot rolls over it, and from which it swings over the ground."""
+LARGEST_ROLL_RAD = np.radians(20.0)
+"""Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
+rises higher than that front allows leaves the ground with it."""
 LARGEST_CHANGE_RAD = np.radians(45.0)
 """Largest change of a foot's pitch for a foot of another shape."""
 BALL_AHEAD = 0.62
@@ -154,15 +157,12 @@ def _rolled(
     """
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = (
-        source.start[f"foot.{side}"]
-        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
-    )
-    over = tip[:, 2] - ground.height_m[:, point]
-    pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
-    share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
-    rolled = _pitches_to_ground(turn, shape.front, height_m, toes=1.0)
-    change = share * np.clip(rolled, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)
+    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
+    speed = np.linalg.norm(np.gradient(tip, source.time_s, axis=0), axis=-1)
+    touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
+    touching *= 1.0 - ease(speed, *SLIDING_M_S)
+    rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
+    change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
     in_front = [point for point in shape.foot if point[1] < 0.0]
     behind = [point for point in shape.foot if point[1] >= 0.0]
     most = np.minimum.reduce([_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front])
