@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from _character_maps import full_map
+from _character_maps import full_map, full_record
 from _libraries import small_library
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.retarget.character_map_file import map_to_json, read_character_map
+from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery.take_list import read_take_list
 from keymark.core.take.clip_check import check_in_front
@@ -25,6 +26,19 @@ from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8
 SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+CHARACTER = {
+    "file": "characters/anna.blend",
+    "object": "rig",
+    "map": "anna.json",
+    "root_motion": "in-place",
+    "place": "character",
+    "arms": "fk",
+    "legs": "both",
+    "plant_feet": False,
+    "reach_hands": True,
+    "tolerance_mm": 2.5,
+    "//": "a comment",
+}
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,11 @@ def formats(folder: Path) -> dict[str, Format]:
             "conversion", _record(), _plain(folder, "conversion.json", lambda path: read_record(path.parent))
         ),
         Format(
+            "retarget",
+            record_to_json(full_record()),
+            _plain(folder, "retarget.json", lambda path: read_retarget_record(path.parent)),
+        ),
+        Format(
             "truth",
             _read(take / "truth.json"),
             _plain(folder, "truth.json", lambda p: read_truth(p, 1, FRAMES)),
@@ -76,6 +95,7 @@ def _said(take: Path) -> dict[str, Any]:
     said["markers"]["sleeve"] = {"segment": "head", "color_srgb": [1, 2, 3]}
     said["actor"]["height_m"] = 1.75
     said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
+    said["character"] = dict(CHARACTER)
     return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
 
 
@@ -89,6 +109,7 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    settings["character"] = {"file": "anna.VRM"}
     shared = {name: said[name] for name in SHARED}
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from .contacts import NEIGHBORHOOD_S, Contact
+from .foot_pitch import Shins, Soles
 
 SETTLING_S = 0.1
 """Time from the beginning of a rest until the foot lies, and from when it begins to roll off to its end."""
@@ -34,20 +35,19 @@ class FootGround:
     """(F, 2) how far it rests on its toes, 0 to 1."""
 
 
-def find_ground(ankles: Array, clearance_m: Array, time_s: Array, contacts: Sequence[Contact]) -> FootGround:
+def find_ground(shins: Shins, soles: Soles, time_s: Array, contacts: Sequence[Contact]) -> FootGround:
     """Find the ground under both feet.
 
     Args:
-        ankles: (F, 2, 3) left and right ankle [m].
-        clearance_m: (F, 2) least height of an ankle above the ground [m].
+        shins: The shins in F frames.
+        soles: The soles under them.
         time_s: (F,) time of each frame [s].
         contacts: Rests of the ankles, 0 the left and 1 the right.
     """
-    beneath = ankles[..., 2] - clearance_m
-    shape = beneath.shape
+    beneath = shins.ankle[..., 2] - soles.clearance_m(shins)
     own = [float(beneath[c.first : c.last + 1, c.point].mean()) for c in contacts]
     levels = [_floor(index, contacts, own) for index in range(len(contacts))]
-    resting, on_toes = np.zeros(shape), np.zeros(shape)
+    resting, on_toes = np.zeros_like(beneath), np.zeros_like(beneath)
     for contact, level, flat in zip(contacts, levels, own, strict=True):
         rows = slice(contact.first, contact.last + 1)
         weight = resting if flat - level < NOISE_M else on_toes

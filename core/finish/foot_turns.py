@@ -2,23 +2,20 @@
 
 The skeleton's feet are rigid with the shins. Here each is turned about its ankle: it follows the shin as far
 as the ground and the ankle's range let it, so that it comes down on its heel, lies flat, rolls over its tip
-as the heel rises, and hangs once it is high. Heading comes from the shin, but for a resting foot's, which
-stays.
+as the heel rises, and hangs once it is high. Its heading is the shin's, but that a resting foot stays.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array
-from ..body.kinematics import Body, Pose
 from ..body.rotations import hinge
 from ..body.skeleton import SIDES
 from .contacts import Contact
-from .foot_ground import FootGround, find_ground, smooth_step
-from .foot_pitch import TOES_DOWN_RAD, TOES_UP_RAD, Soles
+from .foot_ground import FootGround, smooth_step
+from .foot_pitch import Shins, Soles
+from .joint_speed import steadied
 
 HANGING_RAD = np.radians(20.0)
 """Plantarflexion of a foot that hangs free, well above the ground; near it the toes are kept up."""
@@ -29,79 +26,71 @@ SWING_CLEARANCE_M = 0.013
 STANDS_M_S, SWINGS_M_S = 1.0, 2.5
 """Speeds of the ankle below which no clearance is kept, and above which all of it."""
 STILL_M_S, LOW_M = 0.2, 0.04
-"""Speed and height above a flat foot's at which a foot that does not rest counts as standing by half: it
-sways, or slides."""
+"""Speed, and height above a flat foot's, at which a foot that does not rest, because it sways or slides, is
+held flat by half."""
 SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)
-"""Eversion and inversion (AAOS 1965)."""
+"""Eversion and inversion (AAOS 1965, *Joint Motion*)."""
 LEVEL_WITHIN_M = 0.1
 """Height above a flat foot's at which its sole is no longer held level across."""
-UPRIGHT_RAD = np.radians(35.0), np.radians(60.0)
+LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)
 """Leans of a shin to its side from which on, and at which, the ground no longer turns its foot."""
-FREE_HEADING_RAD = np.radians(15.0)
-"""A resting foot keeps its heading while the shin turns by no more than this above it."""
-SMOOTHING_S = 0.03
-FASTEST_RAD_S = np.radians(700.0)
-"""Angular speed of an ankle: that of a sprinter's push-off."""
+FREE_HEADING_RAD = np.radians(25.0)
+"""A resting foot keeps its heading while the shin above it turns by no more than this."""
+FADE_S = 0.2
+"""Time in which a resting foot's heading comes and goes."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Shins:
-    """Orientation of both shins as Rz(heading) Ry(roll) Rx(pitch), each (F, 2), and their ankles."""
-
-    rotation: Array
-    """(F, 2, 3, 3)."""
-    heading: Array
-    roll: Array
-    pitch: Array
-    ankle: Array
-    """(F, 2, 3) [m]."""
-
-
-def foot_turns(body: Body, pose: Pose, time_s: Array, contacts: Sequence[Contact]) -> dict[str, Array]:
+def foot_turns(
+    shins: Shins, soles: Soles, ground: FootGround, time_s: Array, contacts: Sequence[Contact]
+) -> dict[str, Array]:
     """(F, 3, 3) turn of each foot in its shin's frame, by name of segment.
 
     Args:
-        body: The body.
-        pose: Its poses in F frames.
+        shins: The shins in F frames.
+        soles: The soles under them.
+        ground: The ground under them.
         time_s: (F,) time of each frame [s].
         contacts: Rests of the ankles, 0 the left and 1 the right.
     """
-    shins, soles = _shins(body, pose), Soles.of(body)
-    upright = 1.0 - smooth_step((np.abs(shins.roll) - UPRIGHT_RAD[0]) / (UPRIGHT_RAD[1] - UPRIGHT_RAD[0]))
-    ground = find_ground(shins.ankle, soles.clearance_m(shins.pitch), time_s, contacts)
+    upright = _upright(shins)
     height = shins.ankle[..., 2] - ground.height_m
-    flat = soles.depth_m(np.zeros(2), np.ones(2))
+    above = height - soles.flat_m
     speed = _speed(shins.ankle, time_s)
-    standing = ground.resting + (1.0 - ground.resting) * _still(speed, height - flat)
-    # Across, the sole is level where it is near the ground, as far as the joint lets it.
-    near = np.maximum(ground.resting, 1.0 - smooth_step((height - flat) / LEVEL_WITHIN_M)) * upright
-    leveling = -near * _within_range(shins.roll)
+    near = np.maximum(ground.resting, 1.0 - smooth_step(above / LEVEL_WITHIN_M))
+    leveling = -upright * near * _within_range(shins.roll)
+    swing = smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
+    lifted = np.maximum(height - SWING_CLEARANCE_M * swing, 0.0)
+    pitch = soles.above_ground(
+        _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
+    )
+    standing = ground.resting + (1.0 - ground.resting) * _still(speed, above)
+    pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
+    turned = upright * _held_heading(shins, contacts, time_s)
+    steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
+    flexion, leveling, turned = np.moveaxis(steady, 1, 0)
     level = np.cos(shins.roll + leveling)
-    free = shins.pitch + HANGING_RAD * smooth_step(
-        (height - flat - HANGING_FROM_M) / (HANGING_AT_M - HANGING_FROM_M)
-    )
-    free += ground.on_toes * np.maximum(soles.on_tiptoe(height) - free, 0.0)
-    low, high = shins.pitch - TOES_UP_RAD, shins.pitch + TOES_DOWN_RAD
-    lifted = height - SWING_CLEARANCE_M * smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
-    wanted = soles.above_ground(np.clip(free, low, high), np.maximum(lifted, 0.0), level, shins.pitch)
-    wanted += standing * upright * (np.clip(0.0, low, high) - wanted)
-    turned = _held_heading(shins, contacts, ground) * upright
-    bent = _smoothed(np.stack([wanted - shins.pitch, leveling, turned]), time_s)
-    pitch = soles.above_ground(shins.pitch + bent[0], height, np.cos(shins.roll + bent[1]), shins.pitch)
-    turns = _turns(shins, pitch, bent[1], bent[2])
-    return {f"foot.{side}": turns[:, number] for number, side in enumerate(SIDES)}
+    return _by_side(shins, soles.above_ground(shins.pitch + flexion, height, level, shins), leveling, turned)
 
 
-def _shins(body: Body, pose: Pose) -> _Shins:
-    feet = [next(s for s in body.skeleton.segments if s.name == f"foot.{side}") for side in SIDES]
-    rotation = np.stack([pose.rotation[:, foot.joint] for foot in feet], axis=1)
-    return _Shins(
-        rotation,
-        np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]),
-        -np.arcsin(np.clip(rotation[..., 2, 0], -1.0, 1.0)),
-        np.arctan2(rotation[..., 2, 1], rotation[..., 2, 2]),
-        np.stack([pose.place(foot.joint, body.local(foot.start)) for foot in feet], axis=1),
-    )
+def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array]:
+    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip into the floor."""
+    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.flat_m)
+    nothing = np.zeros_like(height)
+    pitch = soles.ahead(shins.pitch, height, np.cos(shins.roll))
+    return _by_side(shins, pitch, nothing, nothing)
+
+
+def _upright(shins: Shins) -> Array:
+    """(F, 2) 1 for shins that stand, 0 for those that lie on their sides."""
+    return 1.0 - smooth_step((np.abs(shins.roll) - LEANING_RAD) / (LYING_RAD - LEANING_RAD))
+
+
+def _free_pitch(shins: Shins, soles: Soles, ground: FootGround, height: Array) -> Array:
+    """(F, 2) pitch of feet that no ground is in the way of, within the ankle's range."""
+    above = (height - soles.flat_m - HANGING_FROM_M) / (HANGING_AT_M - HANGING_FROM_M)
+    pitch = shins.pitch + HANGING_RAD * smooth_step(above)
+    pitch += ground.on_toes * np.maximum(soles.on_toes(height) - pitch, 0.0)
+    return np.clip(pitch, shins.lowest_pitch, shins.highest_pitch)
 
 
 def _speed(places: Array, time_s: Array) -> Array:
@@ -117,53 +106,39 @@ def _still(speed: Array, above: Array) -> Array:
 
 
 def _within_range(roll: Array) -> Array:
-    """(F, 2) rolls by which the joints can counter those of the shins."""
-    # A positive roll lowers the left foot's outer edge; countering it turns the sole outwards.
+    """(F, 2) the rolls of shins as far as the ankles can counter them."""
+    # A positive roll lowers the left foot's outer edge; countering it turns the sole outward.
     out = np.array([1.0, -1.0])
     return np.asarray(out * np.clip(out * roll, -SOLE_IN_RAD, SOLE_OUT_RAD))
 
 
-def _held_heading(shins: _Shins, contacts: Sequence[Contact], ground: FootGround) -> Array:
+def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> Array:
     """(F, 2) turns about the vertical that keep resting feet's headings."""
-    turned = np.zeros_like(shins.heading)
+    turned, weight = np.zeros_like(shins.heading), np.zeros_like(shins.heading)
     for contact in contacts:
-        rows, foot = slice(contact.first, contact.last + 1), contact.point
-        heading = np.unwrap(shins.heading[rows, foot])
-        middle = 0.5 * (heading.min() + heading.max())
-        weight = np.maximum(ground.resting, ground.on_toes)[rows, foot]
-        turned[rows, foot] = weight * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
-    return turned
+        foot, rows = contact.point, slice(contact.first, contact.last + 1)
+        heading = np.unwrap(shins.heading[:, foot])
+        middle = 0.5 * (heading[rows].min() + heading[rows].max())
+        apart = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
+        near = 1.0 - smooth_step(apart / FADE_S)
+        turned[:, foot] += near * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
+        weight[:, foot] += near
+    # Two rests that follow closely share the time between them.
+    return np.asarray(turned / np.maximum(weight, 1.0))
 
 
-def _smoothed(angles: Array, time_s: Array) -> Array:
-    """Angles (..., F, 2) without what a joint cannot do: leaps, and a tremor from frame to frame."""
-    if len(time_s) < 2:
-        return angles
-    frame_s = max(float(np.median(np.diff(time_s))), 1e-6)
-    slower = _limited(angles, time_s)
-    return np.asarray(gaussian_filter1d(slower, SMOOTHING_S / frame_s, axis=-2, mode="nearest", truncate=3.0))
+def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict[str, Array]:
+    """(F, 3, 3) turn of each foot in its shin's frame.
 
-
-def _limited(angles: Array, time_s: Array) -> Array:
-    """Angles (..., F, 2) whose speed is within that of a joint; those that are anyway stay as they are.
-
-    The mean of the lowest curve above and the highest below that are slow enough.
+    Args:
+        shins: The shins.
+        pitch: (F, 2) the feet's pitches.
+        leveling: (F, 2) by how much their rolls differ from the shins'.
+        turned: (F, 2) by how much their headings do.
     """
-    above, below = angles.copy(), angles.copy()
-    step = FASTEST_RAD_S * np.diff(time_s)
-    for frame in range(1, len(time_s)):
-        above[..., frame, :] = np.maximum(above[..., frame, :], above[..., frame - 1, :] - step[frame - 1])
-        below[..., frame, :] = np.minimum(below[..., frame, :], below[..., frame - 1, :] + step[frame - 1])
-    for frame in range(len(time_s) - 2, -1, -1):
-        above[..., frame, :] = np.maximum(above[..., frame, :], above[..., frame + 1, :] - step[frame])
-        below[..., frame, :] = np.minimum(below[..., frame, :], below[..., frame + 1, :] + step[frame])
-    return np.asarray(0.5 * (above + below))
-
-
-def _turns(shins: _Shins, pitch: Array, leveling: Array, turned: Array) -> Array:
-    """(F, 2, 3, 3) the feet's turns in the shins' frames."""
     x, y, z = np.eye(3)
     # The shin's own pitch and roll are undone before the foot's are done: where the shin lies on its side and
     # its pitch means nothing, only the difference counts.
     undone = hinge(x, -shins.pitch) @ hinge(y, -shins.roll) @ hinge(z, turned)
-    return np.asarray(undone @ hinge(y, shins.roll + leveling) @ hinge(x, pitch))
+    turns = undone @ hinge(y, shins.roll + leveling) @ hinge(x, pitch)
+    return {f"foot.{side}": turns[:, number] for number, side in enumerate(SIDES)}

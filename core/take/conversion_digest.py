@@ -9,12 +9,13 @@ from typing import Any
 from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..footage.clips.image_sequence import find_images
+from .character_settings import CharacterSettings
 from .conversion_settings import ConversionSettings
 from .description import Description
 from .methods import METHODS
 from .shoot_file import FILE_FIELDS, SETTING_FIELDS
 
-FORMAT = 1
+FORMAT = 2
 """Raised whenever the same input gives another result without a new version."""
 
 
@@ -24,6 +25,7 @@ def conversion_digest(
     libraries: Sequence[str],
     output: Path,
     version: str,
+    maps: Sequence[str] = (),
 ) -> str:
     """A digest that changes with every input of a conversion, and with nothing else.
 
@@ -35,6 +37,7 @@ def conversion_digest(
         libraries: Digests of the libraries to match with.
         output: The folder of the results: a .blend holds the relative path from there to its clip.
         version: Keymark's version.
+        maps: Digests of the character maps that may be used, where there is a character.
 
     Raises:
         InputError: A file cannot be read.
@@ -59,7 +62,15 @@ def conversion_digest(
         settings.floor_m if libraries else None,
         settings.method or METHODS[0],
         settings.pictures is not False,
+        None if settings.character is None else (_character(settings.character), tuple(maps)),
     )
+
+
+def _character(character: CharacterSettings) -> tuple[str, str | None, str, str]:
+    """The character file's name and content, the armature, and the options."""
+    file = character.file
+    options = json.dumps(character.options.to_json(), sort_keys=True)
+    return (file.path.name, file.object, content_digest(file.path), options)
 
 
 def _take_fields(fields: Mapping[str, Any]) -> str:

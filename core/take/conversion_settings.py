@@ -1,4 +1,4 @@
-"""Settings of a conversion: keyframes, library, floor, method, pictures."""
+"""Settings of a conversion: keyframes, library, floor, method, pictures, character."""
 
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -8,6 +8,7 @@ from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
 from ..files.safe_path import safe_path
+from .character_settings import CharacterSettings, read_character_settings
 from .methods import METHODS
 
 HIGHEST_FLOOR_M = 1000.0
@@ -30,6 +31,8 @@ class ConversionSettings:
     """`map` (the default), `ekf` or `interpolation`."""
     pictures: bool | None = None
     """Whether to draw the report; by default it is drawn."""
+    character: CharacterSettings | None = None
+    """The character that gets the motion too; None for none."""
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""
@@ -72,7 +75,9 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
         keyframes = safe_path(
             description, "keyframes", folders[description.source_of("keyframes")], KEYFRAMES_VALID
         )
-    return ConversionSettings(keyframes, _library(description, folders), floor_m, method, pictures)
+    library = _library(description, folders)
+    character = read_character_settings(description, folders)
+    return ConversionSettings(keyframes, library, floor_m, method, pictures, character)
 
 
 def _library(description: Fields, folders: dict[str, Path]) -> str | None:

@@ -93,6 +93,9 @@ def describe(
     used = [*files, clip, keyframes, *_linked_images(clip)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
+    if settings.character is not None:
+        map_file = settings.character.map_file
+        used += [settings.character.file.path, *([] if map_file is None else [map_file])]
     check_symlinks(used, [files[0].parent if shared else folder, folder])
     return Description(
         path=path,

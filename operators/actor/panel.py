@@ -2,7 +2,9 @@
 
 import bpy
 
-from ..shell.panel import TakePanel
+from ..bridge.actor_bones import is_actor
+from ..shell.messages import label
+from ..shell.panel import TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .properties import MIDDLE, SIDED, length_property
 
@@ -23,6 +25,9 @@ class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.separator()
         column.prop(take, "armature")
+        if take.armature is not None and not is_actor(take.armature):
+            sentence = label("This is no actor of Keymark's; choose it in the step Character instead")
+            draw_sentence(column, context, sentence, "ERROR")
 
 
 class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):

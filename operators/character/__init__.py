@@ -1,4 +1,20 @@
 """Step 8, the character: the motion given to any other armature."""
 
-PROPERTIES = ()
-MODULES = ()
+PROPERTIES = ("map_properties", "properties")
+MODULES = (
+    "add_character",
+    "remove_character",
+    "make_override",
+    "recognize_character",
+    "use_active_bone",
+    "pick_bone",
+    "chain_bones",
+    "mirror_roles",
+    "save_map",
+    "load_map",
+    "retarget",
+    "show_result",
+    "remove_result",
+    "mark_result_asset",
+    "panel",
+)

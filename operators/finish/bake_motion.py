@@ -9,6 +9,7 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
+from ..shell.outdated import finished_again
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, actor_of, take_by_identifier
 
@@ -62,6 +63,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         settings.keys_after = finished.write(armature_object, take.motion_action, settings.action)
         settings.keys_before, settings.outdated = finished.keys_before, False
         settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
+        finished_again(take)
         assign_action(armature_object, settings.action)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for template, values in finished.notes:

@@ -2,12 +2,11 @@
 
 import bpy
 
-from ..bridge.assets.catalogs import catalog_file, ensure_catalog
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say, warn_if_outdated
-from ..shell.redraw import refresh_asset_browsers
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
+from .asset_details import mark_motion_asset
 
 
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
@@ -19,17 +18,10 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add the catalog to its file, then mark the Action."""
-        from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
-
+        """Mark the Action, with the details in the panel."""
         take = active_take(context.scene)
-        settings, action = take.finish, take.finish.action or take.motion_action
-        picture = action_picture(context.scene, take.armature, action)
-        catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
-        tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
-        details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
-        mark_asset(action, details, picture)
-        refresh_asset_browsers(context)
+        action = take.finish.action or take.motion_action
+        mark_motion_asset(context, take, action, action)
         warn_if_outdated(self, take)
         say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
 

@@ -9,6 +9,7 @@ from ...core.estimate.reconstruct import Reconstruction
 from ...core.review.review import Review
 from ..bridge.fcurves import write_motion
 from ..review.review_results import show_review
+from ..shell.outdated import reconstructed_again
 from ..shell.results import keep_reading, keep_reconstruction, keep_review
 from ..shell.takes import actor_of, take_by_identifier
 
@@ -40,7 +41,7 @@ class ReconstructionResult:
             self.frames,
         )
         take.motion_action.use_fake_user = True
-        take.finish.outdated = take.finish.action is not None
+        reconstructed_again(take)
         keep_reading(take, self.reconstruction.reading)
         keep_reconstruction(take, self.reconstruction)
         keep_review(take, self.review)

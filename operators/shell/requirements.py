@@ -4,8 +4,10 @@ from collections.abc import Callable
 
 import bpy
 
+from ..bridge.actor_bones import is_actor
 from .job_progress import job_is_running
 from .keyed_frames import invalidate_keyed_frames, keyframes_of
+from .messages import label
 from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context], str | None]
@@ -29,6 +31,11 @@ def actor(context: bpy.types.Context) -> str | None:
     armature_object = take.armature if take else None
     if armature_object is None or armature_object.name not in context.scene.objects:
         return "Build the actor first, or choose its armature"
+    if not is_actor(armature_object):
+        return label(
+            "'{name}' is no actor of Keymark's; build the actor, and choose '{name}' in the step Character",
+            name=armature_object.name,
+        )
     if armature_object.library is not None:
         return "The actor is linked; make a library override of it first (Object > Library Override)"
     return None

@@ -34,4 +34,8 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: review, then finish"
     if take.finish.outdated:
         return "Next: review, then bake again"
+    if any(result.outdated for character in take.characters for result in character.results):
+        return "Next: retarget the character again"
+    if not any(result.action for character in take.characters for result in character.results):
+        return "Next: a character, or export"
     return "Next: mark as asset, or export"

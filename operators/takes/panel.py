@@ -17,6 +17,7 @@ STEPS = (
     ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
     ("OVERLAY", "Review: see where another keyframe helps"),
     ("CHECKMARK", "Finish: bake, mark as asset, export"),
+    ("COMMUNITY", "Character: give the motion to your own rig"),
 )
 """Icon and label of each step."""
 BUTTON_SCALE = 1.6

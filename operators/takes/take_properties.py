@@ -7,6 +7,8 @@ import bpy
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths
+from ..bridge.actor_bones import is_actor
+from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
 from ..footage.properties import KEYMARK_PG_clip_state
 from ..footage.take_footage import camera_chosen, clip_chosen
@@ -23,8 +25,8 @@ METHODS = (
 )
 
 
-def _is_armature(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return bool(candidate.type == "ARMATURE")
+def _is_actor(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return is_actor(candidate)
 
 
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -99,9 +101,9 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
         name="Actor",
-        description="The performer's armature",
+        description="The performer's armature, as Keymark builds it; other characters come in the last step",
         type=bpy.types.Object,
-        poll=_is_armature,
+        poll=_is_actor,
         update=_armature_chosen,
     )
     stature: bpy.props.FloatProperty(
@@ -154,6 +156,10 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     review: bpy.props.PointerProperty(type=KEYMARK_PG_review)
     finish: bpy.props.PointerProperty(type=KEYMARK_PG_finish)
+    characters: bpy.props.CollectionProperty(type=KEYMARK_PG_character)
+    active_character: bpy.props.IntProperty(
+        name="Active Character", description="The character that is chosen in the list", default=0, min=0
+    )
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import bpy
 
+from ....core.finish.natural_extremities import natural_extremities
 from ....core.report.thumbnail import thumbnail
 from ....core.take.motion import Motion
 from ..actions import assign_action, new_channelbag
@@ -20,7 +21,7 @@ from ..bones import bone_models, rest_matrices, usual_mode
 from ..fcurves import channel_columns
 from ..keys import add_generated_keys
 from ..object_space import AT_ORIGIN
-from ..result_files import own_scene
+from ..own_scene import own_scene
 from ..scene_frames import scene_frames
 from .asset_blend import write_asset_blend
 from .marking import AssetDetails, mark_asset
@@ -48,7 +49,8 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     models = bone_models(body)
     modes = {model.name: usual_mode(skeleton, model) for model in models}
     frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
-    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture)
+    extremities = natural_extremities(body, motion.posture, motion.time_s)
+    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture, extremities)
     for path, index, bone, column in channel_columns(channels, modes.__getitem__):
         add_generated_keys(channelbag, path, index, bone, frames, column)
     action.use_frame_range = True

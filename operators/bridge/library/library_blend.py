@@ -11,13 +11,12 @@ from ....core.errors import InputError
 from ....core.library.library import Library
 from ....core.library.library_fields import MOST_POSTURES
 from ..assets.asset_blend import write_asset_blend
+from ..blend_reader import check_blend
 from ..blend_writer import one_line
 from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
 """Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
-BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
-"""First bytes of .blend files: plain, Zstandard and gzip."""
 
 
 def write_library_blend(
@@ -54,7 +53,7 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
     Raises:
         InputError: The file is not a .blend, damaged or too large, or has no library.
     """
-    _check_file(path)
+    check_blend(path, "a library", LARGEST_BYTES)
     with _loaded_actions(path) as actions:
         libraries = library_from_assets(actions)
     if not libraries:
@@ -62,22 +61,6 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
             f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
         )
     return libraries
-
-
-def _check_file(path: Path) -> None:
-    try:
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            magic = file.read(8)
-    except OSError as error:
-        reason = error.strerror or error
-        raise InputError(f"{path}: cannot be read ({reason}); it must be a .blend") from error
-    if size > LARGEST_BYTES:
-        raise InputError(
-            f"{path}: has {size / 2**20:.0f} MiB; a .blend of a library has at most {LARGEST_BYTES >> 20} MiB"
-        )
-    if not magic.startswith(BLEND_MAGIC):
-        raise InputError(f"{path}: is no .blend; it begins as none does")
 
 
 @contextmanager

@@ -17,7 +17,10 @@ from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
 from referencing import Registry, Resource
 
-NAMES = ("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "truth")
+NAMES = (
+    *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
+    "truth",
+)
 
 
 @pytest.fixture(scope="module")
@@ -164,6 +167,12 @@ MISTAKES: list[tuple[str, Change]] = [
     ("take", at("markers", "trunk", "color_srgb", to=[1, 2])),
     ("take", at("actor", "segments_m", "tail", to=0.3)),
     ("take", at("method", to="magic")),
+    ("take", at("character", "file", to="../anna.blend")),
+    ("take", at("character", "file", to="anna.obj")),
+    ("take", at("character", "arms", to="bone")),
+    ("take", at("character", "plant_feet", to=1)),
+    ("take", at("character", "tolerance_mm", to=-1)),
+    ("take", at("character", "bones", to=[])),
     ("take", at("keyframes", to="/etc/passwd")),
     ("keyframes", at("keyframes", 0, "frame", to=1.5)),
     ("keyframes", at("keyframes", 0, "points", "head", to=[0, 1])),
@@ -203,6 +212,12 @@ MISTAKES: list[tuple[str, Change]] = [
     ("conversion", at("files", "../up", to="ab" * 32)),
     ("conversion", at("files", "a", to="ab")),
     ("conversion", at("confidence", to=1.5)),
+    ("retarget", at("quality", "hands_mm", to="1")),
+    ("retarget", at("map", "origin", to="guessed")),
+    ("retarget", at("limbs", "arm.L", to="none")),
+    ("retarget", at("roles", "hips", "bones", to=[])),
+    ("retarget", at("files", "../up", to="ab" * 32)),
+    ("retarget", at("character", "sha256", to="x")),
     ("truth", at("points", "head", 0, to=[0, None, 1])),
 ]
 

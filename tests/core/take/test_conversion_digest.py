@@ -26,11 +26,17 @@ def shoot(pristine: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
-def digest(shoot: Path, libraries: tuple[str, ...] = (), version: str = "1", **chosen: Any) -> str:
+def digest(
+    shoot: Path,
+    libraries: tuple[str, ...] = (),
+    version: str = "1",
+    maps: tuple[str, ...] = (),
+    **chosen: Any,
+) -> str:
     """The digest for the shoot's clip."""
     description = describe(shoot / "day1" / "take01.mp4")
     settings = effective_settings(description, ConversionSettings(**chosen))
-    return conversion_digest(description, settings, libraries, shoot.parent / "out", version)
+    return conversion_digest(description, settings, libraries, shoot.parent / "out", version, maps)
 
 
 def edit(name: str, **fields: Any) -> Callable[[Path], None]:
@@ -107,3 +113,26 @@ def test_fields_without_effect_do_not_change_it(shoot: Path) -> None:
     edit("shoot.json", method="map", floor_m=0.5)(shoot)
     edit("day1/take01.take.json", **{"$schema": "take.schema.json", "schema_version": 1})(shoot)
     assert digest(shoot) == before
+
+
+def test_a_character_counts_by_content_map_and_options(shoot: Path) -> None:
+    """Each makes a digest of its own; a map without a character has no effect, nor have defaults."""
+    before = digest(shoot)
+    assert digest(shoot, maps=("a",)) == before
+    (shoot / "anna.blend").write_bytes(b"BLENDER")
+    digests = [before]
+    for character in (
+        {"file": "anna.blend"},
+        {"file": "anna.blend", "object": "rig"},
+        {"file": "anna.blend", "legs": "fk"},
+        {"file": "anna.blend", "tolerance_mm": 0},
+    ):
+        edit("shoot.json", character=character)(shoot)
+        digests.append(digest(shoot))
+    edit("shoot.json", character={"file": "anna.blend"})(shoot)
+    digests += [digest(shoot, maps=("a",)), digest(shoot, maps=("a", "b"))]
+    (shoot / "anna.blend").write_bytes(b"BLENDER2")
+    digests.append(digest(shoot))
+    assert len(set(digests)) == len(digests)
+    edit("shoot.json", character={"file": "anna.blend", "legs": "both", "map": None, "//": "x"})(shoot)
+    assert digest(shoot) == digests[-1]

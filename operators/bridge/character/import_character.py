@@ -1,0 +1,198 @@
+"""Import a character from a file: its armature, the meshes that this moves, and all that both need."""
+
+import shutil
+import tempfile
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from ....core.errors import InputError
+from ....core.files.fields import listed
+from ....core.files.json_file import shown
+from ....core.files.paths import real_path
+from ....core.files.regular_file import regular_file_size
+from ....core.take.character_settings import CharacterFile
+from ..blend_reader import check_blend
+from ..blend_writer import one_line
+from ..own_scene import showing_scene
+
+MOST_NAMED = 5
+"""Armatures named in a sentence."""
+BLEND, VRM = ".blend", ".vrm"
+NOT_ALONG = ("ARMATURE", "CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE")
+"""Kinds of objects that do not belong to a character because a constraint ties them to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImportedCharacter:
+    """A character in a scene."""
+
+    file: CharacterFile
+    armature: bpy.types.Object
+    objects: tuple[bpy.types.Object, ...]
+    """All that is in the scene, the armature among them."""
+    texts: tuple[bpy.types.Text, ...] = ()
+    """Scripts of its file that Blender registers when a person opens it, as Rigify's panel; not run here."""
+    notes: tuple[str, ...] = ()
+    """What a person should know, in sentences without a full stop."""
+
+
+def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCharacter:
+    """Import a character into a scene of its own (see `own_scene`), which removes it again.
+
+    Of a .blend objects are appended; nothing in it is run. Other files are read by Blender's own importers,
+    without their motions. The objects get a collection with the armature's name.
+
+    Args:
+        file: The file, and the armature where it has several.
+        scene: An empty scene.
+
+    Raises:
+        InputError: Blender cannot read the file, it has no such armature or none at all, or several and none
+            is named.
+    """
+    regular_file_size(file.path, "a character file")
+    suffix = file.path.suffix.lower()
+    if suffix == BLEND:
+        found, texts = _appended(file)
+    else:
+        found, texts = _imported(file, scene), ()
+    armature = _chosen(file, found)
+    members = _members(armature, found.values())
+    notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
+    _into_collection(scene, armature.name, members)
+    armature.hide_viewport = False  # else Blender would not evaluate it
+    scene.view_layers[0].update()
+    return ImportedCharacter(file, armature, tuple(members), texts, notes)
+
+
+def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]:
+    """All objects of a .blend by their names there, and its scripts."""
+    check_blend(file.path, "a character")
+    try:
+        with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
+            names = list(inside.objects)
+            wanted.objects = list(names)
+            wanted.texts = list(inside.texts)
+    except (OSError, RuntimeError, UnicodeDecodeError) as error:
+        raise _unreadable(file.path, error) from error
+    objects = {name: one for name, one in zip(names, wanted.objects, strict=True) if one is not None}
+    return objects, tuple(text for text in wanted.texts if text is not None and text.use_module)
+
+
+def _imported(file: CharacterFile, scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
+    """The objects that an importer makes of a file, by their names there."""
+    before = {one.name for one in bpy.data.objects}
+    with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
+        path = real_path(file.path)
+        if path.suffix.lower() == VRM:  # a GLB under another name
+            path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
+        try:
+            _run_importer(path)
+        except (RuntimeError, AttributeError, OSError) as error:
+            raise _unreadable(file.path, error) from error
+    return {_name_in_file(one.name, before): one for one in scene.objects}
+
+
+def _run_importer(path: Path) -> None:
+    if path.suffix.lower() == ".fbx":
+        bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
+    else:
+        bpy.ops.import_scene.gltf(filepath=str(path))
+
+
+def _name_in_file(name: str, taken: Iterable[str]) -> str:
+    """An imported object's name without the number that it got because the name was taken."""
+    stem, _, number = name.rpartition(".")
+    return stem if number.isdigit() and stem in taken else name
+
+
+def _unreadable(path: Path, error: Exception) -> InputError:
+    lines = [line for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
+    reason = one_line(RuntimeError(lines[-1] if lines else str(error))).removeprefix("Error: ")
+    return InputError(
+        f"{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off"
+    )
+
+
+def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.types.Object:
+    """The named armature, else the only one."""
+    armatures = {name: one for name, one in found.items() if one.type == "ARMATURE"}
+    names = listed(map(shown, sorted(armatures)), MOST_NAMED)
+    if not armatures:
+        raise InputError(
+            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves"
+        )
+    if file.object is not None:
+        if file.object not in armatures:
+            what = "is no armature" if file.object in found else "is not in it"
+            raise InputError(f"{file.path}: {shown(file.object)} {what}; its armatures are {names}")
+        return armatures[file.object]
+    if len(armatures) > 1:
+        example = CharacterFile(file.path, min(armatures))
+        raise InputError(f"{file.path}: holds {len(armatures)} armatures, {names}; name one, as in {example}")
+    return next(iter(armatures.values()))
+
+
+def _members(armature: bpy.types.Object, found: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """The armature, what hangs on it or is deformed by it, and the objects that these need."""
+    objects = list(found)
+    members = {armature, *armature.children_recursive}
+    members |= {one for one in objects if _is_moved_by(one, armature)}
+    for one in list(members):
+        members.update(one.children_recursive)
+    users = bpy.data.user_map(subset=objects)
+    shapes = {bone.custom_shape for one in members if one.type == "ARMATURE" for bone in one.pose.bones}
+    growing = True
+    while growing:
+        needed = {one for one in objects if one not in members | shapes and users.get(one, set()) & members}
+        growing = bool(needed)
+        members |= needed
+    return [one for one in objects if one in members]
+
+
+def _is_moved_by(one: bpy.types.Object, armature: bpy.types.Object) -> bool:
+    if any(getattr(modifier, "object", None) == armature for modifier in one.modifiers):
+        return True
+    targets = [getattr(constraint, "target", None) for constraint in one.constraints]
+    return one.type not in NOT_ALONG and armature in targets
+
+
+def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
+    """Mute what would play below the new motion; the note says so."""
+    tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
+    playing = [track for track in tracks if not track.mute]
+    for track in playing:
+        track.mute = True
+    names = listed((shown(track.name) for track in playing), MOST_NAMED)
+    return (f"NLA tracks of '{armature.name}' are muted in the copy: {names}",) if playing else ()
+
+
+def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:
+    """Take away the motions of an exchange file, and the pose that they leave."""
+    for one in members:
+        one.animation_data_clear()
+        keys = getattr(one.data, "shape_keys", None)
+        if keys is not None:
+            keys.animation_data_clear()
+    for bone in armature.pose.bones:
+        bone.matrix_basis.identity()
+    return ()
+
+
+def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.types.Object]) -> None:
+    """Link the members, and nothing else, to a new collection of the scene."""
+    collection = bpy.data.collections.new(name)
+    scene.collection.children.link(collection)
+    for one in list(scene.objects):
+        for holder in (scene.collection, *scene.collection.children_recursive):
+            with suppress(RuntimeError):
+                holder.objects.unlink(one)
+    for one in members:
+        collection.objects.link(one)
+    for other in list(scene.collection.children):
+        if other != collection:
+            scene.collection.children.unlink(other)

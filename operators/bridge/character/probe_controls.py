@@ -1,0 +1,163 @@
+"""Find out how a character's controls act: pose them at random for a moment, and see what moves what."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ....core.arrays import Array
+from ....core.retarget.character_map import CharacterMap
+from ....core.retarget.control_channels import Control, ordered_controls
+from ....core.retarget.control_plan import ControlKind, PlannedControl
+from ....core.retarget.control_spaces import PosedControls, find_spaces
+from ....core.retarget.control_targets import PoleSetting
+from ....core.retarget.rigid_offset import rigid_offset
+from .posing import Property, posing, read_poses, set_channels, set_properties
+from .probe_ik import try_inverse_kinematics
+
+SEED = 4
+STILL, MOVED = 3, 4
+"""Poses at random, without and with locations."""
+TURN_STD_RAD = 0.4
+MOVE_SHARE = 0.1
+"""Standard deviation of random locations, in sizes of the character."""
+DISPLACED = 1e-5
+"""Location of a control that counts as one, in sizes of the character."""
+FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
+"""Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
+NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
+"""Turn, and distance in sizes, by which a bone may fail to follow its control before a note is made."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProbedControls:
+    """A character's controls, and how the bones with roles follow them."""
+
+    controls: tuple[Control, ...]
+    """Those that turn or carry others first."""
+    offsets: Mapping[str, Array]
+    """(4, 4) by control the pose of its bone in its own axes."""
+    poles: Mapping[str, PoleSetting]
+    """By pole where it belongs."""
+    size: float
+    """The character's, in the armature's units."""
+    notes: tuple[str, ...]
+
+
+def probe_controls(
+    armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
+) -> ProbedControls:
+    """How the planned controls act; afterwards everything is as it was.
+
+    Args:
+        armature_object: A character that `require_character` accepts.
+        character_map: Its map; settings and switches are set as the motion will have them.
+        planned: The controls.
+    """
+    size = character_size(armature_object, character_map)
+    in_fk, in_ik = (shown_properties(character_map, ik=ik) for ik in (False, True))
+    displaced = _displaced(armature_object, planned, size)
+    modes = [armature_object.pose.bones[control.name].rotation_mode for control in planned]
+    with posing(armature_object, list(in_fk)):
+        set_properties(armature_object, in_fk)
+        posed, bones = _random_poses(armature_object, planned, size)
+        spaces = find_spaces(posed)
+        controls = [
+            Control(plan, mode, space, plan.kind is not ControlKind.POLE, plan.name in displaced)
+            for plan, mode, space in zip(planned, modes, spaces, strict=True)
+        ]
+        ordered = ordered_controls(controls)
+        offsets, notes = _fk_offsets(armature_object, posed, bones, planned, size)
+        ik = try_inverse_kinematics(armature_object, character_map, ordered, size, in_ik)
+    notes = (*_loose(controls, size), *notes, *ik.notes)
+    return ProbedControls(ordered, offsets | dict(ik.offsets), ik.poles, size, notes)
+
+
+def character_size(armature_object: bpy.types.Object, character_map: CharacterMap) -> float:
+    """Largest extent of the bones with roles at rest, in the armature's units."""
+    bones = armature_object.data.bones
+    names = [name for role in character_map.roles for name in character_map.bones(role)]
+    heads = np.array([bones[name].head_local for name in names], dtype=np.float64)
+    return float(np.ptp(heads, axis=0).max())
+
+
+def shown_properties(character_map: CharacterMap, ik: bool) -> dict[Property, float | int | bool]:
+    """The map's settings, and its switches to IK or FK."""
+    values = {(setting.bone, setting.property): setting.value for setting in character_map.settings}
+    for controls in character_map.ik.values():
+        if controls.switch is not None:
+            switch = controls.switch
+            values[switch.bone, switch.property] = switch.ik if ik else switch.fk
+    return values
+
+
+def _displaced(armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float) -> set[str]:
+    """The controls that have a location now."""
+    bones = armature_object.pose.bones
+    return {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
+
+
+def _random_poses(
+    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
+) -> tuple[PosedControls, Array]:
+    """The controls in random poses, and the poses (S, C, 4, 4) of their bones."""
+    rng = np.random.default_rng(SEED)
+    names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
+    channels, poses = [], []
+    for sample in range(STILL + MOVED):
+        matrices = np.tile(np.eye(4), (len(names), 1, 1))
+        matrices[:, :3, :3] = Rotation.from_rotvec(rng.normal(0.0, TURN_STD_RAD, (len(names), 3))).as_matrix()
+        if sample >= STILL:
+            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (len(names), 3))
+        set_channels(armature_object, dict(zip(names, matrices, strict=True)))
+        own, pose = read_poses(armature_object, [*names, *bones])
+        channels.append(own[: len(names)])
+        poses.append(pose)
+    both = np.array(poses)
+    return PosedControls(np.array(channels), both[:, : len(names)], STILL), both[:, len(names) :]
+
+
+def _fk_offsets(
+    armature_object: bpy.types.Object,
+    posed: PosedControls,
+    bones: Array,
+    planned: Sequence[PlannedControl],
+    size: float,
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """How the bones follow their controls while all limbs show FK."""
+    offsets, notes = {}, []
+    for index, plan in enumerate(planned):
+        if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
+            continue
+        # Locations of other controls may stretch what lies between: only the first poses count.
+        offset, turn_rad, distance = rigid_offset(
+            posed.poses[: posed.still, index], bones[: posed.still, index]
+        )
+        if turn_rad > FOLLOWS_RAD or distance > FOLLOWS * size:
+            offset = _offset_at_rest(armature_object, plan)
+        offsets[plan.name] = offset
+        if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
+            notes.append(
+                f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
+            )
+    return offsets, tuple(notes)
+
+
+def _offset_at_rest(armature_object: bpy.types.Object, plan: PlannedControl) -> Array:
+    """(4, 4) the rest pose of a control's bone in the control's own axes."""
+    control, bone = (
+        np.array(armature_object.data.bones[name].matrix_local, dtype=np.float64)
+        for name in (plan.name, plan.bone)
+    )
+    return np.linalg.inv(control) @ bone
+
+
+def _loose(controls: Sequence[Control], size: float) -> list[str]:
+    """Sentences on controls whose channels do not act in a space of their own."""
+    return [
+        f"Control '{control.name}' is also moved by something that is not keyed; its poses may be off"
+        for control in controls
+        if control.turns and control.space.residual_rad > NOTICEABLE_RAD
+    ]

@@ -1,0 +1,110 @@
+"""Write a retargeted motion into an Action; of what is there, only what an earlier retargeting made goes."""
+
+import json
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ....core.arrays import Array
+from ....core.finish.hermite import Spline
+from ..actions import assign_action, channelbag_for
+from ..fcurves import bone_path
+from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
+from ..rotation_modes import ALL_PATHS
+from .channel_notes import driven_channels, keyed_channels
+
+if TYPE_CHECKING:
+    from .retarget import Retargeted
+
+MADE_BY_KEYMARK = "keymark_retargeted"
+"""Custom property of an Action: which curves of which slot retargeting made, as JSON."""
+OBJECT_GROUP = "Object Transforms"
+"""Blender's own name for the group of an object's channels."""
+
+
+def write_retargeted(
+    retargeted: "Retargeted",
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action | str,
+) -> bpy.types.Action:
+    """Write as `Retargeted.write` says."""
+    if isinstance(action, str):
+        action = bpy.data.actions.new(action)
+    channelbag = channelbag_for(action, armature_object)
+    _remove_made(action, channelbag)
+    _remove_channels(channelbag, [keyed.control.name for keyed in retargeted.keyed])
+    driven = driven_channels(armature_object)
+    frames = retargeted.frames
+    made: list[tuple[str, int]] = []
+    for keyed in retargeted.keyed:
+        for column, (path, index) in enumerate(keyed_channels(keyed)):
+            if (path, index) in driven:
+                continue
+            fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
+            held = keyed.values
+            if isinstance(held, Spline):
+                write_smooth_keys(fcurve, frames[held.keys], held.values[:, column], held.slopes[:, column])
+            else:
+                write_linear_keys(fcurve, frames, held[:, column])
+            made.append((path, index))
+    for (bone, name), value in retargeted.properties.items():
+        path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(name)}"]'
+        made.append(_write_first(channelbag, path, 0, bone, frames, float(value)))
+    for path, values in retargeted.placement:
+        for index, value in enumerate(values):
+            made.append(_write_first(channelbag, path, index, OBJECT_GROUP, frames, float(value)))
+    _remember_made(action, channelbag, made)
+    action.use_fake_user = True
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
+    assign_action(armature_object, action)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    return action
+
+
+def _write_first(
+    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, value: float
+) -> tuple[str, int]:
+    """Key a property at the first frame alone, which holds for all."""
+    fcurve = ensure_fcurve(channelbag, path, index, group)
+    write_linear_keys(fcurve, frames[:1], np.array([value]))
+    return path, index
+
+
+def _remove_made(action: bpy.types.Action, channelbag: bpy.types.ActionChannelbag) -> None:
+    """Remove the curves that an earlier retargeting made in a slot."""
+    for path, index in _made(action).get(channelbag.slot.identifier, []):
+        fcurve = channelbag.fcurves.find(path, index=index)
+        if fcurve is not None:
+            channelbag.fcurves.remove(fcurve)
+
+
+def _remove_channels(channelbag: bpy.types.ActionChannelbag, bones: Iterable[str]) -> None:
+    """Remove curves, of whatever rotation mode, of the bones that are to be keyed."""
+    paths = {bone_path(bone, channel) for bone in bones for channel in (*ALL_PATHS, "location")}
+    for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in paths]:
+        channelbag.fcurves.remove(fcurve)
+
+
+def _remember_made(
+    action: bpy.types.Action, channelbag: bpy.types.ActionChannelbag, made: list[tuple[str, int]]
+) -> None:
+    action[MADE_BY_KEYMARK] = json.dumps(_made(action) | {channelbag.slot.identifier: made})
+
+
+def _made(action: bpy.types.Action) -> dict[str, list[tuple[str, int]]]:
+    """Data paths and indices by slot; none where the property is not Keymark's."""
+    try:
+        value = json.loads(action.get(MADE_BY_KEYMARK, "{}"))
+    except (TypeError, ValueError):
+        return {}
+    if not isinstance(value, dict):
+        return {}
+    return {
+        slot: [(str(path), int(index)) for path, index in curves]
+        for slot, curves in value.items()
+        if isinstance(curves, list) and all(isinstance(one, list) and len(one) == 2 for one in curves)
+    }

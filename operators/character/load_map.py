@@ -1,0 +1,75 @@
+"""Load a character's map from a file."""
+
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator
+from ..shell.messages import say
+from ..shell.requirements import idle
+from .characters import active_character
+from .map_conversion import show_map
+from .recognition import map_folders, show_doubts
+from .requirements import armature
+
+
+class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
+    """Load which bones play which role from a file, instead of what was recognized"""
+
+    bl_idname = "keymark.load_map"
+    bl_label = "Load Map"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (armature, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="A character map",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    title: bpy.props.StringProperty(
+        name="Title",
+        description="Title of a map in your library folder, instead of a file",
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Return the tooltip: of the map at hand, or of the file browser."""
+        if properties.title:
+            return "Use this map from your library folder, which names this armature's bones"
+        return "Load which bones play which role from a file, instead of what was recognized"
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file, in the user's own folder, unless a map is named."""
+        if self.filepath or self.title:
+            return self.execute(context)
+        self.filepath = f"{map_folders()[0]}/"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the whole map and hold it against the armature, and only then show it."""
+        from ...core.retarget.map_check import check_map
+        from ...core.retarget.map_registry import find_map
+        from ..bridge.character.read_character import read_character
+
+        if not (self.filepath or self.title):
+            raise InputError("no map is named to load; give filepath or title")
+        character = active_character(context.scene)
+        named = Path(bpy.path.abspath(self.filepath)) if self.filepath else self.title
+        found = find_map(named, map_folders())
+        character_map = found.character_map
+        if character_map is None:
+            raise InputError(found.problem)
+        check_map(character_map, read_character(character.armature), str(found.path))
+        show_map(character.character_map, character_map)
+        show_doubts(character)
+        character.problem = character.suggested = ""
+        say(self, "INFO", "Loaded '{title}'", title=character_map.title)
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_map,))

@@ -1,0 +1,90 @@
+"""Requirements of the step's operators: what the chosen character lacks, as a tooltip."""
+
+import bpy
+
+from ..bridge.character.read_character import needs_override
+from ..shell.messages import label
+from ..shell.takes import active_take, find_take
+from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
+from .source_motion import missing_source
+
+
+def take(context: bpy.types.Context) -> str | None:
+    """The scene has a take."""
+    return None if find_take(context.scene) is not None else "Load the footage or open a take first"
+
+
+def character(context: bpy.types.Context) -> str | None:
+    """A character is chosen."""
+    return None if find_character(context.scene) is not None else "Add a character first"
+
+
+def armature(context: bpy.types.Context) -> str | None:
+    """The chosen character has an armature, in this scene."""
+    chosen = find_character(context.scene)
+    if chosen is None:
+        return character(context)
+    if chosen.armature is None:
+        return "Choose the character's armature first"
+    if chosen.armature.type != "ARMATURE":
+        return label("'{name}' is no armature; choose the character's", name=chosen.armature.name)
+    return None
+
+
+def editable(context: bpy.types.Context) -> str | None:
+    """The chosen character is in the scene and can be animated."""
+    unmet = armature(context)
+    if unmet is not None:
+        return unmet
+    chosen = active_character(context.scene).armature
+    if needs_override(chosen):
+        return label("'{name}' is linked; make a library override of it first", name=chosen.name)
+    if chosen.name not in context.scene.objects:
+        return label("'{name}' is not in this scene; add it, or choose another armature", name=chosen.name)
+    return None
+
+
+def recognized(context: bpy.types.Context) -> str | None:
+    """The chosen character's bones have their roles, and are there."""
+    unmet = armature(context)
+    if unmet is not None:
+        return unmet
+    chosen = active_character(context.scene)
+    if not len(chosen.character_map.roles):
+        return "Recognize the character's bones first"
+    missing = [full_title(role) for role in missing_roles(chosen)]
+    if missing:
+        return label("Choose the bones of {roles} first", roles=few(missing))
+    lost = lost_bones(chosen)
+    if lost:
+        return label(
+            "'{name}' has no bone {bones} any more; recognize its bones again, or choose others",
+            name=chosen.armature.name,
+            bones=few([f"'{bone}'" for bone in lost]),
+        )
+    return None
+
+
+def source(context: bpy.types.Context) -> str | None:
+    """There is a motion for the character to perform."""
+    chosen = find_character(context.scene)
+    return character(context) if chosen is None else missing_source(active_take(context.scene), chosen)
+
+
+def result(context: bpy.types.Context) -> str | None:
+    """The chosen character has a result."""
+    chosen = find_character(context.scene)
+    if chosen is None:
+        return character(context)
+    made = any(each.action is not None for each in chosen.results)
+    return None if made else "Retarget the motion first"
+
+
+def active_bone(context: bpy.types.Context) -> str | None:
+    """A bone of the chosen character is active."""
+    unmet = armature(context)
+    if unmet is not None:
+        return unmet
+    if active_character(context.scene).armature.data.bones.active is None:
+        return "Make a bone of the character active first: click on it in Pose Mode"
+    return None
