@@ -14,13 +14,14 @@ from ...arrays import Array, BoolArray
 from ...body import rotations
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
+from ...body.soles import sole_offsets
 from ...finish.contacts import RELEASE_SPEED_M_S, Contact
 from .foot_shape import FootShape
-from .ground import Ground, is_rigid, sole_offsets
+from .ground import Ground, is_rigid
 from .holds import Hold, faded
 from .smoothing import ease
 from .stage import Stage
-from .two_bone import smallest_rotation
+from .two_bone import LimbPose, smallest_rotation
 
 UP = np.array([0.0, 0.0, 1.0])
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
@@ -37,6 +38,8 @@ LARGEST_CHANGE_RAD = np.radians(45.0)
 BALL_AHEAD = 0.62
 """Place of the ball between ankle and tip of the performer's foot."""
 LONGEST_ROLL_S = 0.5
+STRAIGHT = 0.01
+"""What a leg's length exceeds that between its ends by, as a share, when it counts as nearly straight."""
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
 
@@ -70,7 +73,7 @@ def leveled(turn: Array, share: Array) -> Array:
 
 
 def plan_foot(
-    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, ankle: Array
+    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
 ) -> FootPath:
     """Plan a foot.
 
@@ -80,9 +83,9 @@ def plan_foot(
         ground: The performer's ground.
         shape: The character's foot.
         side: `L` or `R`.
-        ankle: (F, 3) where the directions of the leg put the ankle, canonical [m].
+        leg: The leg by the performer's directions, canonical [m].
     """
-    point, time_s = SIDES.index(side), source.time_s
+    point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
     ground_m = stage.heights(ground.height_m[:, point])
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
@@ -99,7 +102,7 @@ def plan_foot(
     for number, (rest, stand) in enumerate(zip(rests, stands, strict=True)):
         first, last = _with_rolls(number, rests, still, time_s)
         frames = slice(first, last + 1)
-        place = _footprint(rest, stand, turn[frames], shape, ankle, first)
+        place = _footprint(rest, stand, turn[frames], shape, leg, first)
         place[:, 2] = ground_m[frames] + depth_m[frames]
         holds.append(Hold(first, place - ankle[frames]))
         planted[frames] = True
@@ -147,7 +150,10 @@ def _rolled(
     """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body, side)[1]
+    tip = (
+        source.start[f"foot.{side}"]
+        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
+    )
     over = tip[:, 2] - ground.height_m[:, point]
     pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
     share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
@@ -179,7 +185,7 @@ def _standing(turn: Array) -> Array:
 def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:
     """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
     turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
-    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body, side))
+    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
     ball = ankle + BALL_AHEAD * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
@@ -213,9 +219,17 @@ def _run(flags: BoolArray) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 
-def _footprint(rest: Contact, stand: Array, turn: Array, shape: FootShape, ankle: Array, first: int) -> Array:
-    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant."""
-    place = ankle[rest.first : rest.last + 1].mean(axis=0)
+def _footprint(
+    rest: Contact, stand: Array, turn: Array, shape: FootShape, leg: LimbPose, first: int
+) -> Array:
+    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant.
+
+    The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the leg is
+    nearly straight count more: there a knee bends a lot for a little way.
+    """
+    frames = slice(rest.first, rest.last + 1)
+    weight = 1.0 / (STRAIGHT + 1.0 - leg.extension_m[frames] / leg.length_m)
+    place = np.average(leg.end[frames], axis=0, weights=weight)
     found = np.broadcast_to(place, (len(turn), 3)).copy()
     into, out = rest.first - first, rest.last + 1 - first
     found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel

@@ -4,12 +4,12 @@ import numpy as np
 from scipy.ndimage import convolve1d, gaussian_filter1d, maximum_filter1d
 
 from ...arrays import Array
+from ...finish.foot_ground import smooth_step
 
 
 def ease(value: Array, start: float, end: float) -> Array:
     """0 up to `start`, 1 from `end` on (or the other way round, where `end` is below), smooth between."""
-    share = np.clip((np.asarray(value) - start) / (end - start), 0.0, 1.0)
-    return np.asarray(share * share * (3.0 - 2.0 * share))
+    return smooth_step((np.asarray(value) - start) / (end - start))
 
 
 def smoothed(values: Array, time_s: Array, deviation_s: float) -> Array:

@@ -1,0 +1,324 @@
+"""The bones that may play a role, in a tree of anatomy: joined where parents run through helper bones."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import Array, BoolArray, IndexArray
+from ..character import Character
+from .names import NameReading, read_name
+
+SAME_PLACE = 0.003
+"""Points closer than this share of the figure's size lie at one place."""
+NEAR_PLACE = 0.03
+"""Two bones that should meet and are closer than this meet, though somebody moved them."""
+FAR_PARENT = 0.22
+"""A bone farther from its parent's head than this, in sizes, may hang on it for control, not by anatomy."""
+MEETING_TAILS = 0.5
+"""Least share of bones whose tail meets a child's head where tails say something."""
+ONWARD = 0.6
+"""Least cosine between a limb's last bone and the way to a bone that continues it."""
+LONGEST_BONE = 0.4
+"""Longest way, in sizes, from a chain's last head to a bone that continues it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bones:
+    """N candidate bones in their tree of anatomy, parents before children."""
+
+    number: IndexArray
+    """(N,) index of each in the character's bones."""
+    names: tuple[str, ...]
+    head: Array
+    """(N, 3) in the armature's space."""
+    tail: Array
+    """(N, 3); NaN where tails say nothing."""
+    parent: IndexArray
+    """(N,) its parent in the tree of anatomy, by place in this table; -1 for none."""
+    deforms: BoolArray
+    """(N,)."""
+    size: float
+    """Largest extent of the heads."""
+
+    @cached_property
+    def readings(self) -> tuple[NameReading, ...]:
+        """What each name says."""
+        return tuple(read_name(name) for name in self.names)
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """Children of each."""
+        found: list[list[int]] = [[] for _ in self.names]
+        for bone, parent in enumerate(self.parent):
+            if parent >= 0:
+                found[parent].append(bone)
+        return tuple(tuple(each) for each in found)
+
+    @cached_property
+    def roots(self) -> tuple[int, ...]:
+        """Bones without a parent."""
+        return tuple(int(bone) for bone in np.flatnonzero(self.parent < 0))
+
+    @cached_property
+    def subtree(self) -> tuple[tuple[int, ...], ...]:
+        """Each bone with all below it."""
+        found: list[tuple[int, ...]] = [()] * len(self.names)
+        for bone in reversed(range(len(self.names))):
+            found[bone] = (bone, *(below for child in self.children[bone] for below in found[child]))
+        return tuple(found)
+
+    @cached_property
+    def points(self) -> tuple[Array, ...]:
+        """(K, 3) heads, and tails where they say something, of each bone with all below it."""
+        found = []
+        for below in self.subtree:
+            places = np.concatenate([self.head[list(below)], self.tail[list(below)]])
+            found.append(places[np.isfinite(places[:, 0])])
+        return tuple(found)
+
+    def ancestors(self, bone: int) -> list[int]:
+        """Parents upward, the nearest first."""
+        found = []
+        while (bone := int(self.parent[bone])) >= 0:
+            found.append(bone)
+        return found
+
+
+def candidate_bones(character: Character) -> list[Bones]:
+    """Tables of bones to look for roles in, the most likely first.
+
+    Where some bones move a mesh and others do not, those that do come first; all bones come after them.
+    """
+    everything = np.arange(len(character.bones))
+    deforming = _deforming(character)
+    tables = [everything]
+    if 0 < len(deforming) < len(everything):
+        tables.insert(0, deforming)
+    return [anatomy(character, table) for table in tables]
+
+
+def anatomy(character: Character, number: IndexArray) -> Bones:
+    """Some of a character's bones in their tree of anatomy."""
+    heads = np.array([bone.head for bone in character.bones])
+    tails = np.array([bone.tail for bone in character.bones])
+    size = float(np.max(np.ptp(heads[number], axis=0)))
+    parent = _nearest_parents(character, number, heads, tails, size)
+    telling = tails_tell(character, size)
+    tail = tails[number] if telling else np.full((len(number), 3), np.nan)
+    head = heads[number]
+    readings = [read_name(character.bones[index].name) for index in number]
+    parent = _joined_roots(head, tail, parent, size)
+    parent = _joined_ends(head, tail, parent, readings, size)
+    order = _parents_first(parent)
+    place = np.empty(len(order), dtype=np.intp)
+    place[order] = np.arange(len(order))
+    above = parent[order]
+    return Bones(
+        number[order],
+        tuple(character.bones[index].name for index in number[order]),
+        head[order],
+        tail[order],
+        np.where(above >= 0, place[above], -1),
+        np.array([character.bones[index].deforms for index in number[order]], dtype=bool),
+        size,
+    )
+
+
+def tails_tell(character: Character, size: float) -> bool:
+    """Whether tails lie where the next bone begins, as they do not after many imports."""
+    met = counted = 0
+    for bone, children in zip(character.bones, character.children, strict=True):
+        if children:
+            ways = [np.linalg.norm(character.bones[child].head - bone.tail) for child in children]
+            met += bool(min(ways) < 2 * SAME_PLACE * size)
+            counted += 1
+    return counted > 0 and met >= MEETING_TAILS * counted
+
+
+def _deforming(character: Character) -> IndexArray:
+    """Bones that move a mesh, and those without a twin among them on which several such hang."""
+    deforms = np.array([bone.deforms for bone in character.bones])
+    heads = np.array([bone.head for bone in character.bones])
+    near = SAME_PLACE * float(np.max(np.ptp(heads, axis=0)))
+    hubs = []
+    for number, children in enumerate(character.children):
+        carried = sum(bool(deforms[child]) for child in children)
+        if not deforms[number] and carried >= 2:
+            twins = np.linalg.norm(heads[deforms] - heads[number], axis=1) < near
+            if not twins.any() and not read_name(character.bones[number].name).mechanism:
+                hubs.append(number)
+    return np.array(sorted([*np.flatnonzero(deforms), *hubs]), dtype=np.intp)
+
+
+def _nearest_parents(
+    character: Character, number: IndexArray, heads: Array, tails: Array, size: float
+) -> IndexArray:
+    """(N,) nearest ancestor in the table, or the bone of the table that lies where an ancestor lies."""
+    place = {int(index): row for row, index in enumerate(number)}
+    found = np.full(len(number), -1, dtype=np.intp)
+    if len(number) == len(character.bones):
+        return np.array([place.get(character.bones[index].parent, -1) for index in number], dtype=np.intp)
+    inside = {int(index): row for row, index in enumerate(number)}
+    for row, index in enumerate(number):
+        above = character.bones[index].parent
+        while above >= 0 and found[row] < 0:
+            if above in place:
+                found[row] = place[above]
+            else:
+                twin = _twin(above, int(index), number, heads, tails, size)
+                if twin is not None and not _is_above(character, int(index), twin):
+                    found[row] = inside[twin]
+            above = character.bones[above].parent
+    return _without_circles(found)
+
+
+def _twin(bone: int, child: int, number: IndexArray, heads: Array, tails: Array, size: float) -> int | None:
+    """The bone of the table that lies where `bone` does, head and tail."""
+    apart = np.linalg.norm(heads[number] - heads[bone], axis=1)
+    ends = np.linalg.norm(tails[number] - tails[bone], axis=1)
+    apart[number == child] = np.inf
+    best = int(np.argmin(apart + 0.01 * ends))
+    return (
+        int(number[best]) if apart[best] < SAME_PLACE * size and ends[best] < 10 * SAME_PLACE * size else None
+    )
+
+
+def _is_above(character: Character, bone: int, other: int) -> bool:
+    """Whether `bone` is `other` or an ancestor of it."""
+    while other >= 0:
+        if other == bone:
+            return True
+        other = character.bones[other].parent
+    return False
+
+
+def _without_circles(parent: IndexArray) -> IndexArray:
+    """The parents, with a bone that would be its own ancestor made a root."""
+    parent = parent.copy()
+    for bone in range(len(parent)):
+        seen = {bone}
+        above = int(parent[bone])
+        while above >= 0:
+            if above in seen:
+                parent[bone] = -1
+                break
+            seen.add(above)
+            above = int(parent[above])
+    return parent
+
+
+def _joined_roots(head: Array, tail: Array, parent: IndexArray, size: float) -> IndexArray:
+    """Roots but the largest tree's joined to the bone on whose end their head lies."""
+    parent = parent.copy()
+    top, count = _tops(parent)
+    roots = np.flatnonzero(parent < 0)
+    main = roots[np.argmax(count[roots])]
+    for root in roots:
+        if root == main:
+            continue
+        ends = np.linalg.norm(tail - head[root], axis=1)
+        ends[top == root] = np.inf
+        taken = np.linalg.norm(head - head[root], axis=1) < SAME_PLACE * size
+        taken[top == root] = False
+        best = int(np.nanargmin(ends)) if np.isfinite(ends).any() else -1
+        if best >= 0 and ends[best] < SAME_PLACE * size and not taken.any():
+            parent[root] = best
+            top, count = _tops(parent)
+    return parent
+
+
+def _joined_ends(
+    head: Array, tail: Array, parent: IndexArray, readings: Sequence[NameReading], size: float
+) -> IndexArray:
+    """Feet and hands that hang on a distant bone joined to the limb whose end they lie at."""
+    parent = parent.copy()
+    for bone in range(len(parent)):
+        if not _hangs_far(bone, head, tail, parent, size) or readings[bone].mechanism:
+            continue
+        onto = _end_at(bone, head, tail, parent, readings, size)
+        if onto is not None:
+            parent[bone] = onto
+    return parent
+
+
+def _hangs_far(bone: int, head: Array, tail: Array, parent: IndexArray, size: float) -> bool:
+    """Whether a bone lies far from its parent and from where that ends."""
+    above = int(parent[bone])
+    if above < 0:
+        return True
+    if np.linalg.norm(head[above] - head[bone]) < FAR_PARENT * size:
+        return False
+    return not np.linalg.norm(tail[above] - head[bone]) < NEAR_PLACE * size
+
+
+def _end_at(
+    bone: int, head: Array, tail: Array, parent: IndexArray, readings: Sequence[NameReading], size: float
+) -> int | None:
+    """The last bone of a chain that a bone continues; None where there is none, or another continues it."""
+    top, _ = _tops(parent)
+    own = _below(parent, bone)
+    side = readings[bone].side
+    has_child = np.bincount(parent[parent >= 0], minlength=len(parent)) > 0
+    best, least = None, np.inf
+    for other in range(len(parent)):
+        above = int(parent[other])
+        if own[other] or above < 0 or (side and readings[other].side not in (side, None)):
+            continue
+        way = float(np.linalg.norm(head[other] - head[bone]))
+        if way < NEAR_PLACE * size and not has_child[other]:  # the end of the chain is a bone of its own
+            larger = own.sum() > 1 or readings[other].other or readings[other].mechanism
+            onward = readings[bone].clear_part is not None or larger
+            ends = bool(onward and not readings[other].clear_part and above != parent[bone])
+            if ends and way < least and parent[above] >= 0:
+                best, least = above, way
+        elif not has_child[other] and parent[above] >= 0 and way < LONGEST_BONE * size:
+            gap = float(np.linalg.norm(tail[other] - head[bone]))
+            if not np.isfinite(gap):
+                gap = 0.0 if _continues(other, bone, head, parent) else np.inf
+                gap += 0.1 * way
+            if gap < max(NEAR_PLACE * size, 0.1 * way) and gap < least:
+                best, least = other, gap
+    return best
+
+
+def _continues(end: int, bone: int, head: Array, parent: IndexArray) -> bool:
+    """Whether a bone lies in the direction in which a chain's last bone came."""
+    came, goes = head[end] - head[parent[end]], head[bone] - head[end]
+    length = float(np.linalg.norm(came) * np.linalg.norm(goes))
+    return length > 0.0 and float(came @ goes) / length > ONWARD
+
+
+def _tops(parent: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """(N,) root of each bone, and (N,) number of bones of the tree at each root."""
+    top = np.arange(len(parent))
+    for _ in range(len(parent)):
+        above = np.where(parent[top] >= 0, parent[top], top)
+        if np.array_equal(above, top):
+            break
+        top = above
+    return top, np.bincount(top, minlength=len(parent))
+
+
+def _below(parent: IndexArray, bone: int) -> BoolArray:
+    """(N,) whether each is `bone` or below it."""
+    own = np.zeros(len(parent), dtype=bool)
+    own[bone] = True
+    for _ in range(len(parent)):
+        grown = own | np.where(parent >= 0, own[parent], False)
+        if np.array_equal(grown, own):
+            break
+        own = grown
+    return own
+
+
+def _parents_first(parent: IndexArray) -> IndexArray:
+    """(N,) an order with parents before children, otherwise as given."""
+    depth = np.zeros(len(parent), dtype=np.intp)
+    for bone in range(len(parent)):
+        above, steps = int(parent[bone]), 0
+        while above >= 0 and steps <= len(parent):
+            above, steps = int(parent[above]), steps + 1
+        depth[bone] = steps
+    return np.argsort(depth, kind="stable")

@@ -1,0 +1,82 @@
+"""Doubts: sentences that name role, bone and why, for a person to look at."""
+
+from collections.abc import Mapping
+
+from ...files.json_file import shown
+from ..character_map import CharacterMap, RoleBones
+from ..roles import ARM, LEG
+from .facing import SURE as SURE_SIDES
+from .facing import Facing
+from .figure import Figure
+
+SURE = 0.8
+"""Confidence from which a role is not doubted."""
+
+
+def side_doubts(facing: Facing) -> list[str]:
+    """What is doubtful about left and right."""
+    against = facing.by_names * facing.by_shape < 0.0
+    if against and facing.by_names < 0.0 and abs(facing.by_shape) > 1.0:
+        return [
+            "left and right are taken from the shape, against the names of the bones: feet and knees point "
+            "the other way"
+        ]
+    if against and facing.by_names > 0.0 and abs(facing.by_shape) > 1.0:
+        return ["left and right are taken from the names of the bones, although the feet point the other way"]
+    if facing.confidence < SURE_SIDES:
+        return [
+            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
+            "tell where the character faces"
+        ]
+    return []
+
+
+def trunk_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
+    """What is doubtful about hips, spine, neck and head."""
+    bones = figure.frame.bones
+    found = []
+    for part, rival, _ in figure.trunk.rivals:
+        if part not in roles or roles[part].confidence >= SURE:
+            continue
+        bone = roles[part].bones[0]
+        why = f"{shown(bones.names[rival])} fits almost as well" if rival >= 0 else "it may be another part"
+        found.append(_sentence(part, bone, roles[part], why))
+    return found
+
+
+def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) -> list[str]:
+    """What is doubtful about arms and legs."""
+    bones, partner = figure.frame.bones, figure.frame.symmetry.partner
+    near = "L" if facing.ahead > 0 else "R"
+    found = []
+    for part in (*ARM, *LEG):
+        choice = figure.limbs.get(part)
+        if choice is None or choice.probability >= SURE:
+            continue
+        for side in "LR":
+            role = f"{part}.{side}"
+            rival = (
+                choice.rival if side == near else (int(partner[choice.rival]) if choice.rival >= 0 else -1)
+            )
+            why = (
+                f"{shown(bones.names[rival])} fits almost as well"
+                if rival >= 0
+                else "the limb may lack it, or have it elsewhere"
+            )
+            found.append(_sentence(role, roles[role].bones[0], roles[role], why))
+    return found
+
+
+def missing_doubts(character_map: CharacterMap) -> list[str]:
+    """Roles that most characters have and this one lacks."""
+    found = []
+    if "head" not in character_map.roles:
+        found.append("head was not found: no bone of the middle lies where a head begins")
+    if "hand.L" not in character_map.roles:
+        found.append("hand.L and hand.R were not found: the forearms are the last bones of the arms")
+    return found
+
+
+def _sentence(role: str, bone: str, given: RoleBones, why: str) -> str:
+    how = "its name" if given.source == "names" else "its place"
+    return f"{role} is doubtful: {shown(bone)} was chosen by {how}, and {why}"

@@ -1,0 +1,234 @@
+"""How well chains of bones fit a leg and an arm, by place and by name."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...arrays import Array, IndexArray
+from ..roles import ARM, LEG
+from .chains import Chains
+from .frame import Frame
+from .likelihood import at_least, at_most, near
+
+NAMES_WEIGHT = 1.3
+"""Names are trusted so much more than a measure of place."""
+NO_END = -3.0
+"""Score of an arm without a hand."""
+MANY = 150
+"""Best limbs of a kind by what is quickly measured; only these are looked at closely."""
+FEW = 40
+"""Best limbs of a kind that are weighed against each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limbs:
+    """Chains that may be limbs of one kind, the best first."""
+
+    chains: Chains
+    score: Array
+    """(C,) log-likelihood of each."""
+    first: tuple[int | None, ...] = field(default=())
+    """For arms the shoulder of each; None where it lacks one."""
+    last: tuple[int | None, ...] = field(default=())
+    """For legs the toe of each; None where it lacks one."""
+
+
+def part_scores(frame: Frame, part: str) -> Array:
+    """(N,) what the names say of a part, both sides' names taken together."""
+    bones, partner = frame.bones, frame.symmetry.partner
+    own = np.array([reading.scores[part] for reading in bones.readings])
+    other = np.where(partner >= 0, own[np.maximum(partner, 0)], own)
+    return np.asarray(NAMES_WEIGHT * 0.5 * (own + other))
+
+
+def find_legs(frame: Frame, chains: Chains) -> Limbs:
+    """The likeliest legs."""
+    chains = chains.taken(np.flatnonzero(chains.bones[:, 2] >= 0))
+    hip, knee, ankle = (frame.place[chains.bones[:, part]] for part in range(3))
+    upper, lower = _length(knee - hip), _length(ankle - knee)
+    length = np.maximum(upper + lower, 1e-9)
+    score = near(upper / length, 0.5, 0.06)
+    score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
+    score += near((ankle[:, 2] - frame.floor) / length, 0.1, 0.1, 5.0)
+    score += near(hip[:, 0] / length, 0.13, 0.07, 4.0)
+    score += near(length, 0.45, 0.15, 3.0)
+    for column, part in enumerate(LEG[:3]):
+        score += part_scores(frame, part)[chains.bones[:, column]]
+    score += np.where(chains.attached >= 0, 0.0, -2.0)
+    many = _best(score, MANY)
+    chains, ankle, length = chains.taken(many), ankle[many], length[many]
+    score = score[many] + _foot_scores(frame, chains, ankle, length) + _line_scores(frame, chains)
+    score += _below_hip_scores(frame, chains)
+    best = _best(score, FEW)
+    return _with_toes(frame, Limbs(chains.taken(best), score[best]))
+
+
+def find_arms(frame: Frame, chains: Chains) -> Limbs:
+    """The likeliest arms."""
+    shoulder, elbow = (frame.place[chains.bones[:, part]] for part in range(2))
+    has_hand = chains.bones[:, 2] >= 0
+    tips = frame.ends[chains.bones[:, 1]]
+    guess = 2.0 * elbow - shoulder
+    wrist = np.where(
+        has_hand[:, None],
+        frame.place[chains.bones[:, 2]],
+        np.where(np.isfinite(tips), tips, guess),
+    )
+    upper, lower = _length(elbow - shoulder), _length(wrist - elbow)
+    length = np.maximum(upper + lower, 1e-9)
+    score = near(upper / length, 0.52, 0.06)
+    score += at_least(_length(wrist - shoulder) / length, 0.85, 0.15)
+    score += at_most((wrist[:, 2] - shoulder[:, 2]) / length, 0.2, 0.3)
+    score += near(shoulder[:, 0] / length, 0.33, 0.13, 4.0)
+    score += near(length, 0.3, 0.12, 3.0)
+    score += np.where(has_hand, 0.0, NO_END)
+    for column, part in enumerate(ARM[1:3]):
+        score += part_scores(frame, part)[chains.bones[:, column]]
+    hand = part_scores(frame, ARM[3])
+    score += np.where(has_hand, hand[chains.bones[:, 2]], 0.0)
+    score += np.where(chains.attached >= 0, 0.0, -2.0)
+    many = _best(score, MANY)
+    chains, length = chains.taken(many), length[many]
+    score = score[many] + _hand_scores(frame, chains, length) + _line_scores(frame, chains)
+    best = _best(score, FEW)
+    return _with_shoulders(frame, Limbs(chains.taken(best), score[best]))
+
+
+def _foot_scores(frame: Frame, chains: Chains, ankle: Array, length: Array) -> Array:
+    """(C,) whether what hangs on each ankle lies ahead of it, as a foot does, and not far below."""
+    found = np.zeros(len(chains))
+    for row, end in enumerate(chains.bones[:, 2]):
+        points = frame.branch[int(end)] - ankle[row]
+        ahead = np.max(np.abs(points[:, 1])) / length[row]
+        below = -np.min(points[:, 2]) / length[row]
+        bare = len(points) < 2
+        found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.1, 3.0) + at_most(below, 0.2, 0.08, 5.0))
+    return found
+
+
+def _hand_scores(frame: Frame, chains: Chains, length: Array) -> Array:
+    """(C,) whether fingers fan out where each hand begins."""
+    bones = frame.bones
+    leaves = [sum(not bones.children[each] for each in below) for below in bones.subtree]
+    found = np.zeros(len(chains))
+    for row, (_, middle, end) in enumerate(chains.bones):
+        if end < 0:
+            continue
+        points = frame.branch[int(end)] - frame.place[int(end)]
+        if len(points) > 1:
+            found[row] += float(near(np.max(_length(points)) / length[row], 0.33, 0.2, 4.0))
+        found[row] += 2.0 if leaves[end] >= 3 else (0.3 if leaves[end] == 2 else 0.0)
+        above = int(bones.parent[end])
+        own = len(bones.subtree[end])
+        rivals = [
+            each
+            for each in bones.children[above]
+            if each != end and len(bones.subtree[each]) >= own and not bones.readings[each].mechanism
+        ]
+        found[row] -= 1.5 * min(len(rivals), 2)
+        inner = [each for each in bones.subtree[middle] if each not in bones.subtree[end]]
+        found[row] -= 0.8 * min(sum(len(bones.children[each]) >= 3 for each in inner if each != above), 2)
+    return found
+
+
+def _line_scores(frame: Frame, chains: Chains) -> Array:
+    """(C,) how little the bones that are left out bend the limb; the first of several of a part plays it."""
+    parent, place = frame.bones.parent, frame.place
+    parts = [reading.clear_part for reading in frame.bones.readings]
+    found = np.zeros(len(chains))
+    for row, (upper, middle, end) in enumerate(chains.bones):
+        for top, low in ((upper, middle), (middle, end)):
+            between = int(parent[low]) if low >= 0 else int(top)
+            line = place[low] - place[top] if low >= 0 else np.zeros(3)
+            reach = float(line @ line)
+            while between not in (int(top), -1):
+                off = place[between] - place[top]
+                if reach > 0.0:
+                    off = off - line * float(np.clip(off @ line / reach, 0.0, 1.0))
+                found[row] -= 2.0 if parts[low] and parts[between] == parts[low] else 0.0
+                found[row] -= 0.3 + min(20.0 * float(np.linalg.norm(off)) / np.sqrt(reach + 1e-9), 3.0)
+                between = int(parent[between])
+        above = int(parent[upper])
+        if above >= 0 and frame.one_side[above]:
+            found[row] -= 2.0 if parts[upper] and parts[above] == parts[upper] else 0.0
+    return found
+
+
+def _below_hip_scores(frame: Frame, chains: Chains) -> Array:
+    """(C,) a leg begins with the first bone that lies on its side, not farther down."""
+    found = np.zeros(len(chains))
+    for row, upper in enumerate(chains.bones[:, 0]):
+        above = int(frame.bones.parent[upper])
+        if above >= 0 and frame.one_side[above]:
+            aside = frame.place[above, 0] > 0.6 * frame.place[upper, 0]
+            lower = frame.place[above, 2] > frame.place[upper, 2]
+            found[row] = -2.0 if aside and lower else 0.0
+    return found
+
+
+def _with_toes(frame: Frame, legs: Limbs) -> Limbs:
+    found: list[int | None] = []
+    score = legs.score.copy()
+    names = part_scores(frame, "toe")
+    for row, (upper, middle, end) in enumerate(legs.chains.bones):
+        length = _length(frame.place[middle] - frame.place[upper]) + _length(
+            frame.place[end] - frame.place[middle]
+        )
+        toe, gain = _toe(frame, int(end), float(length), names)
+        found.append(toe)
+        score[row] += gain
+    return Limbs(legs.chains, score, last=tuple(found))
+
+
+def _toe(frame: Frame, foot: int, length: float, names: Array) -> tuple[int | None, float]:
+    """The bone that bends below a foot, and its score; of several toes the one nearest to the middle."""
+    ankle = frame.place[foot]
+    points = frame.branch[foot] - ankle
+    ahead = np.sign(points[int(np.argmax(np.abs(points[:, 1]))), 1]) or 1.0
+    best, most = None, -0.7
+    for bone in frame.bones.subtree[foot][1:]:
+        x, y, z = (frame.place[bone] - ankle) / length
+        depth = len([each for each in frame.bones.ancestors(bone) if each in frame.bones.subtree[foot]])
+        score = float(near(ahead * y, 0.17, 0.07, 6.0) + near(z, -0.08, 0.06, 4.0)) + names[bone]
+        score -= 0.7 * (depth - 1) + abs(x) + 2.0 * frame.place[bone, 0] / length
+        if score > most:
+            best, most = bone, score
+    return best, max(min(most, 3.0), 0.0) if best is not None else 0.0
+
+
+def _with_shoulders(frame: Frame, arms: Limbs) -> Limbs:
+    found: list[int | None] = []
+    score = arms.score.copy()
+    names = part_scores(frame, "shoulder")
+    for row, (upper, middle, end) in enumerate(arms.chains.bones):
+        places = [frame.place[each] for each in (upper, middle, end) if each >= 0]
+        length = sum(float(_length(b - a)) for a, b in zip(places[:-1], places[1:], strict=True))
+        shoulder, gain = _shoulder(frame, int(upper), length, names)
+        found.append(shoulder)
+        score[row] += gain
+    return Limbs(arms.chains, score, first=tuple(found))
+
+
+def _shoulder(frame: Frame, upper_arm: int, length: float, names: Array) -> tuple[int | None, float]:
+    """The collar bone above an upper arm, and its score."""
+    best, most = None, -1.0
+    above = [bone for bone in frame.bones.ancestors(upper_arm) if frame.one_side[bone]]
+    if not above:
+        return None, float(near(frame.place[upper_arm, 0] / max(length, 1e-9), 0.33, 0.25, 2.0))
+    for rank, bone in enumerate(reversed(above)):
+        away = frame.place[upper_arm] - frame.place[bone]
+        reach = float(_length(away)) / max(length, 1e-9)
+        outward = away[0] / max(float(_length(away)), 1e-9)
+        score = float(near(reach, 0.3, 0.12, 5.0) + at_least(outward, 0.5, 0.3, 4.0)) - 0.3 * rank
+        score += float(near(frame.place[bone, 0] / max(length, 1e-9), 0.06, 0.1, 3.0)) + names[bone]
+        if score > most:
+            best, most = bone, score
+    return best, min(most, 3.0)
+
+
+def _best(score: Array, count: int) -> IndexArray:
+    return np.argsort(-score, kind="stable")[:count]
+
+
+def _length(vectors: Array) -> Array:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))
