@@ -82,11 +82,9 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
             earlier = result_to_replace(character, result.kind, source_action)
         into = earlier.action if earlier is not None else f"{result.title} {character.armature.name}"
         action = result.retargeted.write(scene, into)
-        action.use_fake_user = True
         source = SourceMotion(result.kind, source_action, actor, result.title)
         listed = add_result(character, source, action)
-        show_lines(listed, figures(result.retargeted), result.retargeted.notes)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
         for note in result.retargeted.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
         say(
