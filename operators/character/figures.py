@@ -12,7 +12,7 @@ def figures(quality: "Quality") -> list[str]:
     """Lines on feet, floor, hands and keys; what could not be measured is left out."""
     lines = []
     if quality.skate_mm is not None:
-        lines.append(label("Resting feet slide {way:.2f} mm a frame", way=quality.skate_mm))
+        lines.append(label("Feet slide {way:.2f} mm a frame", way=quality.skate_mm))
     if quality.penetration_mm is not None:
         lines.append(label("Soles at most {depth:.1f} mm below floor", depth=quality.penetration_mm))
     if quality.hands_mm is not None:
