@@ -64,6 +64,7 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
     members = _members(armature, found.values())
     notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
     _into_collection(scene, armature.name, members)
+    armature.hide_viewport = False  # else Blender would not evaluate it
     scene.view_layers[0].update()
     return ImportedCharacter(file, armature, tuple(members), texts, notes)
 
