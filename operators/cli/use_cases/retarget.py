@@ -75,11 +75,12 @@ def _retarget(
             arguments.debug,
             formats,
         )
-        write_made_digests(staging_folder, (CHARACTER_BLEND,))
+        made = [name for name in RESULT_FILES[1:] if (staging_folder / name).exists()]
+        write_made_digests(staging_folder, made)
         kept.update(
             changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), _made_before(output))
         )
-        files = [output / name for name in RESULT_FILES if (staging_folder / name).exists()]
+        files = [output / name for name in (*made, RECORD_FILE)]
     notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
     return record, files, notes
 
