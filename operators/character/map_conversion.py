@@ -42,9 +42,7 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
             if len(role.sole)
         },
         rest_corrections={
-            role.name: tuple(map(_rounded, role.correction))  # type: ignore[misc]
-            for role in group.roles
-            if role.corrected
+            role.name: tuple(map(_rounded, role.correction)) for role in group.roles if role.corrected
         },
         left_alone=tuple(role.name for role in group.roles if role.left_alone),
         preset=group.preset or None,
@@ -139,7 +137,9 @@ def _ik_of(limb: bpy.types.PropertyGroup) -> IkControls:
 
 def _value_of(setting: bpy.types.PropertyGroup) -> float | int | bool:
     value = _rounded(setting.value)
-    return {"BOOL": bool, "INT": round, "FLOAT": float}[setting.kind](value)
+    if setting.kind == "BOOL":
+        return bool(value)
+    return round(value) if setting.kind == "INT" else value
 
 
 def _rounded(value: float) -> float:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.error_reports import reported
@@ -9,7 +10,7 @@ from ..shell.footage_clicks import NAVIGATION
 from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .bone_under_mouse import bone_under
-from .characters import find_character, full_title
+from .characters import active_character, find_character, full_title
 from .requirements import armature
 from .role_bone import RoleBoneOperator, give_bone, told
 
@@ -28,12 +29,15 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip, which says where the role's bone comes from."""
         known = told(context, properties.role)
-        asked = label("Click on the bone in the viewport to choose it")
+        asked = label("Click on the bone in the viewport to choose it; Ctrl takes the active bone")
         return f"{known}. {asked}" if known else asked
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on a bone."""
-        if self.bone or bpy.app.background:
+        if event.ctrl and not self.bone:
+            active = active_character(context.scene).armature.data.bones.active
+            self.bone = active.name if active is not None else ""
+        if self.bone or event.ctrl or bpy.app.background:
             return self.execute(context)
         self._ask(context, "")
         context.window_manager.keymark_progress.show("", 0.0)
@@ -85,7 +89,9 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Give the bone to the role."""
-        give_bone(find_character(context.scene), self.role, self.index, self.bone)
+        if not self.bone:
+            raise InputError("no bone is chosen; click on one in Pose Mode, or give its name")
+        give_bone(active_character(context.scene), self.role, self.index, self.bone)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_bone,))

@@ -47,10 +47,10 @@ def told(context: bpy.types.Context, role: str) -> str:
     if character is None or role not in character.character_map.roles:
         return ""
     shown = character.character_map.roles[role]
+    if shown.doubt:
+        return shown.doubt[:1].upper() + shown.doubt[1:]
     if not any(entry.bone for entry in shown.bones):
         return label("{role}: no bone", role=full_title(role).capitalize())
-    if shown.doubt:
-        return shown.doubt
     if shown.source == "you":
         return label("{role}: chosen by you", role=full_title(role).capitalize())
     return label(

@@ -21,7 +21,7 @@ from .ground import Ground, is_rigid
 from .holds import Hold, faded
 from .smoothing import ease
 from .stage import Stage
-from .two_bone import smallest_rotation
+from .two_bone import LimbPose, smallest_rotation
 
 UP = np.array([0.0, 0.0, 1.0])
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
@@ -38,6 +38,8 @@ LARGEST_CHANGE_RAD = np.radians(45.0)
 BALL_AHEAD = 0.62
 """Place of the ball between ankle and tip of the performer's foot."""
 LONGEST_ROLL_S = 0.5
+STRAIGHT = 0.01
+"""What a leg's length exceeds that between its ends by, as a share, when it counts as nearly straight."""
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
 
@@ -71,7 +73,7 @@ def leveled(turn: Array, share: Array) -> Array:
 
 
 def plan_foot(
-    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, ankle: Array
+    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
 ) -> FootPath:
     """Plan a foot.
 
@@ -81,9 +83,9 @@ def plan_foot(
         ground: The performer's ground.
         shape: The character's foot.
         side: `L` or `R`.
-        ankle: (F, 3) where the directions of the leg put the ankle, canonical [m].
+        leg: The leg by the performer's directions, canonical [m].
     """
-    point, time_s = SIDES.index(side), source.time_s
+    point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
     ground_m = stage.heights(ground.height_m[:, point])
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
@@ -100,7 +102,7 @@ def plan_foot(
     for number, (rest, stand) in enumerate(zip(rests, stands, strict=True)):
         first, last = _with_rolls(number, rests, still, time_s)
         frames = slice(first, last + 1)
-        place = _footprint(rest, stand, turn[frames], shape, ankle, first)
+        place = _footprint(rest, stand, turn[frames], shape, leg, first)
         place[:, 2] = ground_m[frames] + depth_m[frames]
         holds.append(Hold(first, place - ankle[frames]))
         planted[frames] = True
@@ -217,9 +219,17 @@ def _run(flags: BoolArray) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 
-def _footprint(rest: Contact, stand: Array, turn: Array, shape: FootShape, ankle: Array, first: int) -> Array:
-    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant."""
-    place = ankle[rest.first : rest.last + 1].mean(axis=0)
+def _footprint(
+    rest: Contact, stand: Array, turn: Array, shape: FootShape, leg: LimbPose, first: int
+) -> Array:
+    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant.
+
+    The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the leg is
+    nearly straight count more: there a knee bends a lot for a little way.
+    """
+    frames = slice(rest.first, rest.last + 1)
+    weight = 1.0 / (STRAIGHT + 1.0 - leg.extension_m[frames] / leg.length_m)
+    place = np.average(leg.end[frames], axis=0, weights=weight)
     found = np.broadcast_to(place, (len(turn), 3)).copy()
     into, out = rest.first - first, rest.last + 1 - first
     found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel

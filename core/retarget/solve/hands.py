@@ -15,20 +15,22 @@ from ...body import rotations
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ..character_motion import HandGoal
-from .body_frames import distances_m, part_shapes, places_by_part
+from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
 from .smoothing import ease, smoothed
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, stretched_m, unit
 
-NEAR_M = (0.03, 0.14)
+NEAR_M = (0.03, 0.12)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
 like the others for a performer of `OF_STATURE_M`."""
 TOGETHER_M = (0.15, 0.40)
 """The same for the distance of the wrists from each other."""
 FLOOR_M = (0.12, 0.35)
 """The same for the height of a wrist over the floor."""
+PASSING_M_S = (0.25, 0.75)
+"""Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
 OF_STATURE_M = 1.75
 CHANGE_S = 0.1
 """Standard deviation in time of the smoothing of what counts how much."""
@@ -64,17 +66,19 @@ def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]
     for side in SIDES:
         wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]
         along = [wrist, 0.5 * (wrist + end), end]
-        parts[side] = np.stack(
-            [
-                _near(
-                    source, np.minimum.reduce([distances_m(source, name, point) for point in along]), NEAR_M
-                )
-                for name in segments
-            ]
-        )
+        parts[side] = np.stack([_near_part(source, name, along) for name in segments])
     floor = {side: near_floor(source, ground, side) for side in SIDES}
     apart_m = np.linalg.norm(source.start["hand.R"] - source.start["hand.L"], axis=-1)
     return Nearness(parts, floor, _near(source, apart_m, TOGETHER_M))
+
+
+def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
+    """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
+    distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
+    inside = in_segment(source, segment, hand[0])
+    speed = np.linalg.norm(np.gradient(inside, source.time_s, axis=0), axis=-1)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, CHANGE_S), *PASSING_M_S)
+    return _near(source, distance_m, NEAR_M) * touching
 
 
 def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:

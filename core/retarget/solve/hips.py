@@ -3,18 +3,20 @@
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from .smoothing import smooth_above
+from .smoothing import smooth_above, smoothed
 from .two_bone import STRAIGHTEST, LimbPose
 
-LEG_SOFT = 0.985
+LEG_SOFT = 0.988
 """Share of its length from which a leg resists being stretched."""
-SINK_S = 0.2
+SINK_S = 0.12
 """Time over which the hips go down and up again."""
+MOMENT_S = 0.07
+"""Standard deviation in time of the smoothing of how far a limb may be stretched."""
 DEEPEST_SHARE = 0.08
 """Deepest that they go, as a share of the legs' length."""
 
 
-def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float) -> Array:
+def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
     """(F,) how much lower a limb must begin to reach its goal [m].
 
     Args:
@@ -22,8 +24,11 @@ def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float) -
         goal: (F, 3) ankle or wrist [m].
         needed: (F,) whether the goal must be reached.
         soft: Share of its length from which the limb resists.
+        time_s: (F,) time of each frame [s].
     """
-    allowed = np.maximum(soft, np.minimum(limb.extension_m / limb.length_m, 1.0))
+    own = np.minimum(limb.extension_m / limb.length_m, 1.0)
+    # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
+    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S)))
     way = goal - limb.start
     aside = np.sum(way[:, :2] ** 2, axis=-1)
     below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))

@@ -91,7 +91,7 @@ class Solution:
         if not self.body.is_moved("hips"):
             return {}
         return {
-            side: plan_foot(self.source, self.stage, self.ground, shapes[side], side, leg.end)
+            side: plan_foot(self.source, self.stage, self.ground, shapes[side], side, leg)
             for side in SIDES
             if (leg := self.limb(f"leg.{side}")) is not None
         }
@@ -104,10 +104,10 @@ class Solution:
         for side, foot in feet.items():
             leg = self.limb(f"leg.{side}")
             if leg is not None:
-                needed.append(needed_drop_m(leg, foot.ankle, foot.planted, LEG_SOFT))
+                needed.append(needed_drop_m(leg, foot.ankle, foot.planted, LEG_SOFT, self.source.time_s))
         for side, arm in arms.items():
             goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
-            needed.append(share * needed_drop_m(arm, goal, share > 0.0, ARM_SOFT))
+            needed.append(share * needed_drop_m(arm, goal, share > 0.0, ARM_SOFT, self.source.time_s))
         drop_m = lowered_m(needed, self.source.time_s, self.body.leg_m)
         self.hips = self.hips - drop_m[:, None] * np.array([0.0, 0.0, 1.0])
 
