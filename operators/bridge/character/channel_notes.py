@@ -7,8 +7,7 @@ import numpy as np
 
 from ....core.retarget.control_channels import Control
 from ....core.retarget.control_motion import ControlMotion, KeyedControl
-from ..fcurves import bone_path
-from ..rotation_modes import rotation_path
+from ..rotation_modes import bone_path, rotation_path
 from .dependencies import active_constraints, drivers
 
 MOST_NAMES = 3

@@ -42,8 +42,8 @@ STILL_FRAMES = 2
 class Retargeted:
     """A character's motion, not yet written."""
 
-    armature: str
-    """Name of the armature object."""
+    session_uid: int
+    """Blender's number of the armature object in this session."""
     character: Character
     character_map: CharacterMap
     """The map, completed."""
@@ -63,18 +63,18 @@ class Retargeted:
         """Number of keys with one on every frame."""
         return sum(held.channel_count for held in self.keyed) * len(self.frames)
 
-    def write(
-        self, scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action | str
-    ) -> bpy.types.Action:
+    def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
         """Write the motion into an Action, and let it animate the character.
 
         Args:
             scene: The scene, which shows the character's new pose.
-            armature_object: The character.
             action: The name of a new Action; or an Action, in which what an earlier retargeting made for the
                 character is replaced.
+
+        Raises:
+            InputError: The character has been deleted meanwhile.
         """
-        return write_retargeted(self, scene, armature_object, action)
+        return write_retargeted(self, scene, action)
 
 
 def retarget(
@@ -128,7 +128,7 @@ def retarget(
         keyed = yield from within("Finding the keys", reducing, PROBED, 1.0)
     notes = (*motion.notes, *probed.notes, *channel_notes(armature_object, keyed, controls))
     return Retargeted(
-        armature_object.name,
+        armature_object.session_uid,
         character,
         character_map,
         options,
