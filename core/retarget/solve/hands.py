@@ -31,6 +31,8 @@ FLOOR_M = (0.12, 0.35)
 """The same for the height of a wrist over the floor."""
 PASSING_M_S = (0.25, 0.75)
 """Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
+LINGER_S = 0.25
+"""Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
 CHANGE_S = 0.1
 """Standard deviation in time of the smoothing of what counts how much."""
@@ -77,7 +79,7 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
     distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
     inside = in_segment(source, segment, hand[0])
     speed = np.linalg.norm(np.gradient(inside, source.time_s, axis=0), axis=-1)
-    touching = 1.0 - ease(smoothed(speed, source.time_s, CHANGE_S), *PASSING_M_S)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S), *PASSING_M_S)
     return _near(source, distance_m, NEAR_M) * touching
 
 
