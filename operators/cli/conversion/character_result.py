@@ -121,7 +121,7 @@ def write_character_result(
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())
         with blender_silence(debug), hidden_files(names, staging_folder, output) as hidden:
-            action = retargeted.write(scene, armature, f"{take} {armature.name}")
+            action = retargeted.write(scene, f"{take} {armature.name}")
             paths = {name: hidden[file] for name, file in exports.items()}
             curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
