@@ -17,6 +17,8 @@ SHOWN_REST_M = 0.0001
 """Largest error of a resting foot that is shown [m]: it must not slide."""
 SWITCH_M = 0.0008
 """Largest distance of wrists and ankles between IK and FK [m]."""
+CARRIED_SHARE = 0.5
+"""Share of the tolerance for a limb's root, and as much for elbow or knee on it."""
 LEAST_M = 0.0002
 """Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
 

@@ -13,7 +13,7 @@ from ....core.finish.hermite import Spline
 from ..actions import assign_action, channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path
-from .channel_notes import driven_channels, keyed_channels
+from .channel_notes import driven_channels, keyed_paths
 
 if TYPE_CHECKING:
     from .retarget import Retargeted
@@ -40,16 +40,17 @@ def write_retargeted(
     frames = retargeted.frames
     made: list[tuple[str, int]] = []
     for keyed in retargeted.keyed:
-        for column, (path, index) in enumerate(keyed_channels(keyed)):
-            if (path, index) in driven:
-                continue
-            fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
-            held = keyed.values
-            if isinstance(held, Spline):
-                write_smooth_keys(fcurve, frames[held.keys], held.values[:, column], held.slopes[:, column])
-            else:
-                write_linear_keys(fcurve, frames, held[:, column])
-            made.append((path, index))
+        for path, held in keyed_paths(keyed):
+            values = held.values if isinstance(held, Spline) else held
+            for index in range(values.shape[1]):
+                if (path, index) in driven:
+                    continue
+                fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
+                if isinstance(held, Spline):
+                    write_smooth_keys(fcurve, frames[held.keys], values[:, index], held.slopes[:, index])
+                else:
+                    write_linear_keys(fcurve, frames, values[:, index])
+                made.append((path, index))
     for (bone, name), value in retargeted.properties.items():
         path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(name)}"]'
         made.append(_write_first(channelbag, path, 0, bone, frames, float(value)))
