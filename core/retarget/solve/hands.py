@@ -12,6 +12,7 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ..character_motion import HandGoal
@@ -20,7 +21,7 @@ from .ground import Ground
 from .rest_body import RestBody
 from .smoothing import ease, smoothed
 from .stage import Stage
-from .two_bone import LimbPose, reach_for, stretched_m, unit
+from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
 NEAR_M = (0.03, 0.12)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
@@ -40,6 +41,8 @@ ARM_SOFT = 0.97
 """Share of its length from which an arm resists being stretched."""
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
+LEAST_HEADING = 0.02
+"""Part of the back of the hand in the heading of fingers."""
 ROUNDS = 4
 """Rounds in which two hands find a place that both reach."""
 
@@ -170,6 +173,24 @@ def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
     middle = arm.middle + blend * (solved.middle - arm.middle)
     end = arm.end + blend * (solved.end - arm.end)
     return LimbPose(upper, lower, arm.start, middle, end, hinge)
+
+
+def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
+    """(F, 3, 3) turns of a hand, bent back at the wrist where it would be in the floor.
+
+    Args:
+        turn: (F, 3, 3) of the hand, canonical.
+        wrist_m: (F,) height of the wrist over the floor [m].
+        along: (3,) from wrist to fingertips at rest, palm down, canonical [m].
+    """
+    length_m = float(np.linalg.norm(along))
+    fingers = turn @ (along / length_m)
+    least = np.clip(-wrist_m / length_m, -1.0, 0.0)
+    # Fingers that point straight down have no heading of their own: they bend toward the back of the hand.
+    level = (fingers + LEAST_HEADING * turn[..., 2]) * [1.0, 1.0, 0.0]
+    level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
+    bent = smallest_rotation(fingers, unit(level)) @ turn
+    return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
 
 
 def _brought_together(

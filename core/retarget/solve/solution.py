@@ -14,7 +14,7 @@ from ..roles import LIMBS
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
 from .foot_shape import FootShape
 from .ground import Ground
-from .hands import ARM_SOFT, floor_goals, hand_goals, reach
+from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
 from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
 from .rest_body import RestBody
 from .stage import Stage
@@ -138,7 +138,17 @@ class Solution:
             solved = reach(arm, goals[side].place_m, goals[side].share)
             self._turn(f"upper_arm.{side}", solved.upper_turn)
             self._turn(f"forearm.{side}", solved.lower_turn)
+            self._keep_above_floor(side, solved.end)
         return goals
+
+    def _keep_above_floor(self, side: str, wrist: Array) -> None:
+        role = f"hand.{side}"
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.height_m.min(axis=1))
+        if tip is not None:
+            aligned = self.alignment[role]
+            turn = self.turns[self.body.first[role]] @ aligned.T
+            along = aligned @ (tip - self.body.joint(role))
+            self._turn(role, above_floor(turn, wrist[:, 2] - floor_m, along))
 
     def _turn(self, role: str, turn: Array) -> None:
         if self.body.is_moved(role):
