@@ -185,11 +185,11 @@ def _toe(frame: Frame, foot: int, length: float, names: Array) -> tuple[int | No
     ankle = frame.place[foot]
     points = frame.branch[foot] - ankle
     ahead = np.sign(points[int(np.argmax(np.abs(points[:, 1]))), 1]) or 1.0
-    best, most = None, -0.7
+    best, most = None, -2.0
     for bone in frame.bones.subtree[foot][1:]:
         x, y, z = (frame.place[bone] - ankle) / length
         depth = len([each for each in frame.bones.ancestors(bone) if each in frame.bones.subtree[foot]])
-        score = float(near(ahead * y, 0.17, 0.07, 6.0) + near(z, -0.08, 0.06, 4.0)) + names[bone]
+        score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.08, 0.08, 4.0)) + names[bone]
         score -= 0.7 * (depth - 1) + abs(x) + 2.0 * frame.place[bone, 0] / length
         if score > most:
             best, most = bone, score

@@ -76,12 +76,13 @@ def find_trunk(frame: Frame, girdles: Girdles) -> Trunk | None:
 def _tops(frame: Frame, girdles: Girdles) -> list[int]:
     """Ends of paths that may lead to the top of the head, or only to the arms."""
     bones = frame.bones
-    under = [bone for bone in bones.subtree[girdles.fork] if frame.middle[bone]]
+    height = frame.place[:, 2]
     ends = [
         bone
-        for bone in under
-        if not any(frame.middle[child] for child in bones.children[bone])
-        and frame.place[bone, 2] > girdles.shoulder[2] - 0.3 * girdles.height
+        for bone in bones.subtree[girdles.fork]
+        if frame.middle[bone]
+        and height[bone] > girdles.shoulder[2] - 0.3 * girdles.height
+        and not any(frame.middle[child] and height[child] > height[bone] for child in bones.children[bone])
     ]
     ends.sort(key=lambda bone: -frame.place[bone, 2])
     return [*dict.fromkeys([*ends[:20], girdles.arms_on])]

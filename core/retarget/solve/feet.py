@@ -21,7 +21,7 @@ from .foot_shape import FootShape
 from .ground import Ground, is_rigid
 from .hips import straightness
 from .holds import Hold, faded
-from .smoothing import ease
+from .smoothing import ease, speeds
 from .stage import Stage
 from .two_bone import LimbPose, smallest_rotation
 
@@ -158,7 +158,7 @@ def _rolled(
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
     tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
-    speed = np.linalg.norm(np.gradient(tip, source.time_s, axis=0), axis=-1)
+    speed = speeds(tip, source.time_s)
     touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
     touching *= 1.0 - ease(speed, *SLIDING_M_S)
     rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
@@ -210,7 +210,7 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
     slow = [
-        np.linalg.norm(np.gradient(path, source.time_s, axis=0), axis=-1) < RELEASE_SPEED_M_S
+        speeds(path, source.time_s) < RELEASE_SPEED_M_S
         for path in (heel, tip, ball)
     ]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)

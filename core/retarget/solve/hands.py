@@ -19,7 +19,7 @@ from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
-from .smoothing import ease, smoothed
+from .smoothing import ease, smoothed, speeds
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
@@ -81,7 +81,7 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
     """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
     distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
     inside = in_segment(source, segment, hand[0])
-    speed = np.linalg.norm(np.gradient(inside, source.time_s, axis=0), axis=-1)
+    speed = speeds(inside, source.time_s)
     touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S), *PASSING_M_S)
     return _near(source, distance_m, NEAR_M) * touching
 
