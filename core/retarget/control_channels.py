@@ -49,6 +49,11 @@ class ControlChannels:
     place: Array
     """(F, 3) its head in the armature's space, as the channels give it."""
 
+    def on(self, carrier: "ControlChannels") -> "ControlChannels":
+        """The same where turn and place are those in the axes of what carries it."""
+        place = carrier.place + (carrier.turn @ self.place[..., None])[..., 0]
+        return replace(self, turn=carrier.turn @ self.turn, place=place)
+
 
 def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
     """The controls in an order in which those that turn or carry others come before them.

@@ -1,9 +1,7 @@
 """A motion on a character's controls, and the points of the character that each of them moves."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-
-import numpy as np
 
 from ..arrays import Array
 from ..finish.hermite import Spline
@@ -23,38 +21,40 @@ class KeyedControl:
     """What is keyed on a control."""
 
     control: Control
-    turns: bool
-    """Whether its values begin with its rotation channels."""
-    moves: bool
-    """Whether they end with three of location."""
-    values: Array | Spline
-    """(F, C) on every frame, or few keys."""
+    rotation: Array | Spline | None
+    """(F, C) values of its rotation channels on every frame, or few keys; None where they are not keyed."""
+    location: Array | Spline | None
+    """(F, 3) those of its location."""
 
     @property
     def channel_count(self) -> int:
-        """Number of its channels, C."""
-        held = self.values
-        return int((held.values if isinstance(held, Spline) else held).shape[1])
+        """Number of its channels."""
+        return sum(_values(held).shape[1] for held in (self.rotation, self.location) if held is not None)
 
     @property
     def key_count(self) -> int:
         """Number of keys on all its channels."""
-        held = self.values
-        return int((held.values if isinstance(held, Spline) else held).size)
+        return sum(_values(held).size for held in (self.rotation, self.location) if held is not None)
 
 
 @dataclass(frozen=True, eq=False)
 class LimbPaths:
-    """A limb that shows IK."""
+    """A limb of three joints."""
 
+    bones: tuple[str, str, str]
+    """The bones that begin at them."""
     joints: tuple[Array, Array, Array]
     """(F, 3) its root, its elbow or knee and its end, in the armature's space and units."""
     root_control: int
-    """Index of the control that carries its root."""
+    """Index of the control that carries its root; NOTHING for none."""
     root_place: Array
     """(3,) the root in that control's axes, in the armature's units."""
+    bend: Array
+    """(F, 3) unit vector from the line between root and end toward elbow or knee."""
     in_fk: bool
-    """Whether it is keyed in FK as well."""
+    """Whether it is keyed in FK."""
+    in_ik: bool
+    """Whether it is keyed in IK, and shows it."""
     pole_distance: float
     """Distance of its pole from elbow or knee, in the armature's units."""
 
@@ -71,8 +71,10 @@ class ControlMotion:
     offsets: Mapping[str, Array]
     """(4, 4) by control the pose of its bone in its own axes."""
     points: tuple[HeldPoint, ...]
+    bones: Mapping[str, Array]
+    """(F, 4, 4) poses of the bones with roles, in the armature's space."""
     limbs: Mapping[str, LimbPaths]
-    """Limbs that show IK."""
+    """The limbs whose three joints are moved."""
     size: float
     """The character's, in the armature's units."""
     scale: float
@@ -90,6 +92,15 @@ class ControlMotion:
             if point.bone == control.plan.bone
         ]
 
+    def shows_ik(self, limb: str | None) -> bool:
+        """Whether a limb shows what its inverse kinematics does."""
+        return limb in self.limbs and self.limbs[limb].in_ik
+
+    def joints_m(self, limb: str) -> tuple[Array, Array, Array]:
+        """(F, 3) a limb's root, its elbow or knee, and its end [m]."""
+        root, middle, end = (self.scale * path for path in self.limbs[limb].joints)
+        return root, middle, end
+
     def fk_control(self, bone: str) -> int | None:
         """Index of the control that moves a bone in FK."""
         kinds = (ControlKind.FK, ControlKind.HIPS)
@@ -101,22 +112,17 @@ class ControlMotion:
         return next(found, None)
 
 
-def channel_values(control: Control, keyed: ControlChannels, of: ChannelValues) -> Array:
-    """(F, C) a control's rotation channels, followed by three of location, as far as they are keyed."""
-    columns = [np.zeros((len(keyed.place), 0))]
-    if keyed.rotation is not None:
-        columns.append(of(keyed.rotation, control.mode))
-    if keyed.location is not None:
-        columns.append(keyed.location)
-    return np.concatenate(columns, axis=1)
-
-
-def keyed_controls(
-    controls: Sequence[Control], channels: Sequence[ControlChannels], values: Sequence[Array | Spline]
-) -> tuple[KeyedControl, ...]:
-    """What is keyed on each control that has channels."""
+def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedControl, ...]:
+    """The motion with keys on every frame."""
     return tuple(
-        KeyedControl(control, keyed.rotation is not None, keyed.location is not None, held)
-        for control, keyed, held in zip(controls, channels, values, strict=True)
-        if keyed.rotation is not None or keyed.location is not None
+        KeyedControl(
+            control,
+            None if keyed.rotation is None else of(keyed.rotation, control.mode),
+            keyed.location,
+        )
+        for control, keyed in zip(motion.controls, motion.channels, strict=True)
     )
+
+
+def _values(held: Array | Spline) -> Array:
+    return held.values if isinstance(held, Spline) else held

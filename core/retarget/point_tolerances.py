@@ -15,10 +15,10 @@ FLOOR_M = 0.0015
 """Largest error of a sole near the floor [m]."""
 SHOWN_REST_M = 0.0001
 """Largest error of a resting foot that is shown [m]: it must not slide."""
-HIDDEN_REST_M = 0.0004
-"""Largest error of a resting foot by the controls that are not shown [m]."""
-SWITCH_M = 0.0005
+SWITCH_M = 0.0008
 """Largest distance of wrists and ankles between IK and FK [m]."""
+CARRIED_SHARE = 0.5
+"""Share of the tolerance for a limb's root, and as much for elbow or knee on it."""
 LEAST_M = 0.0002
 """Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
 
@@ -45,16 +45,17 @@ class ToleranceRules:
             point: The point.
             path: (F, 3) its places in the armature's axes [m].
             shown: Whether the point is what the character shows; otherwise it is what a switch would show.
-            ends_m: Tolerance of wrists, ankles and soles [m].
+            ends_m: Tolerance of wrists and ankles [m].
         """
         allowed = np.full(len(path), self.general_m)
-        if point.kind is not PointKind.BODY:
+        if point.kind is PointKind.END:
             allowed[:] = min(ends_m, self.general_m)
         if point.kind is PointKind.SOLE:
-            allowed[self._near_floor(path)] = min(FLOOR_M, ends_m, self.general_m)
-        if point.kind is not PointKind.BODY:
-            rest_m = SHOWN_REST_M if shown else HIDDEN_REST_M
-            allowed[self.resting(point.limb)] = min(rest_m, self.general_m)
+            allowed[self._near_floor(path)] = min(FLOOR_M, self.general_m)
+        if shown and point.kind is not PointKind.BODY:
+            allowed[self.resting(point.limb)] = min(SHOWN_REST_M, self.general_m)
+        elif point.kind is PointKind.END:
+            allowed[self.resting(point.limb)] = min(SWITCH_M, self.general_m)
         return allowed
 
     def resting(self, limb: str | None) -> BoolArray:

@@ -5,10 +5,11 @@ from collections.abc import Iterable, Sequence
 import bpy
 import numpy as np
 
+from ....core.arrays import Array
+from ....core.finish.hermite import Spline
 from ....core.retarget.control_channels import Control
 from ....core.retarget.control_motion import ControlMotion, KeyedControl
-from ..fcurves import bone_path
-from ..rotation_modes import rotation_path
+from ..rotation_modes import bone_path, rotation_path
 from .dependencies import active_constraints, drivers
 
 MOST_NAMES = 3
@@ -24,11 +25,19 @@ def driven_channels(armature_object: bpy.types.Object) -> set[tuple[str, int]]:
 
 
 def keyed_channels(keyed: KeyedControl) -> list[tuple[str, int]]:
-    """Data path and index of each column of a control's values."""
-    name, mode = keyed.control.name, keyed.control.mode
-    count = keyed.channel_count - (3 if keyed.moves else 0)
-    channels = [(bone_path(name, rotation_path(mode)), index) for index in range(count)]
-    return channels + [(bone_path(name, "location"), index) for index in range(3) if keyed.moves]
+    """Data path and index of each channel of a control that is keyed."""
+    return [(path, index) for path, held in keyed_paths(keyed) for index in range(_width(held))]
+
+
+def keyed_paths(keyed: KeyedControl) -> list[tuple[str, Array | Spline]]:
+    """Data path of each property of a control that is keyed, and what it holds."""
+    name, rotation = keyed.control.name, rotation_path(keyed.control.mode)
+    both = ((bone_path(name, rotation), keyed.rotation), (bone_path(name, "location"), keyed.location))
+    return [(path, held) for path, held in both if held is not None]
+
+
+def _width(held: Array | Spline) -> int:
+    return int((held.values if isinstance(held, Spline) else held).shape[1])
 
 
 def channel_notes(
@@ -76,8 +85,8 @@ def _is_constrained(bone: bpy.types.PoseBone, control: Control) -> bool:
 
 
 def _is_locked(bone: bpy.types.PoseBone, keyed: KeyedControl) -> bool:
-    turned = keyed.turns and any(bone.lock_rotation)
-    return bool(turned or (keyed.moves and any(bone.lock_location)))
+    turned = keyed.rotation is not None and any(bone.lock_rotation)
+    return bool(turned or (keyed.location is not None and any(bone.lock_location)))
 
 
 def _held_back(armature_object: bpy.types.Object, motion: ControlMotion) -> list[str]:

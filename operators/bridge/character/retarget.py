@@ -12,7 +12,7 @@ from ....core.retarget.character import Character
 from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.character_motion import CharacterMotion, Similarity
 from ....core.retarget.control_channels import control_channels
-from ....core.retarget.control_motion import ControlMotion, KeyedControl, channel_values, keyed_controls
+from ....core.retarget.control_motion import ControlMotion, KeyedControl, dense_controls
 from ....core.retarget.control_plan import ControlKind, limb_bones, limb_keys, planned_controls
 from ....core.retarget.control_reduction import reduce_controls
 from ....core.retarget.control_targets import control_targets
@@ -42,8 +42,8 @@ STILL_FRAMES = 2
 class Retargeted:
     """A character's motion, not yet written."""
 
-    armature: str
-    """Name of the armature object."""
+    session_uid: int
+    """Blender's number of the armature object in this session."""
     character: Character
     character_map: CharacterMap
     """The map, completed."""
@@ -63,18 +63,18 @@ class Retargeted:
         """Number of keys with one on every frame."""
         return sum(held.channel_count for held in self.keyed) * len(self.frames)
 
-    def write(
-        self, scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action | str
-    ) -> bpy.types.Action:
+    def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
         """Write the motion into an Action, and let it animate the character.
 
         Args:
             scene: The scene, which shows the character's new pose.
-            armature_object: The character.
             action: The name of a new Action; or an Action, in which what an earlier retargeting made for the
                 character is replaced.
+
+        Raises:
+            InputError: The character has been deleted meanwhile.
         """
-        return write_retargeted(self, scene, armature_object, action)
+        return write_retargeted(self, scene, action)
 
 
 def retarget(
@@ -114,13 +114,9 @@ def retarget(
     )
     probed = probe_controls(armature_object, character_map, planned)
     yield Progress("Bringing the motion onto the controls", PROBED)
-    controls = _on_controls(character, character_map, motion, options, probed)
+    controls = _on_controls(character, character_map, motion, probed)
     if options.tolerance_m is None:
-        values = [
-            channel_values(control, keyed, rotation_values)
-            for control, keyed in zip(controls.controls, controls.channels, strict=True)
-        ]
-        keyed = keyed_controls(controls.controls, controls.channels, values)
+        keyed = dense_controls(controls, rotation_values)
     else:
         up = find_stance(character, character_map)[2]
         rules = ToleranceRules(motion, source.time_s, up, options.tolerance_m)
@@ -128,7 +124,7 @@ def retarget(
         keyed = yield from within("Finding the keys", reducing, PROBED, 1.0)
     notes = (*motion.notes, *probed.notes, *channel_notes(armature_object, keyed, controls))
     return Retargeted(
-        armature_object.name,
+        armature_object.session_uid,
         character,
         character_map,
         options,
@@ -145,7 +141,6 @@ def _on_controls(
     character: Character,
     character_map: CharacterMap,
     motion: CharacterMotion,
-    options: RetargetOptions,
     probed: ProbedControls,
 ) -> ControlMotion:
     """The motion on the controls, by channels for every frame."""
@@ -158,9 +153,8 @@ def _on_controls(
         wanted=wanted,
         offsets=probed.offsets,
         points=held_points(character, character_map, motion.soles),
-        limbs=limb_paths(
-            character, character_map, motion, options, probed.controls, probed.offsets, probed.poles
-        ),
+        bones=motion.poses,
+        limbs=limb_paths(character, character_map, motion, probed.controls, probed.offsets, probed.poles),
         size=probed.size,
         scale=character.scale,
     )

@@ -8,12 +8,12 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.errors import InputError
 from ....core.finish.hermite import Spline
 from ..actions import assign_action, channelbag_for
-from ..fcurves import bone_path
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
-from ..rotation_modes import ALL_PATHS
-from .channel_notes import driven_channels, keyed_channels
+from ..rotation_modes import ALL_PATHS, bone_path
+from .channel_notes import driven_channels, keyed_paths
 
 if TYPE_CHECKING:
     from .retarget import Retargeted
@@ -27,10 +27,10 @@ OBJECT_GROUP = "Object Transforms"
 def write_retargeted(
     retargeted: "Retargeted",
     scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
     action: bpy.types.Action | str,
 ) -> bpy.types.Action:
     """Write as `Retargeted.write` says."""
+    armature_object = _armature_of(retargeted)
     if isinstance(action, str):
         action = bpy.data.actions.new(action)
     channelbag = channelbag_for(action, armature_object)
@@ -40,16 +40,17 @@ def write_retargeted(
     frames = retargeted.frames
     made: list[tuple[str, int]] = []
     for keyed in retargeted.keyed:
-        for column, (path, index) in enumerate(keyed_channels(keyed)):
-            if (path, index) in driven:
-                continue
-            fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
-            held = keyed.values
-            if isinstance(held, Spline):
-                write_smooth_keys(fcurve, frames[held.keys], held.values[:, column], held.slopes[:, column])
-            else:
-                write_linear_keys(fcurve, frames, held[:, column])
-            made.append((path, index))
+        for path, held in keyed_paths(keyed):
+            values = held.values if isinstance(held, Spline) else held
+            for index in range(values.shape[1]):
+                if (path, index) in driven:
+                    continue
+                fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
+                if isinstance(held, Spline):
+                    write_smooth_keys(fcurve, frames[held.keys], values[:, index], held.slopes[:, index])
+                else:
+                    write_linear_keys(fcurve, frames, values[:, index])
+                made.append((path, index))
     for (bone, name), value in retargeted.properties.items():
         path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(name)}"]'
         made.append(_write_first(channelbag, path, 0, bone, frames, float(value)))
@@ -63,6 +64,21 @@ def write_retargeted(
     assign_action(armature_object, action)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return action
+
+
+def _armature_of(retargeted: "Retargeted") -> bpy.types.Object:
+    """The character, which may have been renamed meanwhile.
+
+    Raises:
+        InputError: It is gone.
+    """
+    uid = retargeted.session_uid
+    found = next((one for one in bpy.data.objects if one.session_uid == uid), None)
+    if found is None:
+        raise InputError(
+            f"armature '{retargeted.character.name}' has been deleted meanwhile; nothing was changed"
+        )
+    return found
 
 
 def _write_first(
