@@ -63,7 +63,7 @@ def foot_turns(
     pitch = soles.above_ground(
         _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
     )
-    standing = ground.resting + (1.0 - ground.resting) * _still(speed, above)
+    standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
     pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
     turned = upright * _held_heading(shins, contacts, time_s)
     steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)

@@ -76,8 +76,8 @@ class CharacterMotion:
     size: float
     """The character's size: its legs' length over the performer's."""
     stance: Array = field(default_factory=lambda: np.eye(3))
-    """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these axes
-    and in meters, from the armature's origin."""
+    """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these
+    axes and in meters, from the armature's origin."""
     facing: Array = field(default_factory=lambda: np.eye(3))
     """(3, 3) from directions of the performer's world to the character's; 1 with `Placement.PERFORMER`."""
     way_m: Array = field(default_factory=lambda: np.zeros(3))

@@ -116,7 +116,7 @@ def _draw_results(
         return
     lines = column.column(align=True)
     if chosen.outdated:
-        draw_sentence(lines, context, label("The motion is newer: retarget again"), "ERROR")
+        draw_sentence(lines, context, label("Motion is newer: retarget again"), "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")
     column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")

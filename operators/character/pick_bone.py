@@ -12,7 +12,9 @@ from ..shell.requirements import idle
 from .bone_under_mouse import bone_under
 from .characters import active_character, find_character, full_title
 from .requirements import armature
-from .role_bone import RoleBoneOperator, give_bone, told
+from .role_bone import RoleBoneOperator, active_bone_of, give_bone, told
+
+TAKES_ACTIVE = {"RET", "NUMPAD_ENTER"}
 
 
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
@@ -29,15 +31,12 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip, which says where the role's bone comes from."""
         known = told(context, properties.role)
-        asked = label("Click on the bone in the viewport to choose it; Ctrl takes the active bone")
+        asked = label("Click on the bone in the viewport to choose it")
         return f"{known}. {asked}" if known else asked
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on a bone."""
-        if event.ctrl and not self.bone:
-            active = active_character(context.scene).armature.data.bones.active
-            self.bone = active.name if active is not None else ""
-        if self.bone or event.ctrl or bpy.app.background:
+        if self.bone or bpy.app.background:
             return self.execute(context)
         self._ask(context, "")
         context.window_manager.keymark_progress.show("", 0.0)
@@ -55,6 +54,8 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _watch(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type in TAKES_ACTIVE and event.value == "PRESS":
+            return self._take(context, active_bone_of(active_character(context.scene)))
         clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if not clicked and event.type != "MOUSEMOVE":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
@@ -66,17 +67,28 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         if not clicked:
             self._ask(context, under or "")
             return {"PASS_THROUGH"}
-        if under is None:
+        return self._take(context, under)
+
+    def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
+        """Give the bone to the role; wait on where there is none."""
+        if bone is None:
             say(self, "WARNING", "There is no bone of the character; click on one")
             return {"RUNNING_MODAL"}
-        self.bone = under
+        self.bone = bone
         self.cancel(context)
         return self.execute(context)
 
     def _ask(self, context: bpy.types.Context, under: str) -> None:
         role = full_title(self.role)
+        active = active_bone_of(active_character(context.scene))
         if under:
             words = label("{role}: {bone}   |   Esc: Cancel", role=role.capitalize(), bone=under)
+        elif active is not None:
+            words = label(
+                "Click on the bone: {role}   |   Enter: {bone}, the active one   |   Esc: Cancel",
+                role=role,
+                bone=active,
+            )
         else:
             words = label("Click on the bone: {role}   |   Esc: Cancel", role=role)
         context.workspace.status_text_set(words)

@@ -6,6 +6,7 @@ from ..bridge.character.read_character import needs_override
 from ..shell.messages import label
 from ..shell.takes import active_take, find_take
 from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
+from .role_bone import active_bone_of
 from .source_motion import missing_source
 
 
@@ -85,6 +86,6 @@ def active_bone(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    if active_character(context.scene).armature.data.bones.active is None:
+    if active_bone_of(active_character(context.scene)) is None:
         return "Make a bone of the character active first: click on it in Pose Mode"
     return None

@@ -69,6 +69,8 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
 
     def finish(self, scene: bpy.types.Scene, result: RetargetedCharacter) -> None:
         """Write the Action, and list it with what was measured of it."""
+        from ...core.retarget.quality import Quality
+
         take = take_by_identifier(scene, result.take)
         character = next((each for each in take.characters if _uid(each.armature) == result.uids[0]), None)
         source_action = next((each for each in bpy.data.actions if _uid(each) == result.uids[1]), None)
@@ -82,11 +84,10 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
             earlier = result_to_replace(character, result.kind, source_action)
         into = earlier.action if earlier is not None else f"{result.title} {character.armature.name}"
         action = result.retargeted.write(scene, into)
-        action.use_fake_user = True
         source = SourceMotion(result.kind, source_action, actor, result.title)
         listed = add_result(character, source, action)
-        show_lines(listed, figures(result.retargeted), result.retargeted.notes)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        quality = getattr(result.retargeted, "quality", Quality(dense_keys=result.retargeted.keys_before))
+        show_lines(listed, figures(quality), result.retargeted.notes)
         for note in result.retargeted.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
         say(

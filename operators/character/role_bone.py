@@ -41,6 +41,12 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
     shown.bones[index].bone = bone
 
 
+def active_bone_of(character: bpy.types.PropertyGroup) -> str | None:
+    """Name of the active bone of a character's armature; None where there is none."""
+    active = character.armature.data.bones.active if character.armature is not None else None
+    return active.name if active is not None else None
+
+
 def told(context: bpy.types.Context, role: str) -> str:
     """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
     character = find_character(context.scene)

@@ -12,6 +12,7 @@ import bpy
 import pytest
 from keymark.core.library.library_file import library_digest, library_to_json, read_library
 from keymark.core.shoot.discovery.take_path import take_path
+from keymark.core.take import conversion_digest as digests
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import is_up_to_date, read_record
 from keymark.core.take.description import describe, effective_settings
@@ -277,8 +278,13 @@ def test_a_library_file_reads_the_same(saved: Saved) -> None:
     assert len(written["postures"]) == 3 and len(written["motions"]) == 2
 
 
-def test_a_batch_regards_what_was_converted_as_unchanged(saved: Saved) -> None:
-    """The digest of take, settings and library is the one recorded then; another keyframe makes another."""
+def test_a_batch_regards_what_was_converted_as_unchanged(
+    saved: Saved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for the format of results, the digest of take, settings and library is the one recorded then.
+
+    Another keyframe makes another; and results of an earlier format are converted anew.
+    """
     results = saved.folder / "results" / "take"
     record = read_record(results)
     assert record.keymark in VERSIONS and record.library == "gestures"
@@ -290,6 +296,8 @@ def test_a_batch_regards_what_was_converted_as_unchanged(saved: Saved) -> None:
         libraries = [library_digest(library)]
         return conversion_digest(description, settings, libraries, results, record.keymark)
 
+    assert now() != record.digest
+    monkeypatch.setattr(digests, "FORMAT", 1)
     assert now() == record.digest
     assert not is_up_to_date(results, record.digest)
     for name in record.files:

@@ -14,8 +14,10 @@ SAME_PLACE = 0.003
 """Points closer than this share of the figure's size lie at one place."""
 NEAR_PLACE = 0.03
 """Two bones that should meet and are closer than this meet, though somebody moved them."""
-FAR_PARENT = 0.22
-"""A bone farther from its parent's head than this, in sizes, may hang on it for control, not by anatomy."""
+LARGEST_END = 0.2
+"""A foot or a hand with all below it reaches no farther than this, in sizes."""
+UNEVEN = 3.0
+"""Neighboring bones of a limb differ in length by no more than this factor."""
 MEETING_TAILS = 0.5
 """Least share of bones whose tail meets a child's head where tails say something."""
 ONWARD = 0.6
@@ -232,62 +234,83 @@ def _joined_roots(head: Array, tail: Array, parent: IndexArray, size: float) -> 
 def _joined_ends(
     head: Array, tail: Array, parent: IndexArray, readings: Sequence[NameReading], size: float
 ) -> IndexArray:
-    """Feet and hands that hang on a distant bone joined to the limb whose end they lie at."""
+    """Feet and hands that hang on the root or a control joined to the limb whose end they lie at."""
     parent = parent.copy()
     for bone in range(len(parent)):
-        if not _hangs_far(bone, head, tail, parent, size) or readings[bone].mechanism:
+        above = int(parent[bone])
+        if readings[bone].mechanism or above < 0:
             continue
-        onto = _end_at(bone, head, tail, parent, readings, size)
-        if onto is not None:
-            parent[bone] = onto
+        own = _below(parent, bone)
+        reach = float(np.max(np.linalg.norm(head[own] - head[bone], axis=1)))
+        if (
+            reach < LARGEST_END * size
+            and _is_hub(above, parent)
+            and not _meets(tail, head, above, bone, size)
+        ):
+            onto = _limb_ending_at(bone, own, head, tail, parent, readings, size)
+            if onto is not None:
+                parent[bone] = onto
     return parent
 
 
-def _hangs_far(bone: int, head: Array, tail: Array, parent: IndexArray, size: float) -> bool:
-    """Whether a bone lies far from its parent and from where that ends."""
-    above = int(parent[bone])
-    if above < 0:
-        return True
-    if np.linalg.norm(head[above] - head[bone]) < FAR_PARENT * size:
-        return False
-    return not np.linalg.norm(tail[above] - head[bone]) < NEAR_PLACE * size
+def _is_hub(bone: int, parent: IndexArray) -> bool:
+    """Whether a bone carries half of all, or stands near a root."""
+    near_root = parent[bone] < 0 or parent[parent[bone]] < 0
+    return bool(near_root or 2 * _below(parent, bone).sum() >= len(parent))
 
 
-def _end_at(
-    bone: int, head: Array, tail: Array, parent: IndexArray, readings: Sequence[NameReading], size: float
+def _meets(tail: Array, head: Array, first: int, second: int, size: float) -> bool:
+    """Whether a bone ends where another begins."""
+    return bool(np.linalg.norm(tail[first] - head[second]) < NEAR_PLACE * size)
+
+
+def _limb_ending_at(
+    bone: int,
+    own: BoolArray,
+    head: Array,
+    tail: Array,
+    parent: IndexArray,
+    readings: Sequence[NameReading],
+    size: float,
 ) -> int | None:
-    """The last bone of a chain that a bone continues; None where there is none, or another continues it."""
-    top, _ = _tops(parent)
-    own = _below(parent, bone)
-    side = readings[bone].side
+    """The last bone of a limb that a bone continues; None where there is none, or another continues it."""
+    above = parent[bone]
     has_child = np.bincount(parent[parent >= 0], minlength=len(parent)) > 0
-    best, least = None, np.inf
-    for other in range(len(parent)):
-        above = int(parent[other])
-        if own[other] or above < 0 or (side and readings[other].side not in (side, None)):
-            continue
-        way = float(np.linalg.norm(head[other] - head[bone]))
-        if way < NEAR_PLACE * size and not has_child[other]:  # the end of the chain is a bone of its own
-            larger = own.sum() > 1 or readings[other].other or readings[other].mechanism
-            onward = readings[bone].clear_part is not None or larger
-            ends = bool(onward and not readings[other].clear_part and above != parent[bone])
-            if ends and way < least and parent[above] >= 0:
-                best, least = above, way
-        elif not has_child[other] and parent[above] >= 0 and way < LONGEST_BONE * size:
-            gap = float(np.linalg.norm(tail[other] - head[bone]))
-            if not np.isfinite(gap):
-                gap = 0.0 if _continues(other, bone, head, parent) else np.inf
-                gap += 0.1 * way
-            if gap < max(NEAR_PLACE * size, 0.1 * way) and gap < least:
-                best, least = other, gap
-    return best
+    way = np.linalg.norm(head - head[bone], axis=1)
+    side = readings[bone].side
+    limb = ~own & (parent >= 0)
+    limb &= np.where(parent >= 0, parent[np.maximum(parent, 0)] >= 0, False)
+    limb &= np.array([not side or reading.side in (side, None) for reading in readings])
+    limb &= np.array([not reading.mechanism for reading in readings])
+    limb[above] = False
+    ends = np.flatnonzero(limb & ~has_child & (way < NEAR_PLACE * size))
+    for end in ends[np.argsort(way[ends], kind="stable")]:  # the limb's end may be a bone of its own
+        plays = readings[end].clear_part
+        continues = readings[bone].clear_part is not None or readings[end].other or own.sum() > 1
+        if parent[end] != above and not plays and continues:
+            return int(parent[end])
+    taken = limb & (way < SAME_PLACE * size)
+    if taken.any():
+        return None
+    gap = np.linalg.norm(tail - head[bone], axis=1)
+    if np.isfinite(gap).any():
+        meeting = np.flatnonzero(limb & (gap < NEAR_PLACE * size))
+        return int(meeting[np.argmax(way[meeting])]) if len(meeting) else None
+    onward = [
+        end
+        for end in np.flatnonzero(limb & ~has_child & (way < LONGEST_BONE * size) & (way > NEAR_PLACE * size))
+        if _continues(int(end), bone, head, parent)
+    ]
+    return int(min(onward, key=lambda end: way[end])) if onward else None
 
 
 def _continues(end: int, bone: int, head: Array, parent: IndexArray) -> bool:
-    """Whether a bone lies in the direction in which a chain's last bone came."""
+    """Whether a bone lies in the direction in which a chain's last bone came, about as far."""
     came, goes = head[end] - head[parent[end]], head[bone] - head[end]
-    length = float(np.linalg.norm(came) * np.linalg.norm(goes))
-    return length > 0.0 and float(came @ goes) / length > ONWARD
+    lengths = float(np.linalg.norm(came)), float(np.linalg.norm(goes))
+    if min(lengths) * UNEVEN < max(lengths):
+        return False
+    return float(came @ goes) > ONWARD * lengths[0] * lengths[1]
 
 
 def _tops(parent: IndexArray) -> tuple[IndexArray, IndexArray]:

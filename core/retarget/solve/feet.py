@@ -12,18 +12,19 @@ from scipy.spatial.transform import Rotation
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...body.soles import sole_offsets
 from ...finish.contacts import RELEASE_SPEED_M_S, Contact
 from .foot_shape import FootShape
 from .ground import Ground, is_rigid
+from .hips import straightness
 from .holds import Hold, faded
-from .smoothing import ease
+from .smoothing import ease, speeds
 from .stage import Stage
 from .two_bone import LimbPose, smallest_rotation
 
-UP = np.array([0.0, 0.0, 1.0])
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
 """Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
 LOW_M = (0.02, 0.10)
@@ -31,15 +32,16 @@ LOW_M = (0.02, 0.10)
 which it is rigid with the shin."""
 TOUCHING_M = (0.01, 0.04)
 """Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
-POINTING_RAD = (np.radians(3.0), np.radians(10.0))
-"""Pitch from which a foot on the ground rolls over its front, and does so in full."""
+SLIDING_M_S = (0.4, 1.2)
+"""Speed of the tip up to which the foot rolls over it, and from which it swings over the ground."""
+LARGEST_ROLL_RAD = np.radians(20.0)
+"""Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
+rises higher than that front allows leaves the ground with it."""
 LARGEST_CHANGE_RAD = np.radians(45.0)
 """Largest change of a foot's pitch for a foot of another shape."""
 BALL_AHEAD = 0.62
 """Place of the ball between ankle and tip of the performer's foot."""
 LONGEST_ROLL_S = 0.5
-STRAIGHT = 0.01
-"""What a leg's length exceeds that between its ends by, as a share, when it counts as nearly straight."""
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
 
@@ -53,6 +55,8 @@ class FootPath:
     """(F, 3) where the ankle shall be [m]."""
     planted: BoolArray
     """(F,) whether the ankle must get there: the foot stands on the ground."""
+    over_m: Array
+    """(F,) how much higher that is than with the sole on the ground [m]."""
     ground_m: Array
     """(F,) height of the ground under it [m]."""
 
@@ -108,7 +112,7 @@ def plan_foot(
         planted[frames] = True
     path = ankle + faded(holds, time_s)
     path[:, 2] = np.maximum(path[:, 2], ground_m + depth_m)
-    return FootPath(turn, path, planted, ground_m)
+    return FootPath(turn, path, planted, path[:, 2] - ground_m - depth_m, ground_m)
 
 
 def sole_depth_m(turn: Array, shape: FootShape) -> Array:
@@ -147,21 +151,37 @@ def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
 def _rolled(
     source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, height_m: Array
 ) -> Array:
-    """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
+    """Turns of the foot, pitched so that its front stays on the ground where the performer's does.
+
+    Nowhere is it pitched further than the ground lets it: a larger foot than the performer's lifts its toes.
+    """
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = (
-        source.start[f"foot.{side}"]
-        + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[SIDES.index(side)][1]
-    )
-    over = tip[:, 2] - ground.height_m[:, point]
-    pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
-    share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
-    level, a, b = _heights(turn, shape.front)
-    ratio = np.clip((-height_m - level) / np.maximum(np.hypot(a, b), 1e-9), -1.0, 1.0)
-    middle = (np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi
-    change = np.clip(middle + np.arccos(ratio), -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)
-    return np.asarray(turn @ _about_x(share * change))
+    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
+    speed = speeds(tip, source.time_s)
+    touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
+    touching *= 1.0 - ease(speed, *SLIDING_M_S)
+    rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
+    change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
+    in_front = [point for point in shape.foot if point[1] < 0.0]
+    behind = [point for point in shape.foot if point[1] >= 0.0]
+    most = np.minimum.reduce([_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front])
+    least = np.maximum.reduce([_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind])
+    change = np.clip(change, np.minimum(least, most), most)
+    return np.asarray(turn @ _about_x(np.clip(change, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)))
+
+
+def _pitches_to_ground(turn: Array, point: Array, height_m: Array, toes: float) -> Array:
+    """(F,) pitches that bring a point of the sole down to the ground, toes downward (1) or upward (-1).
+
+    Infinite, in that direction, where the ankle is so high that no pitch does.
+    """
+    level, a, b = _heights(turn, point)
+    ratio = (-height_m - level) / np.maximum(np.hypot(a, b), 1e-9)
+    # The pitch at which the point is highest, a quarter turn or so from the standing foot.
+    highest = toes * ((toes * np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi)
+    pitch = highest + toes * np.arccos(np.clip(ratio, -1.0, 1.0))
+    return np.where(ratio < -1.0, toes * np.inf, pitch)
 
 
 def _heights(turn: Array, point: Array) -> tuple[Array, Array, Array]:
@@ -190,7 +210,7 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
     slow = [
-        np.linalg.norm(np.gradient(path, source.time_s, axis=0), axis=-1) < RELEASE_SPEED_M_S
+        speeds(path, source.time_s) < RELEASE_SPEED_M_S
         for path in (heel, tip, ball)
     ]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
@@ -228,8 +248,7 @@ def _footprint(
     nearly straight count more: there a knee bends a lot for a little way.
     """
     frames = slice(rest.first, rest.last + 1)
-    weight = 1.0 / (STRAIGHT + 1.0 - leg.extension_m[frames] / leg.length_m)
-    place = np.average(leg.end[frames], axis=0, weights=weight)
+    place = np.average(leg.end[frames], axis=0, weights=straightness(leg)[frames])
     found = np.broadcast_to(place, (len(turn), 3)).copy()
     into, out = rest.first - first, rest.last + 1 - first
     found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel

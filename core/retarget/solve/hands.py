@@ -12,15 +12,16 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
-from .smoothing import ease, smoothed
+from .smoothing import ease, smoothed, speeds
 from .stage import Stage
-from .two_bone import LimbPose, reach_for, stretched_m, unit
+from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
 NEAR_M = (0.03, 0.12)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
@@ -31,6 +32,8 @@ FLOOR_M = (0.12, 0.35)
 """The same for the height of a wrist over the floor."""
 PASSING_M_S = (0.25, 0.75)
 """Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
+LINGER_S = 0.25
+"""Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
 CHANGE_S = 0.1
 """Standard deviation in time of the smoothing of what counts how much."""
@@ -38,6 +41,8 @@ ARM_SOFT = 0.97
 """Share of its length from which an arm resists being stretched."""
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
+LEAST_HEADING = 0.02
+"""Part of the back of the hand in the heading of fingers."""
 ROUNDS = 4
 """Rounds in which two hands find a place that both reach."""
 
@@ -76,8 +81,8 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
     """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
     distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
     inside = in_segment(source, segment, hand[0])
-    speed = np.linalg.norm(np.gradient(inside, source.time_s, axis=0), axis=-1)
-    touching = 1.0 - ease(smoothed(speed, source.time_s, CHANGE_S), *PASSING_M_S)
+    speed = speeds(inside, source.time_s)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S), *PASSING_M_S)
     return _near(source, distance_m, NEAR_M) * touching
 
 
@@ -168,6 +173,24 @@ def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
     middle = arm.middle + blend * (solved.middle - arm.middle)
     end = arm.end + blend * (solved.end - arm.end)
     return LimbPose(upper, lower, arm.start, middle, end, hinge)
+
+
+def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
+    """(F, 3, 3) turns of a hand, bent back at the wrist where it would be in the floor.
+
+    Args:
+        turn: (F, 3, 3) of the hand, canonical.
+        wrist_m: (F,) height of the wrist over the floor [m].
+        along: (3,) from wrist to fingertips at rest, palm down, canonical [m].
+    """
+    length_m = float(np.linalg.norm(along))
+    fingers = turn @ (along / length_m)
+    least = np.clip(-wrist_m / length_m, -1.0, 0.0)
+    # Fingers that point straight down have no heading of their own: they bend toward the back of the hand.
+    level = (fingers + LEAST_HEADING * turn[..., 2]) * [1.0, 1.0, 0.0]
+    level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
+    bent = smallest_rotation(fingers, unit(level)) @ turn
+    return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
 
 
 def _brought_together(

@@ -151,7 +151,8 @@ class RestBody:
         """
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
         for limb, roles in LIMBS.items():
-            there = [role for role in roles[1:] if role in self.first]
+            long_bones = roles[1:] if limb.startswith("arm") else roles[:3]
+            there = [role for role in long_bones if role in self.first]
             for role, below in zip(there, there[1:], strict=False):
                 if not self.length_m(role, below) > SHORTEST_SHARE * extent:
                     raise InputError(

@@ -1,4 +1,4 @@
-"""Signals over time: smoothed, eased between two bounds, and the least smooth signal above a needed one."""
+"""Signals over time: speeds, values eased between two bounds, smoothed, or smoothly kept above others."""
 
 import numpy as np
 from scipy.ndimage import convolve1d, gaussian_filter1d, maximum_filter1d
@@ -10,6 +10,13 @@ from ...finish.foot_ground import smooth_step
 def ease(value: Array, start: float, end: float) -> Array:
     """0 up to `start`, 1 from `end` on (or the other way round, where `end` is below), smooth between."""
     return smooth_step((np.asarray(value) - start) / (end - start))
+
+
+def speeds(path: Array, time_s: Array) -> Array:
+    """(F,) speed along a path (F, 3) [m/s]."""
+    if len(path) < 2:
+        return np.zeros(len(path))
+    return np.asarray(np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1))
 
 
 def smoothed(values: Array, time_s: Array, deviation_s: float) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ..character_motion import FootRest, HandGoal
@@ -13,8 +14,8 @@ from ..roles import LIMBS
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
 from .foot_shape import FootShape
 from .ground import Ground
-from .hands import ARM_SOFT, floor_goals, hand_goals, reach
-from .hips import LEG_SOFT, lowered_m, needed_drop_m
+from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
+from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
 from .rest_body import RestBody
 from .stage import Stage
 from .turns import bone_turns, joint_places
@@ -96,20 +97,23 @@ class Solution:
             if (leg := self.limb(f"leg.{side}")) is not None
         }
 
-    def lower_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
-        """Lower the hips for feet that stand and hands on the floor."""
-        if not feet:
+    def move_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
+        """Move the hips with feet that stand, and lower them for these and for hands on the floor."""
+        legs = {side: leg for side in feet if (leg := self.limb(f"leg.{side}")) is not None}
+        if not legs:
             return
+        time_s, leg_m = self.source.time_s, self.body.leg_m
+        ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
+        raised = raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
         needed = []
-        for side, foot in feet.items():
-            leg = self.limb(f"leg.{side}")
-            if leg is not None:
-                needed.append(needed_drop_m(leg, foot.ankle, foot.planted, LEG_SOFT, self.source.time_s))
+        for side, leg in legs.items():
+            moved = feet[side].ankle - raised[:, None] * UP
+            needed.append(needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
         for side, arm in arms.items():
             goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
-            needed.append(share * needed_drop_m(arm, goal, share > 0.0, ARM_SOFT, self.source.time_s))
-        drop_m = lowered_m(needed, self.source.time_s, self.body.leg_m)
-        self.hips = self.hips - drop_m[:, None] * np.array([0.0, 0.0, 1.0])
+            moved = goal - raised[:, None] * UP
+            needed.append(share * needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
+        self.hips = self.hips + (raised - lowered_m(needed, time_s, leg_m))[:, None] * UP
 
     def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
         """Bring legs to where the feet belong."""
@@ -134,7 +138,17 @@ class Solution:
             solved = reach(arm, goals[side].place_m, goals[side].share)
             self._turn(f"upper_arm.{side}", solved.upper_turn)
             self._turn(f"forearm.{side}", solved.lower_turn)
+            self._keep_above_floor(side, solved.end)
         return goals
+
+    def _keep_above_floor(self, side: str, wrist: Array) -> None:
+        role = f"hand.{side}"
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.height_m.min(axis=1))
+        if tip is not None:
+            aligned = self.alignment[role]
+            turn = self.turns[self.body.first[role]] @ aligned.T
+            along = aligned @ (tip - self.body.joint(role))
+            self._turn(role, above_floor(turn, wrist[:, 2] - floor_m, along))
 
     def _turn(self, role: str, turn: Array) -> None:
         if self.body.is_moved(role):

@@ -60,7 +60,7 @@ def solve_motion(
     yield Progress("Planting feet", 0.4)
     feet = solution.plan_feet(shapes) if options.plant_feet else {}
     arms = solution.arms() if options.reach_hands else {}
-    solution.lower_hips(feet, arms)
+    solution.move_hips(feet, arms)
     solution.plant(feet, shapes)
     yield Progress("Reaching with hands", 0.6)
     hands = solution.reach_with_hands() if arms else {}

@@ -160,14 +160,14 @@ class Hands:
         for shares in (ACROSS[:1], ACROSS[1:]):
             found = yield from self._search(kind, copy, wanted, shares)
             if found is None:
-                yield from self._scroll(kind, "WHEELUPMOUSE", 40)
+                yield from self.scroll(kind, "WHEELUPMOUSE", 40)
             for _ in range(PAGES):
                 if found is not None:
                     break
                 found = yield from self._search(kind, copy, wanted, shares)
                 seen = self._showing(kind)
                 if found is None:
-                    yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
+                    yield from self.scroll(kind, "WHEELDOWNMOUSE", 8)
                     if self._showing(kind) == seen:
                         break
             if found is not None:
@@ -205,7 +205,8 @@ class Hands:
                 operator()
         return str(manager.clipboard)
 
-    def _scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
+    def scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
+        """Turn the wheel over a sidebar."""
         region = self.region(kind, "UI")
         yield from self.move(region.x + 0.4 * region.width, region.y + 0.5 * region.height)
         for _ in range(notches):
