@@ -67,7 +67,8 @@ class RetargetRecord:
     notes: tuple[str, ...] = ()
     """What a person should know, one sentence each."""
     files: Mapping[str, str] = field(default_factory=dict)
-    """SHA-256 of every other file of the result; for character.blend that of its Action's curves."""
+    """SHA-256 of files of the result; for character.blend that of its Action's curves. Exports are left out:
+    Blender writes the time into them."""
 
 
 def write_retarget_record(folder: Path, record: RetargetRecord) -> None:

@@ -34,13 +34,13 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
         InputError: Blender cannot read the .blend.
     """
     set_scene_range(scene, USUAL_SIZE, motion.fps, motion.frame_start, len(motion.time_s))
+    set_look(scene)
     if blend is not None:
         _copy_footage(scene, blend)
     rate = scene.render.fps / scene.render.fps_base
     frames = scene_frames(motion.time_s, motion.frame_start, rate)
     scene.frame_start = motion.frame_start
     scene.frame_end = max(scene.frame_start + len(frames) - 1, int(np.floor(frames[-1])))
-    set_look(scene)
     return frames
 
 

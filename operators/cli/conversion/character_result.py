@@ -114,17 +114,17 @@ def write_character_result(
         with blender_silence(debug):
             frames = show_footage(scene, motion)
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
-        job = retarget(opened.imported.armature, motion_segments(motion), frames, character_map, options)
+        armature = opened.imported.armature
+        job = retarget(armature, motion_segments(motion), frames, character_map, options)
         retargeted = run(_silenced(job, debug), console.progress)
         console.stage("Writing the character")
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())
         with blender_silence(debug), hidden_files(names, staging_folder, output) as hidden:
-            action = retargeted.write(scene, f"{take} {opened.imported.armature.name}")
+            action = retargeted.write(scene, f"{take} {armature.name}")
             paths = {name: hidden[file] for name, file in exports.items()}
             curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
-        made = {name: content_digest(staging_folder / name) for name in exports.values()}
         record = RetargetRecord(
             keymark=version(),
             take=take,
@@ -138,14 +138,14 @@ def write_character_result(
             frames=len(frames),
             frame_start=motion.frame_start,
             fps=rate,
-            size=retargeted.size,
+            size=retargeted.motion.size,
             options=settings.options,
             roles=character_map.roles,
             limbs=keyed_limbs(character_map, settings),
-            quality=retargeted.quality,
+            quality=_quality(retargeted),
             doubts=opened.chosen.doubts,
             notes=(*opened.imported.notes, *retargeted.notes),
-            files={CHARACTER_BLEND: curves, **made},
+            files={CHARACTER_BLEND: curves},
         )
         write_retarget_record(staging_folder, record)
         return record
@@ -155,6 +155,12 @@ def motion_segments(motion: Motion) -> SegmentMotion:
     """The segments of a motion, with natural feet and hands."""
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
+
+
+def _quality(retargeted: object) -> Mapping[str, float | None]:
+    """The figures of a retargeted motion."""
+    quality = getattr(retargeted, "quality", None)
+    return {} if quality is None else quality.to_dict()
 
 
 def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Mapping[str, str]:

@@ -32,7 +32,15 @@ from ..usage import UsageError
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, *(file for _, file in EXPORTS.values()))
 """Every file that the command may make."""
-FIGURES_SHOWN = 12
+FIGURES = {
+    "arms_deg": "arms are {:.1f} degrees from the performer's on average",
+    "legs_deg": "legs are {:.1f} degrees from the performer's on average",
+    "skate_mm": "resting feet slide {:.2f} mm a frame",
+    "penetration_mm": "soles are at most {:.1f} mm below the floor",
+    "hands_mm": "hands are {:.0f} mm from what they reach on average",
+    "ik_fk_mm": "FK and IK are at most {:.1f} mm apart",
+}
+"""Sentences on the figures that people ask for first."""
 
 
 def retarget_command(arguments: argparse.Namespace) -> None:
@@ -44,7 +52,7 @@ def retarget_command(arguments: argparse.Namespace) -> None:
     _check_output(arguments.output)
     with arguments_console(arguments) as console:
         record, files, notes = _retarget(arguments, settings, formats, (motion_file, blend), console)
-        result = {"files": [str(file) for file in files], **record_to_json(record), "notes": list(notes)}
+        result = {**record_to_json(record), "notes": list(notes), "files": [str(file) for file in files]}
         console.finish(result, _text(record, notes, files))
 
 
@@ -75,11 +83,12 @@ def _retarget(
             arguments.debug,
             formats,
         )
-        write_made_digests(staging_folder, (CHARACTER_BLEND,))
+        made = [name for name in RESULT_FILES[1:] if (staging_folder / name).exists()]
+        write_made_digests(staging_folder, made)
         kept.update(
             changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), _made_before(output))
         )
-        files = [output / name for name in RESULT_FILES if (staging_folder / name).exists()]
+        files = [output / name for name in (*made, RECORD_FILE)]
     notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
     return record, files, notes
 
@@ -163,12 +172,10 @@ def _check_output(output: Path) -> None:
 def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> str:
     lines = [f"Doubtful: {doubt.rstrip('.')}." for doubt in record.doubts]
     lines += [f"Note: {note.rstrip('.')}." for note in notes]
-    known = {name: value for name, value in record.quality.items() if value is not None}
     lines.append(
         f"{record.frames} frames on '{record.character_object}' of {record.character_file} "
         f"({record.map_title}, {record.map_origin}):"
     )
-    lines += [
-        f"  {name.replace('_', ' ')}: {value:.4g}" for name, value in list(known.items())[:FIGURES_SHOWN]
-    ]
+    figures = {name: record.quality.get(name) for name in FIGURES}
+    lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]
     return "\n".join([*lines, *(f"  {file}" for file in files)])
