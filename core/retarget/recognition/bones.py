@@ -242,7 +242,11 @@ def _joined_ends(
             continue
         own = _below(parent, bone)
         reach = float(np.max(np.linalg.norm(head[own] - head[bone], axis=1)))
-        if reach < LARGEST_END * size and _is_hub(above, parent) and not _meets(tail, head, above, bone, size):
+        if (
+            reach < LARGEST_END * size
+            and _is_hub(above, parent)
+            and not _meets(tail, head, above, bone, size)
+        ):
             onto = _limb_ending_at(bone, own, head, tail, parent, readings, size)
             if onto is not None:
                 parent[bone] = onto

@@ -10,6 +10,8 @@ from .frame import Frame
 
 LONGEST_CHAIN = 16
 """Bones upward from a limb's end among which its other bones are sought."""
+SHORT_END = 1.2
+"""What hangs on the last bone of an arm without a hand reaches no farther than this many upper arms."""
 SHORTEST_LIMB = 0.08
 """Shortest limb, in sizes."""
 
@@ -42,8 +44,9 @@ def find_chains(frame: Frame) -> Chains:
             for upper in above[second + 1 :]:
                 found.append((upper, middle, int(end)))
                 attached.append(hangs_on)
-        if not bones.children[end]:  # a limb may lack its hand
-            for upper in above:
+        reach = float(np.max(_length(frame.branch[int(end)] - frame.place[int(end)])))
+        for upper in above:  # a limb may lack its hand
+            if reach < SHORT_END * float(_length(frame.place[int(end)] - frame.place[upper])):
                 found.append((upper, int(end), -1))
                 attached.append(hangs_on)
     table = np.array(found, dtype=np.intp).reshape(-1, 3)

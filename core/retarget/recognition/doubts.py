@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from ...files.json_file import shown
 from ..character_map import CharacterMap, RoleBones
-from ..roles import ARM, LEG
+from ..roles import ARM, LEG, MIDDLE
 from .facing import SURE as SURE_SIDES
 from .facing import Facing
 from .figure import Figure
@@ -31,16 +31,17 @@ def side_doubts(facing: Facing) -> list[str]:
     return []
 
 
-def trunk_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
+def trunk_doubts(figure: Figure) -> list[str]:
     """What is doubtful about hips, spine, neck and head."""
-    bones = figure.frame.bones
+    names = figure.frame.bones.names
     found = []
-    for part, rival, _ in figure.trunk.rivals:
-        if part not in roles or roles[part].confidence >= SURE:
-            continue
-        bone = roles[part].bones[0]
-        why = f"{shown(bones.names[rival])} fits almost as well" if rival >= 0 else "it may be another part"
-        found.append(_sentence(part, bone, roles[part], why))
+    for bone, part, other in figure.trunk.doubtful:
+        if part in MIDDLE and other in MIDDLE:
+            found.append(f"{part} is doubtful: {shown(names[bone])} may be part of {other}, by its place")
+        elif part in MIDDLE:
+            found.append(f"{part} is doubtful: {shown(names[bone])} may play no part, by its place")
+        elif other in MIDDLE:
+            found.append(f"{other} is doubtful: {shown(names[bone])} may be part of it, by its place")
     return found
 
 
@@ -50,20 +51,18 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
     near = "L" if facing.ahead > 0 else "R"
     found = []
     for part in (*ARM, *LEG):
-        choice = figure.limbs.get(part)
-        if choice is None or choice.probability >= SURE:
+        choice = figure.limbs[part]
+        if choice.probability >= SURE:
             continue
         for side in "LR":
             role = f"{part}.{side}"
-            rival = (
-                choice.rival if side == near else (int(partner[choice.rival]) if choice.rival >= 0 else -1)
-            )
-            why = (
-                f"{shown(bones.names[rival])} fits almost as well"
-                if rival >= 0
-                else "the limb may lack it, or have it elsewhere"
-            )
-            found.append(_sentence(role, roles[role].bones[0], roles[role], why))
+            rival = choice.rival if side == near or choice.rival < 0 else int(partner[choice.rival])
+            other = shown(bones.names[rival]) if rival >= 0 else ""
+            if role in roles:
+                why = f"{other} fits almost as well" if other else "the limb may lack it"
+                found.append(_sentence(role, roles[role], why))
+            elif other:
+                found.append(f"{role} was not found, but {other} may be it")
     return found
 
 
@@ -77,6 +76,6 @@ def missing_doubts(character_map: CharacterMap) -> list[str]:
     return found
 
 
-def _sentence(role: str, bone: str, given: RoleBones, why: str) -> str:
+def _sentence(role: str, given: RoleBones, why: str) -> str:
     how = "its name" if given.source == "names" else "its place"
-    return f"{role} is doubtful: {shown(bone)} was chosen by {how}, and {why}"
+    return f"{role} is doubtful: {shown(given.bones[0])} was chosen by {how}, and {why}"

@@ -56,7 +56,7 @@ def _knees(figure: Figure) -> float:
 
 def _elbows(figure: Figure) -> float:
     """Elbows bend behind."""
-    if "hand" not in figure.limbs:
+    if figure.bone("hand") < 0:
         return 0.0
     shoulder, elbow, wrist = _places(figure, "upper_arm", "forearm", "hand")
     return -ELBOWS_WEIGHT * float(np.clip(_bulge(shoulder, elbow, wrist) / 0.04, -1.0, 1.0))
@@ -82,6 +82,8 @@ def _names(figure: Figure) -> float:
     frame = figure.frame
     votes = []
     for choice in figure.limbs.values():
+        if choice.bone < 0:
+            continue
         for bone, sign in ((choice.bone, 1.0), (int(frame.symmetry.partner[choice.bone]), -1.0)):
             side = frame.bones.readings[bone].side if bone >= 0 else None
             if side is not None:

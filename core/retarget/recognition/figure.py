@@ -10,11 +10,9 @@ from ..roles import ARM, LEG
 from .chains import find_chains
 from .frame import Frame
 from .likelihood import at_least, near
-from .limbs import Limbs, find_arms, find_legs, part_scores
+from .limbs import TEMPERATURE, Limbs, find_arms, find_legs, part_scores
 from .trunk import Girdles, Trunk, find_trunk, fork_of
 
-TEMPERATURE = 1.5
-"""Log-likelihoods are divided by this before they are turned into probabilities: measures hang together."""
 BEST_PAIRS = 12
 """Pairs of leg and arm for which a trunk is sought."""
 
@@ -24,6 +22,7 @@ class Choice:
     """A bone for a part, and the next best."""
 
     bone: int
+    """-1 where the figure lacks it."""
     probability: float
     rival: int = -1
     """The next likely bone; -1 for none."""
@@ -44,9 +43,9 @@ class Figure:
     names_score: float
     """What the names add to the score."""
 
-    def trunk_confidence(self, loss: float) -> float:
-        """Probability of a part of the trunk whose best other choice is worse by `-loss`."""
-        return float(1.0 / (1.0 + np.exp(np.clip(loss / TEMPERATURE, -30.0, 30.0))))
+    def bone(self, part: str) -> int:
+        """The bone of a part of the limbs; -1 where the figure lacks it."""
+        return self.limbs[part].bone
 
 
 def find_figure(frame: Frame) -> Figure | None:
@@ -93,7 +92,8 @@ def find_figure(frame: Frame) -> Figure | None:
 
 def _names_score(frame: Frame, limbs: Mapping[str, Choice], trunk: Trunk) -> float:
     """What the names of chosen bones say of their parts."""
-    total = sum(float(part_scores(frame, part)[choice.bone]) for part, choice in limbs.items())
+    there = {part: choice.bone for part, choice in limbs.items() if choice.bone >= 0}
+    total = sum(float(part_scores(frame, part)[bone]) for part, bone in there.items())
     parts = (("hips", (trunk.hips,)), ("spine", trunk.spine), ("neck", trunk.neck))
     heads = () if trunk.head is None else (trunk.head,)
     for part, bones in (*parts, ("head", heads)):
@@ -113,6 +113,8 @@ def _pair_scores(frame: Frame, legs: Limbs, arms: Limbs) -> Array:
     score += at_least(up[..., 2] / reach, 0.95, 0.15, 12.0)
     score += near(np.log(reach / leg[:, None]), np.log(0.6), 0.35, 6.0)
     score += near(np.log(arm[None] / leg[:, None]), np.log(0.65), 0.35, 6.0)
+    score += near(np.log((shoulder[None, :, 0] + 1e-3) / (hip[:, None, 0] + 1e-3)), np.log(1.9), 0.45, 5.0)
+    score += near(up[..., 1] / reach, 0.0, 0.12, 3.0)
     for row, column in np.ndindex(*score.shape):
         if not _compatible(frame, legs, arms, row, column):
             score[row, column] = -np.inf
@@ -145,16 +147,16 @@ def _choices(legs: Limbs, arms: Limbs, leg: int, arm: int, total: Array) -> dict
     columns: list[tuple[str, IndexArray, Array, int]]
     columns = [(part, legs.chains.bones[:, row], of_leg, leg) for row, part in enumerate(LEG[:3])]
     columns += [(part, arms.chains.bones[:, row], of_arm, arm) for row, part in enumerate(ARM[1:])]
-    columns.append((LEG[3], _numbers(legs.last), of_leg, leg))
-    columns.append((ARM[0], _numbers(arms.first), of_arm, arm))
+    for part, limbs, weights, chosen in ((LEG[3], legs, of_leg, leg), (ARM[0], arms, of_arm, arm)):
+        columns.append((part, np.array([option.bone for option in limbs.optional]), weights, chosen))
     for part, bones, weights, chosen in columns:
         bone = int(bones[chosen])
         shares = {int(each): float(weights[bones == each].sum()) for each in set(bones.tolist())}
-        whole = max(sum(shares.values()), 1e-12)
-        rivals = sorted((each for each in shares if each not in (bone, -1)), key=lambda each: -shares[each])
-        found[part] = Choice(bone, shares[bone] / whole, rivals[0] if rivals else -1)
-    return {part: choice for part, choice in found.items() if choice.bone >= 0}
-
-
-def _numbers(bones: tuple[int | None, ...]) -> IndexArray:
-    return np.array([-1 if bone is None else bone for bone in bones], dtype=np.intp)
+        share = shares[bone] / max(sum(shares.values()), 1e-12)
+        rivals = sorted((each for each in shares if each != bone), key=lambda each: -shares[each])
+        found[part] = Choice(bone, share, rivals[0] if rivals else -1)
+    for part, option in ((LEG[3], legs.optional[leg]), (ARM[0], arms.optional[arm])):
+        choice = found[part]
+        rival = option.rival if option.probability < choice.probability else choice.rival
+        found[part] = Choice(option.bone, choice.probability * option.probability, rival)
+    return found

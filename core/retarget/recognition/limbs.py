@@ -14,10 +14,27 @@ NAMES_WEIGHT = 1.3
 """Names are trusted so much more than a measure of place."""
 NO_END = -3.0
 """Score of an arm without a hand."""
+NO_TOE, NO_SHOULDER = -4.0, -4.0
+"""Scores of a foot without a toe and an upper arm without a collar bone, though bones are there."""
+SHORT_LEG = 0.4
+"""Length of a leg, in sizes, below which feet do not become smaller with it."""
+TEMPERATURE = 1.5
+"""Log-likelihoods are divided by this before they are turned into probabilities: measures hang together."""
 MANY = 150
 """Best limbs of a kind by what is quickly measured; only these are looked at closely."""
 FEW = 40
 """Best limbs of a kind that are weighed against each other."""
+
+
+@dataclass(frozen=True)
+class OptionalPart:
+    """The bone of a part that a limb may lack."""
+
+    bone: int
+    """-1 for none."""
+    probability: float
+    rival: int
+    """The next likely; -1 for none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +44,8 @@ class Limbs:
     chains: Chains
     score: Array
     """(C,) log-likelihood of each."""
-    first: tuple[int | None, ...] = field(default=())
-    """For arms the shoulder of each; None where it lacks one."""
-    last: tuple[int | None, ...] = field(default=())
-    """For legs the toe of each; None where it lacks one."""
+    optional: tuple[OptionalPart, ...] = field(default=())
+    """The toe of each leg, the shoulder of each arm."""
 
 
 def part_scores(frame: Frame, part: str) -> Array:
@@ -49,16 +64,17 @@ def find_legs(frame: Frame, chains: Chains) -> Limbs:
     length = np.maximum(upper + lower, 1e-9)
     score = near(upper / length, 0.5, 0.06)
     score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
-    score += near((ankle[:, 2] - frame.floor) / length, 0.1, 0.1, 5.0)
+    unit = np.maximum(length, SHORT_LEG)
+    score += near((ankle[:, 2] - frame.floor) / unit, 0.1, 0.1, 5.0)
     score += near(hip[:, 0] / length, 0.13, 0.07, 4.0)
     score += near(length, 0.45, 0.15, 3.0)
     for column, part in enumerate(LEG[:3]):
         score += part_scores(frame, part)[chains.bones[:, column]]
     score += np.where(chains.attached >= 0, 0.0, -2.0)
     many = _best(score, MANY)
-    chains, ankle, length = chains.taken(many), ankle[many], length[many]
-    score = score[many] + _foot_scores(frame, chains, ankle, length) + _line_scores(frame, chains)
-    score += _below_hip_scores(frame, chains)
+    chains, ankle, unit = chains.taken(many), ankle[many], unit[many]
+    score = score[many] + _foot_scores(frame, chains, ankle, unit) + _line_scores(frame, chains)
+    score += _below_hip_scores(frame, chains) + _strand_scores(frame, chains)
     best = _best(score, FEW)
     return _with_toes(frame, Limbs(chains.taken(best), score[best]))
 
@@ -90,17 +106,18 @@ def find_arms(frame: Frame, chains: Chains) -> Limbs:
     many = _best(score, MANY)
     chains, length = chains.taken(many), length[many]
     score = score[many] + _hand_scores(frame, chains, length) + _line_scores(frame, chains)
+    score += _strand_scores(frame, chains)
     best = _best(score, FEW)
     return _with_shoulders(frame, Limbs(chains.taken(best), score[best]))
 
 
-def _foot_scores(frame: Frame, chains: Chains, ankle: Array, length: Array) -> Array:
+def _foot_scores(frame: Frame, chains: Chains, ankle: Array, unit: Array) -> Array:
     """(C,) whether what hangs on each ankle lies ahead of it, as a foot does, and not far below."""
     found = np.zeros(len(chains))
     for row, end in enumerate(chains.bones[:, 2]):
         points = frame.branch[int(end)] - ankle[row]
-        ahead = np.max(np.abs(points[:, 1])) / length[row]
-        below = -np.min(points[:, 2]) / length[row]
+        ahead = np.max(np.abs(points[:, 1])) / unit[row]
+        below = -np.min(points[:, 2]) / unit[row]
         bare = len(points) < 2
         found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.1, 3.0) + at_most(below, 0.2, 0.08, 5.0))
     return found
@@ -154,6 +171,31 @@ def _line_scores(frame: Frame, chains: Chains) -> Array:
     return found
 
 
+def _strand_scores(frame: Frame, chains: Chains) -> Array:
+    """(C,) strands of hair, skirts and capes have others beside them that are made alike; limbs have none."""
+    bones, partner = frame.bones, frame.symmetry.partner
+    found = np.zeros(len(chains))
+    for row, upper in enumerate(chains.bones[:, 0]):
+        top = int(upper)
+        while bones.parent[top] >= 0 and frame.one_side[bones.parent[top]]:
+            top = int(bones.parent[top])
+        above = int(bones.parent[top])
+        beside = bones.children[above] if above >= 0 else bones.roots
+        alike = [
+            bone
+            for bone in beside
+            if bone not in (top, partner[top])
+            and len(bones.subtree[bone]) == len(bones.subtree[top]) > 1
+            and 0.8 < _extent(frame, bone) / _extent(frame, top) < 1.25
+        ]
+        found[row] = -1.2 * min(len(alike), 2)
+    return found
+
+
+def _extent(frame: Frame, bone: int) -> float:
+    return max(float(_length(frame.branch[bone] - frame.place[bone]).max()), 1e-9)
+
+
 def _below_hip_scores(frame: Frame, chains: Chains) -> Array:
     """(C,) a leg begins with the first bone that lies on its side, not farther down."""
     found = np.zeros(len(chains))
@@ -167,63 +209,72 @@ def _below_hip_scores(frame: Frame, chains: Chains) -> Array:
 
 
 def _with_toes(frame: Frame, legs: Limbs) -> Limbs:
-    found: list[int | None] = []
-    score = legs.score.copy()
     names = part_scores(frame, "toe")
-    for row, (upper, middle, end) in enumerate(legs.chains.bones):
-        length = _length(frame.place[middle] - frame.place[upper]) + _length(
-            frame.place[end] - frame.place[middle]
-        )
-        toe, gain = _toe(frame, int(end), float(length), names)
-        found.append(toe)
+    found, score = [], legs.score.copy()
+    for row, bones in enumerate(legs.chains.bones):
+        part, gain = _toe(frame, int(bones[2]), foot_unit(_reach(frame, bones)), names)
+        found.append(part)
         score[row] += gain
-    return Limbs(legs.chains, score, last=tuple(found))
+    return Limbs(legs.chains, score, tuple(found))
 
 
-def _toe(frame: Frame, foot: int, length: float, names: Array) -> tuple[int | None, float]:
+def _toe(frame: Frame, foot: int, unit: float, names: Array) -> tuple[OptionalPart, float]:
     """The bone that bends below a foot, and its score; of several toes the one nearest to the middle."""
     ankle = frame.place[foot]
     points = frame.branch[foot] - ankle
     ahead = np.sign(points[int(np.argmax(np.abs(points[:, 1]))), 1]) or 1.0
-    best, most = None, -2.0
+    options = {}
     for bone in frame.bones.subtree[foot][1:]:
-        x, y, z = (frame.place[bone] - ankle) / length
+        x, y, z = (frame.place[bone] - ankle) / unit
         depth = len([each for each in frame.bones.ancestors(bone) if each in frame.bones.subtree[foot]])
         score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.08, 0.08, 4.0)) + names[bone]
-        score -= 0.7 * (depth - 1) + abs(x) + 2.0 * frame.place[bone, 0] / length
-        if score > most:
-            best, most = bone, score
-    return best, max(min(most, 3.0), 0.0) if best is not None else 0.0
+        options[bone] = score - 0.7 * (depth - 1) - abs(x) - 2.0 * frame.place[bone, 0] / unit
+    return _optional(options, NO_TOE)
 
 
 def _with_shoulders(frame: Frame, arms: Limbs) -> Limbs:
-    found: list[int | None] = []
-    score = arms.score.copy()
     names = part_scores(frame, "shoulder")
-    for row, (upper, middle, end) in enumerate(arms.chains.bones):
-        places = [frame.place[each] for each in (upper, middle, end) if each >= 0]
-        length = sum(float(_length(b - a)) for a, b in zip(places[:-1], places[1:], strict=True))
-        shoulder, gain = _shoulder(frame, int(upper), length, names)
-        found.append(shoulder)
+    found, score = [], arms.score.copy()
+    for row, bones in enumerate(arms.chains.bones):
+        part, gain = _shoulder(frame, int(bones[0]), _reach(frame, bones), names)
+        found.append(part)
         score[row] += gain
-    return Limbs(arms.chains, score, first=tuple(found))
+    return Limbs(arms.chains, score, tuple(found))
 
 
-def _shoulder(frame: Frame, upper_arm: int, length: float, names: Array) -> tuple[int | None, float]:
+def _shoulder(frame: Frame, upper_arm: int, length: float, names: Array) -> tuple[OptionalPart, float]:
     """The collar bone above an upper arm, and its score."""
-    best, most = None, -1.0
     above = [bone for bone in frame.bones.ancestors(upper_arm) if frame.one_side[bone]]
-    if not above:
-        return None, float(near(frame.place[upper_arm, 0] / max(length, 1e-9), 0.33, 0.25, 2.0))
+    options = {}
     for rank, bone in enumerate(reversed(above)):
         away = frame.place[upper_arm] - frame.place[bone]
-        reach = float(_length(away)) / max(length, 1e-9)
-        outward = away[0] / max(float(_length(away)), 1e-9)
-        score = float(near(reach, 0.3, 0.12, 5.0) + at_least(outward, 0.5, 0.3, 4.0)) - 0.3 * rank
-        score += float(near(frame.place[bone, 0] / max(length, 1e-9), 0.06, 0.1, 3.0)) + names[bone]
-        if score > most:
-            best, most = bone, score
-    return best, min(most, 3.0)
+        reach = float(_length(away))
+        score = float(near(reach / length, 0.3, 0.15, 5.0)) - 0.3 * rank
+        score += float(at_least(away[0] / max(reach, 1e-9), 0.5, 0.3, 4.0))
+        score += float(near(frame.place[bone, 0] / length, 0.06, 0.1, 3.0)) + names[bone]
+        options[bone] = score
+    return _optional(options, NO_SHOULDER)
+
+
+def _optional(options: dict[int, float], none: float) -> tuple[OptionalPart, float]:
+    """The best of some bones or none of them, with its probability, and its score."""
+    scores = {-1: none, **options} if options else {-1: 0.0}
+    best, *others = sorted(scores, key=lambda bone: -scores[bone])
+    weights = {bone: np.exp((score - scores[best]) / TEMPERATURE) for bone, score in scores.items()}
+    share = float(1.0 / sum(weights.values()))
+    return OptionalPart(best, share, others[0] if others else -1), min(scores[best], 3.0)
+
+
+def foot_unit(leg: float) -> float:
+    """Length [sizes] that measures of a foot are relative to: short legs may have usual feet."""
+    return max(leg, SHORT_LEG)
+
+
+def _reach(frame: Frame, bones: IndexArray) -> float:
+    """Length of a chain [sizes]."""
+    places = frame.place[[bone for bone in bones if bone >= 0]]
+    whole = 1.0 if len(places) == len(bones) else 2.0
+    return max(whole * float(_length(np.diff(places, axis=0)).sum()), 1e-9)
 
 
 def _best(score: Array, count: int) -> IndexArray:

@@ -39,7 +39,7 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     preset = find_preset(character, presets)
     if preset is None:
         character_map = CharacterMap(character.name, roles)
-        doubts += trunk_doubts(figure, roles) + limb_doubts(figure, facing, roles)
+        doubts += trunk_doubts(figure) + limb_doubts(figure, facing, roles)
     else:
         if facing.by_names < 0.0:
             preset = swapped_sides(preset)

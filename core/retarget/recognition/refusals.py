@@ -57,7 +57,7 @@ def why_no_figure(figure: Figure) -> str:
     places = figure.frame.place
     hip, ankle = (places[figure.limbs[part].bone] for part in ("thigh", "foot"))
     leg = max(float(np.linalg.norm(ankle - hip)), 1e-9)
-    wrist = places[figure.limbs["hand" if "hand" in figure.limbs else "forearm"].bone]
+    wrist = places[figure.bone("hand") if figure.bone("hand") >= 0 else figure.bone("forearm")]
     if figure.uprightness < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < LEAST_LEG_DOWN:
         return "its trunk does not stand upright on its legs, as an animal's does not"
     if (wrist[2] - ankle[2]) / leg < HANDS_ABOVE:

@@ -10,7 +10,6 @@ from .names import CLEAR
 def roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
     """Bones, confidence and source of each role that is there."""
     trunk, bones = figure.trunk, figure.frame.bones
-    rivals = {part: loss for part, _, loss in trunk.rivals}
     found: dict[str, RoleBones] = {}
     heads = () if trunk.head is None else (trunk.head,)
     for part, those in (
@@ -21,13 +20,12 @@ def roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
     ):
         if those:
             names = tuple(bones.names[bone] for bone in those)
-            sure = figure.trunk_confidence(rivals.get(part, -20.0))
-            found[part] = RoleBones(names, sure, _source(figure, part, those))
+            found[part] = RoleBones(names, float(trunk.sure[part]), _source(figure, part, those))
     near_side, far_side = ("L", "R") if facing.ahead > 0 else ("R", "L")
     for part in (*ARM, *LEG):
-        if part not in figure.limbs:
-            continue
         choice = figure.limbs[part]
+        if choice.bone < 0:
+            continue
         other = int(figure.frame.symmetry.partner[choice.bone])
         for side, bone in ((near_side, choice.bone), (far_side, other)):
             found[f"{part}.{side}"] = RoleBones(

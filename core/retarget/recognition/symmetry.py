@@ -16,7 +16,11 @@ BESIDE = 0.02
 LOOSE = 0.12
 """Two branches may mirror each other although their heads are this far, in sizes, from doing so."""
 MOST_PLANES = 60
+"""Planes that are tried."""
 MOST_POINTS = 200
+"""Heads that a plane is tried on."""
+BRANCH_POINTS = 32
+"""Points of a branch that are compared with another's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,20 +186,29 @@ def _match(
 def _costs(bones: Bones, those: list[int], normal: Array, offset: float) -> Array:
     """(K, K) how badly bones mirror each other, in sizes; on the diagonal how far each is from the middle."""
     heads = bones.head[those]
-    centers = np.array([bones.points[bone].mean(axis=0) for bone in those])
-    reach = np.array([_reach(bones.points[bone], bones.head[bone]) for bone in those])
-    cost = 0.2 * np.abs(reach[:, None] - reach[None]) / bones.size
-    for places, weight in ((heads, 0.5), (centers, 0.5)):
-        images = _mirrored(places, normal, offset)
-        cost += weight * np.linalg.norm(places[:, None] - images[None], axis=-1) / bones.size
+    apart = np.linalg.norm(heads[:, None] - _mirrored(heads, normal, offset)[None], axis=-1)
+    cost = 0.5 * apart / bones.size
+    branches = [_some(bones.points[bone]) for bone in those]
+    images = [_mirrored(points, normal, offset) for points in branches]
+    for a, points in enumerate(branches):
+        for b, image in enumerate(images):
+            if cost[a, b] < LOOSE:
+                cost[a, b] += 0.5 * _apart(points, image) / bones.size
     count = np.array([len(bones.subtree[bone]) for bone in those], dtype=np.float64)
     cost += 0.02 * np.abs(np.log(count[:, None] / count[None]))
     cost[np.diag_indices(len(those))] += 0.005  # a pair close to the plane is a pair
     return cost
 
 
-def _reach(points: Array, head: Array) -> float:
-    return float(np.max(np.linalg.norm(points - head, axis=1)))
+def _some(points: Array) -> Array:
+    """At most `BRANCH_POINTS` of some points."""
+    return points[:: -(-len(points) // BRANCH_POINTS)]
+
+
+def _apart(points: Array, others: Array) -> float:
+    """Median distance from the fewer points to the nearest of the others: one side may hold a weapon."""
+    fewer, more = (points, others) if len(points) <= len(others) else (others, points)
+    return float(np.median(np.linalg.norm(fewer[:, None] - more[None], axis=-1).min(axis=1)))
 
 
 def _refined(bones: Bones, partner: IndexArray, normal: Array, offset: float) -> tuple[Array, float]:

@@ -1,5 +1,6 @@
 """The trunk between given legs and arms: hips, spine, neck and head along the bones of the middle."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,13 +9,15 @@ from ...arrays import Array
 from ..roles import MIDDLE
 from .frame import Frame
 from .likelihood import at_least, at_most, near
-from .limbs import part_scores
+from .limbs import TEMPERATURE, part_scores
 
 STATES = ("below", "hips", "spine", "neck", "head", "end")
 """What a bone of the path from the root to the top of the head may be, in this order."""
 UNLIKELY = -6.0
 NO_HEAD = -5.0
 """Score of a trunk without a head."""
+SURE = 0.8
+"""Probability from which a bone's part is not doubted."""
 SAME_JOINT = 0.02
 """A bone this near above another, in heights of the trunk, begins where it does."""
 
@@ -28,8 +31,10 @@ class Trunk:
     neck: tuple[int, ...]
     head: int | None
     score: float
-    rivals: tuple[tuple[str, int, float], ...]
-    """Part, bone and score of the best other choice for it."""
+    sure: Mapping[str, float]
+    """By part how probable its least certain bone is."""
+    doubtful: tuple[tuple[int, str, str], ...]
+    """Bones of the path that may play another part: bone, the part it plays, and the other part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,11 +104,16 @@ def _along(frame: Frame, girdles: Girdles, top: int, names: Array) -> Trunk | No
     parts = {
         state: [bone for bone, own in zip(path, states, strict=True) if own == state] for state in STATES
     }
-    rivals = _rivals(path, states, scores, tops)
+    shares = _shares(scores, tops)
+    sure = {
+        state: min(shares[row, STATES.index(state)] for row, own in enumerate(states) if own == state)
+        for state in dict.fromkeys(states)
+    }
+    doubtful = _doubtful(path, states, shares)
     total += _way_up(frame, girdles, parts["head"])
     head = parts["head"][0] if parts["head"] else None
     spine = tuple(bone for bone in parts["spine"] if not frame.bones.readings[bone].mechanism)
-    return Trunk(parts["hips"][0], spine, tuple(parts["neck"]), head, total, rivals)
+    return Trunk(parts["hips"][0], spine, tuple(parts["neck"]), head, total, sure, doubtful)
 
 
 def _way_up(frame: Frame, girdles: Girdles, head: list[int]) -> float:
@@ -136,7 +146,7 @@ def _emissions(frame: Frame, girdles: Girdles, path: list[int], names: Array) ->
             hips
             + (0.0 if far == 0 else (-4.0 if row > rank else UNLIKELY))
             + float(near(off, 0.0, 0.4, 4.0)),
-            spine + float(at_most(level, 0.97, 0.08, 5.0)) + (0.5 if carries else -1.5),
+            spine + float(at_most(level, 0.98, 0.05, 5.0)) + (0.5 if carries else -1.5),
             neck
             + float(at_least(over, 0.0, 0.08, 5.0) + at_most(over, 0.35, 0.15))
             - (2.0 if carries else 0.0),
@@ -180,7 +190,7 @@ def _best_states(scores: Array, tops: Array) -> tuple[list[str] | None, float]:
         came = [0] * count
         for state in range(count):
             for before in _before(state):
-                gain = best[before] + scores[row, state] + (tops[row] if (before, state) == (4, 5) else 0.0)
+                gain = best[before] + scores[row, state] + _step(before, state, tops[row])
                 if gain > step[state]:
                     step[state], came[state] = gain, before
         best = step
@@ -202,21 +212,43 @@ def _before(state: int) -> tuple[int, ...]:
     return {0: (0,), 1: (0,), 2: (1, 2), 3: (1, 2, 3), 4: (1, 2, 3), 5: (4, 5)}[state]
 
 
-def _rivals(
-    path: list[int], states: list[str], scores: Array, tops: Array
-) -> tuple[tuple[str, int, float], ...]:
-    """For each part the best trunk in which its first bone plays another part: the bone, and the loss."""
-    _, total = _best_states(scores, tops)
+def _shares(scores: Array, tops: Array) -> Array:
+    """(K, 6) probability of each state of each bone, over all ways."""
+    heat = 1.0 / TEMPERATURE
+    forward = np.full(scores.shape, -np.inf)
+    forward[0, :2] = heat * scores[0, :2]
+    backward = np.full(scores.shape, -np.inf)
+    backward[-1] = heat * np.array([-np.inf, NO_HEAD, NO_HEAD, NO_HEAD, 0.0, 0.0])
+    for row in range(1, len(scores)):
+        for state in range(len(STATES)):
+            ways = [
+                forward[row - 1, before] + heat * _step(before, state, tops[row]) for before in _before(state)
+            ]
+            forward[row, state] = heat * scores[row, state] + np.logaddexp.reduce(ways)
+    for row in range(len(scores) - 2, -1, -1):
+        for before in range(len(STATES)):
+            ways = [
+                backward[row + 1, state]
+                + heat * (scores[row + 1, state] + _step(before, state, tops[row + 1]))
+                for state in range(len(STATES))
+                if before in _before(state)
+            ]
+            backward[row, before] = np.logaddexp.reduce(ways)
+    both = forward + backward
+    shares = np.exp(both - np.logaddexp.reduce(both, axis=1, keepdims=True))
+    return np.asarray(shares)
+
+
+def _step(before: int, state: int, top: float) -> float:
+    return top if (before, state) == (4, 5) else 0.0
+
+
+def _doubtful(path: list[int], states: list[str], shares: Array) -> tuple[tuple[int, str, str], ...]:
+    """Bones of the path that may well play another part."""
     found = []
-    for part in ("hips", "spine", "neck", "head"):
-        if part not in states:
-            continue
-        row = states.index(part)
-        changed = scores.copy()
-        changed[row, STATES.index(part)] = -np.inf
-        others, score = _best_states(changed, tops)
-        rival = -1
-        if others is not None and part in others:
-            rival = path[others.index(part)]
-        found.append((part, rival, score - total if np.isfinite(score) else -20.0))
+    for row, (bone, state) in enumerate(zip(path, states, strict=True)):
+        others = shares[row].copy()
+        others[STATES.index(state)] = 0.0
+        if shares[row, STATES.index(state)] < SURE:
+            found.append((bone, state, STATES[int(np.argmax(others))]))
     return tuple(found)
