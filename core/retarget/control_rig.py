@@ -28,7 +28,7 @@ class ControlRig:
     moved: Mapping[int, int]
     """Row of the rig's bone by the index of a control that is moved ..."""
     turned: Mapping[int, int]
-    """... and of the bone that carries its points and whatever hangs on it, which turns where it is turned."""
+    """... and of the bone that carries its points and whatever hangs on it, turned where it is turned."""
 
     def values(
         self, controls: Sequence[Control], channels: Sequence[ControlChannels], of: ChannelValues

@@ -1,4 +1,4 @@
-"""Keys of what follows the body that its own few keys show: legs in FK, and controls of inverse kinematics."""
+"""Keys of what follows the body that its own few keys show: legs in FK, controls of inverse kinematics."""
 
 from collections.abc import Mapping
 

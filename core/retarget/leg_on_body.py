@@ -1,6 +1,5 @@
 """A leg in FK on a body that few keys have moved a little: its foot stays where it was."""
 
-
 from ..arrays import Array
 from ..body import rotations
 from .control_channels import ControlChannels

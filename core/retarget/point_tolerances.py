@@ -13,7 +13,7 @@ NEAR_FLOOR_M = 0.03
 NEIGHBORHOOD_S = 1.0
 FLOOR_M = 0.0015
 """Largest error of a sole near the floor [m]."""
-SHOWN_REST_M = 0.0001
+SHOWN_REST_M = 0.00008
 """Largest error of a resting foot that is shown [m]: it must not slide."""
 SWITCH_M = 0.0008
 """Largest distance of wrists and ankles between IK and FK [m]."""

@@ -10,6 +10,7 @@ from ....core.report.canvas import LEFT, RIGHT
 from ....core.report.character_figure import SKIN, CharacterFigure
 from ....core.retarget.figure_lines import FigureLine
 from ..object_space import evaluated
+from .skins import skins
 
 MOST_TRIANGLES = 200_000
 """With more, bones are drawn: a picture need not take half a minute."""
@@ -26,7 +27,7 @@ def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLi
         armature_object: The armature.
         lines: What is drawn where there is no mesh.
     """
-    meshes = [_mesh(one) for one in _skins(armature_object)]
+    meshes = [_mesh(one) for one in skins(armature_object)]
     if meshes and sum(len(triangles) for _, triangles in meshes) <= MOST_TRIANGLES:
         starts = np.cumsum([0, *(len(points) for points, _ in meshes)])
         points = np.concatenate([points for points, _ in meshes])
@@ -35,20 +36,6 @@ def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLi
         )
         return CharacterFigure(points, triangles, np.tile(np.array(SKIN, dtype=float), (len(triangles), 1)))
     return _bones(armature_object, lines)
-
-
-def _skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
-    """The visible meshes that the armature deforms or carries."""
-    found = []
-    for scene in armature_object.users_scene[:1]:
-        for one in scene.objects:
-            deformed = any(
-                modifier.type == "ARMATURE" and modifier.object == armature_object
-                for modifier in one.modifiers
-            )
-            if one.type == "MESH" and not one.hide_render and (deformed or one.parent == armature_object):
-                found.append(one)
-    return found
 
 
 def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:

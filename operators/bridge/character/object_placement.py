@@ -20,11 +20,7 @@ def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> P
     Args:
         armature_object: The object, with any parent; its scale stays.
         to_world: From its own space to the world.
-
-    Raises:
-        InputError: Constraints or drivers decide where it stands.
     """
-    _require_free(armature_object)
     world = np.eye(4)
     world[:3, :3], world[:3, 3] = to_world.rotation, to_world.location
     basis = np.linalg.inv(_around(armature_object)) @ world
@@ -53,7 +49,8 @@ def _delta_rotation(armature_object: bpy.types.Object) -> Array:
     return np.array(delta.to_matrix(), dtype=np.float64)
 
 
-def _require_free(armature_object: bpy.types.Object) -> None:
+def require_placeable(armature_object: bpy.types.Object) -> None:
+    """Raise InputError where constraints or drivers decide where an object stands."""
     name = armature_object.name
     working = [one.name for one in armature_object.constraints if not one.mute and one.influence > 0.0]
     if working:

@@ -11,9 +11,10 @@ from ....core.arrays import Array
 from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.control_channels import Control, ControlChannels, control_channels
 from ....core.retarget.control_plan import ControlKind, limb_bones
+from ....core.retarget.control_spaces import NOTHING
 from ....core.retarget.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from ....core.retarget.rigid_offset import rigid_offset
-from .posing import Property, read_poses, set_channels, set_properties
+from .posing import Property, Value, read_poses, set_channels, set_properties
 
 TRIALS = ((0.8, 0.0, (0.2, -0.1, 0.15)), (0.7, 0.5, (-0.15, 0.2, 0.1)))
 """Of each trial: distance of the limb's end from its root, in that at rest; turn of the pole about the line
@@ -31,6 +32,8 @@ class TriedInverseKinematics:
     offsets: Mapping[str, Array]
     """(4, 4) by goal or toe control the pose of its bone in its own axes."""
     poles: Mapping[str, PoleSetting]
+    origins: Mapping[str, Array]
+    """(3,) by toe control its place in its carrier's axes, which only a leg within reach shows."""
     notes: tuple[str, ...]
 
 
@@ -54,7 +57,7 @@ def try_inverse_kinematics(
     character_map: CharacterMap,
     controls: Sequence[Control],
     size: float,
-    in_ik: Mapping[Property, float | int | bool],
+    in_ik: Mapping[Property, Value],
 ) -> TriedInverseKinematics:
     """Pull hands and feet toward the body, and look; inside of `posing`.
 
@@ -66,7 +69,7 @@ def try_inverse_kinematics(
         in_ik: The custom properties with which its limbs show IK.
     """
     if not any(control.plan.kind is ControlKind.GOAL for control in controls):
-        return TriedInverseKinematics({}, {}, ())
+        return TriedInverseKinematics({}, {}, {}, ())
     names = [control.name for control in controls]
     set_channels(armature_object, {name: np.eye(4) for name in names})
     _, rest = read_poses(armature_object, names)
@@ -76,6 +79,7 @@ def try_inverse_kinematics(
     seen = [_try(armature_object, controls, limbs, at_rest, size, *trial) for trial in TRIALS]
     offsets: dict[str, Array] = {}
     poles: dict[str, PoleSetting] = {}
+    origins: dict[str, Array] = {}
     notes: list[str] = []
     for limb in limbs:
         poses = {name: np.array([one[name] for one in seen]) for name in seen[0]}
@@ -90,9 +94,12 @@ def try_inverse_kinematics(
                 )
                 offset = np.linalg.inv(at_rest[control.name]) @ limb.rest[2]
             offsets[control.name] = offset
+        if limb.toe is not None and limb.toe.space.carrier != NOTHING:
+            carrier = controls[limb.toe.space.carrier].name
+            origins[limb.toe.name] = rigid_offset(poses[carrier], poses[limb.toe.name])[0][:3, 3]
         if limb.pole is not None:
             poles[limb.pole.name] = _pole_setting(limb, poses, notes)
-    return TriedInverseKinematics(offsets, poles, tuple(notes))
+    return TriedInverseKinematics(offsets, poles, origins, tuple(notes))
 
 
 def _limbs(

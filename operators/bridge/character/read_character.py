@@ -69,6 +69,29 @@ def needs_override(armature_object: bpy.types.Object) -> bool:
     return armature_object.library is not None
 
 
+def make_override(context: bpy.types.Context, armature_object: bpy.types.Object) -> bpy.types.Object:
+    """Make a library override of a linked armature object and of what belongs to it; returns the override.
+
+    Raises:
+        InputError: The object is not linked, or Blender refuses.
+    """
+    name = armature_object.name
+    if not needs_override(armature_object):
+        raise InputError(f"armature '{name}' is not linked; it can be keyed as it is")
+    if armature_object.override_library is not None:
+        armature_object.override_library.is_system_override = False
+        return armature_object
+    made = armature_object.override_hierarchy_create(
+        context.scene, context.view_layer, do_fully_editable=True
+    )
+    if made is None or made.type != "ARMATURE":
+        raise InputError(
+            f"Blender makes no library override of armature '{name}'; append it from "
+            f"{_library_name(armature_object)} instead"
+        )
+    return made
+
+
 def _library_name(armature_object: bpy.types.Object) -> str:
     reference = armature_object
     if armature_object.override_library is not None:

@@ -1,6 +1,6 @@
-"""Retarget a motion to a character: solved, brought onto its controls, reduced to few keys."""
+"""Retarget a motion to a character: solved, brought onto its controls, reduced to few keys, measured."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 
@@ -13,29 +13,30 @@ from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.character_motion import CharacterMotion, Similarity
 from ....core.retarget.control_channels import control_channels
 from ....core.retarget.control_motion import ControlMotion, KeyedControl, dense_controls
-from ....core.retarget.control_plan import ControlKind, limb_bones, limb_keys, planned_controls
+from ....core.retarget.control_plan import ControlKind, limb_bones, planned_controls
 from ....core.retarget.control_reduction import reduce_controls
 from ....core.retarget.control_targets import control_targets
 from ....core.retarget.held_points import held_points
 from ....core.retarget.limb_paths import limb_paths
-from ....core.retarget.options import LimbKeys, Placement, RetargetOptions
+from ....core.retarget.map_check import check_map
+from ....core.retarget.options import Placement, RetargetOptions
 from ....core.retarget.point_tolerances import ToleranceRules
-from ....core.retarget.roles import LIMBS
+from ....core.retarget.quality import Quality
 from ....core.retarget.solve.solve_motion import solve_motion
-from ....core.retarget.stance import find_stance
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .channel_notes import channel_notes
-from .object_placement import PlacementKeys, placement_keys
-from .posing import Property
+from .complete_map import complete_map
+from .measure import measure_keys
+from .object_placement import placement_keys, require_placeable
 from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
-from .write_retargeted import write_retargeted
+from .shown_properties import fk_properties, shown_properties
+from .write_retargeted import RetargetedKeys, write_retargeted
 
-SOLVED, PROBED = 0.3, 0.35
-"""Shares of the job at which the motion is solved, and the controls are known."""
-STILL_FRAMES = 2
-"""Fewest frames that a motion has."""
+SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
+"""Shares of the job at which the motion is solved, the controls are known, and the keys are found."""
+FEWEST_FRAMES = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,20 +49,17 @@ class Retargeted:
     character_map: CharacterMap
     """The map, completed."""
     options: RetargetOptions
-    frames: Array
-    """(F,) scene frames."""
     motion: CharacterMotion
-    keyed: tuple[KeyedControl, ...]
-    properties: dict[Property, float | int | bool]
-    """Custom properties that are keyed at the first frame."""
-    placement: PlacementKeys
-    """The object's channels that are keyed at the first frame."""
+    keys: RetargetedKeys
+    quality: Quality
+    """What was measured of the character as Blender shows it."""
     notes: tuple[str, ...]
+    """What a person should know, in sentences without a full stop."""
 
     @property
-    def keys_before(self) -> int:
-        """Number of keys with one on every frame."""
-        return sum(held.channel_count for held in self.keyed) * len(self.frames)
+    def size(self) -> float:
+        """The character's size: its legs' length over the performer's."""
+        return self.motion.size
 
     def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
         """Write the motion into an Action, and let it animate the character.
@@ -74,7 +72,7 @@ class Retargeted:
         Raises:
             InputError: The character has been deleted meanwhile.
         """
-        return write_retargeted(self, scene, action)
+        return write_retargeted(self.keys, self.session_uid, self.character.name, scene, action)
 
 
 def retarget(
@@ -100,41 +98,72 @@ def retarget(
         InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one frame.
     """
     yield Progress("Reading the character", 0.0)
-    if len(scene_frames) < STILL_FRAMES:
+    if len(scene_frames) < FEWEST_FRAMES:
         raise InputError("the motion has a single frame; choose one of two frames or more")
     character = read_character(armature_object)
-    space = object_space(armature_object)
-    here = Similarity(space.rotation, space.location, space.scale)
-    motion = yield from stretch(solve_motion(character, character_map, source, options, here), 0.0, SOLVED)
-    yield Progress("Finding how the controls act", SOLVED)
-    planned = tuple(
-        plan
-        for plan in planned_controls(character_map, options)
-        if plan.kind is not ControlKind.ROOT or motion.root is not None
+    check_map(character_map, character)
+    here = object_space(armature_object)
+    placed = options.placement is Placement.PERFORMER
+    if placed:
+        require_placeable(armature_object)
+    completed = complete_map(armature_object, character, character_map)
+    character_map = completed.character_map
+    solving = solve_motion(
+        character, character_map, source, options, Similarity(here.rotation, here.location, here.scale)
     )
-    probed = probe_controls(armature_object, character_map, planned)
+    motion = yield from stretch(solving, 0.0, SOLVED)
+    yield Progress("Finding how the controls act", SOLVED)
+    probed = probe_controls(
+        armature_object,
+        character_map,
+        tuple(
+            plan
+            for plan in planned_controls(character_map, options)
+            if plan.kind is not ControlKind.ROOT or motion.root is not None
+        ),
+    )
     yield Progress("Bringing the motion onto the controls", PROBED)
     controls = _on_controls(character, character_map, motion, probed)
-    if options.tolerance_m is None:
-        keyed = dense_controls(controls, rotation_values)
-    else:
-        up = find_stance(character, character_map)[2]
-        rules = ToleranceRules(motion, source.time_s, up, options.tolerance_m)
-        reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
-        keyed = yield from within("Finding the keys", reducing, PROBED, 1.0)
-    notes = (*motion.notes, *probed.notes, *channel_notes(armature_object, keyed, controls))
+    keyed = yield from _keyed(controls, motion, source, scene_frames, options)
+    keys = RetargetedKeys(
+        scene_frames,
+        keyed,
+        shown_properties(character_map, options),
+        placement_keys(armature_object, motion.to_world) if placed else (),
+    )
+    in_fk = fk_properties(character_map, options)
+    measuring = measure_keys(armature_object, keys, source, motion, character, character_map, in_fk)
+    quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)
     return Retargeted(
         armature_object.session_uid,
         character,
         character_map,
         options,
-        scene_frames,
         motion,
-        keyed,
-        _properties(character_map, options),
-        placement_keys(armature_object, motion.to_world) if options.placement is Placement.PERFORMER else (),
-        notes,
+        keys,
+        replace(quality, keys=keys.key_count, dense_keys=keys.dense_count),
+        (
+            *completed.notes,
+            *motion.notes,
+            *probed.notes,
+            *channel_notes(armature_object, keyed, controls),
+        ),
     )
+
+
+def _keyed(
+    controls: ControlMotion,
+    motion: CharacterMotion,
+    source: SegmentMotion,
+    scene_frames: Array,
+    options: RetargetOptions,
+) -> Job[tuple[KeyedControl, ...]]:
+    """What is keyed on each control."""
+    if options.tolerance_m is None:
+        return dense_controls(controls, rotation_values)
+    rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
+    reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
+    return (yield from within("Finding the keys", reducing, PROBED, REDUCED))
 
 
 def _on_controls(
@@ -158,16 +187,3 @@ def _on_controls(
         size=probed.size,
         scale=character.scale,
     )
-
-
-def _properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, float | int | bool]:
-    """The map's settings, and its switches as the options want the limbs to be shown."""
-    values: dict[Property, float | int | bool] = {
-        (setting.bone, setting.property): setting.value for setting in character_map.settings
-    }
-    for limb in LIMBS:
-        controls = character_map.ik.get(limb)
-        if controls is not None and controls.switch is not None:
-            switch, keys = controls.switch, limb_keys(character_map, options, limb)
-            values[switch.bone, switch.property] = switch.fk if keys is LimbKeys.FK else switch.ik
-    return values

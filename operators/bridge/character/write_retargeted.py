@@ -1,8 +1,8 @@
 """Write a retargeted motion into an Action; of what is there, only what an earlier retargeting made goes."""
 
 import json
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -10,13 +10,14 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.finish.hermite import Spline
+from ....core.retarget.control_motion import KeyedControl
 from ..actions import assign_action, channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path
 from .channel_notes import driven_channels, keyed_paths
-
-if TYPE_CHECKING:
-    from .retarget import Retargeted
+from .object_placement import PlacementKeys
+from .posing import Property, Value
+from .property_paths import property_path
 
 MADE_BY_KEYMARK = "keymark_retargeted"
 """Custom property of an Action: which curves of which slot retargeting made, as JSON."""
@@ -24,22 +25,64 @@ OBJECT_GROUP = "Object Transforms"
 """Blender's own name for the group of an object's channels."""
 
 
+@dataclass(frozen=True, eq=False)
+class RetargetedKeys:
+    """All that is keyed of a character's motion."""
+
+    frames: Array
+    """(F,) scene frames."""
+    controls: tuple[KeyedControl, ...]
+    properties: Mapping[Property, Value]
+    """Custom properties that are keyed at the first frame."""
+    placement: PlacementKeys
+    """The object's channels that are keyed at the first frame."""
+
+    @property
+    def key_count(self) -> int:
+        """Number of keys on the controls."""
+        return sum(keyed.key_count for keyed in self.controls)
+
+    @property
+    def dense_count(self) -> int:
+        """Number of keys on the controls with one on every frame."""
+        return sum(keyed.channel_count for keyed in self.controls) * len(self.frames)
+
+
 def write_retargeted(
-    retargeted: "Retargeted",
-    scene: bpy.types.Scene,
-    action: bpy.types.Action | str,
+    keys: RetargetedKeys, session_uid: int, name: str, scene: bpy.types.Scene, action: bpy.types.Action | str
 ) -> bpy.types.Action:
-    """Write as `Retargeted.write` says."""
-    armature_object = _armature_of(retargeted)
+    """Write a motion into an Action, and let it animate its character.
+
+    Args:
+        keys: What is keyed.
+        session_uid: Blender's number of the armature object in this session.
+        name: The name that it had.
+        scene: The scene, which shows the new pose.
+        action: As `Retargeted.write` says.
+
+    Raises:
+        InputError: The character is gone.
+    """
+    armature_object = next((one for one in bpy.data.objects if one.session_uid == session_uid), None)
+    if armature_object is None:
+        raise InputError(f"armature '{name}' has been deleted meanwhile; nothing was changed")
     if isinstance(action, str):
         action = bpy.data.actions.new(action)
+    write_keys(keys, armature_object, action)
+    action.use_fake_user = True
+    assign_action(armature_object, action)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    return action
+
+
+def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: bpy.types.Action) -> None:
+    """Write the keys into an Action, which is not assigned."""
     channelbag = channelbag_for(action, armature_object)
     _remove_made(action, channelbag)
-    _remove_channels(channelbag, [keyed.control.name for keyed in retargeted.keyed])
-    driven = driven_channels(armature_object)
-    frames = retargeted.frames
+    _remove_channels(channelbag, [keyed.control.name for keyed in keys.controls])
+    driven, frames = driven_channels(armature_object), keys.frames
     made: list[tuple[str, int]] = []
-    for keyed in retargeted.keyed:
+    for keyed in keys.controls:
         for path, held in keyed_paths(keyed):
             values = held.values if isinstance(held, Spline) else held
             for index in range(values.shape[1]):
@@ -51,34 +94,15 @@ def write_retargeted(
                 else:
                     write_linear_keys(fcurve, frames, values[:, index])
                 made.append((path, index))
-    for (bone, name), value in retargeted.properties.items():
-        path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(name)}"]'
+    for (bone, name), value in keys.properties.items():
+        path = property_path(bone, name)
         made.append(_write_first(channelbag, path, 0, bone, frames, float(value)))
-    for path, values in retargeted.placement:
+    for path, values in keys.placement:
         for index, value in enumerate(values):
             made.append(_write_first(channelbag, path, index, OBJECT_GROUP, frames, float(value)))
     _remember_made(action, channelbag, made)
-    action.use_fake_user = True
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
-    assign_action(armature_object, action)
-    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-    return action
-
-
-def _armature_of(retargeted: "Retargeted") -> bpy.types.Object:
-    """The character, which may have been renamed meanwhile.
-
-    Raises:
-        InputError: It is gone.
-    """
-    uid = retargeted.session_uid
-    found = next((one for one in bpy.data.objects if one.session_uid == uid), None)
-    if found is None:
-        raise InputError(
-            f"armature '{retargeted.character.name}' has been deleted meanwhile; nothing was changed"
-        )
-    return found
 
 
 def _write_first(
