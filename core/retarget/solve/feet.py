@@ -209,10 +209,7 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     ball = ankle + BALL_AHEAD * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
-    slow = [
-        speeds(path, source.time_s) < RELEASE_SPEED_M_S
-        for path in (heel, tip, ball)
-    ]
+    slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
     on_front = (slow[1] | slow[2]) & (tip[:, 2] - ground_m < TOUCHING_M[1]) & (pitch >= 0.0)
     return on_heel, on_front
