@@ -234,3 +234,12 @@ def test_the_actor_is_still_animated_by_its_own(
     bpy.ops.keymark.retarget()
     assert take.armature.animation_data.action == keyframes
     assert existing_channelbag(shown(character), character.armature) is not None
+
+
+def test_removing_a_take_with_its_data_keeps_the_character(
+    character: bpy.types.PropertyGroup, rig: bpy.types.Object
+) -> None:
+    """The Actions that Keymark made go, the armature is the animator's."""
+    bpy.ops.keymark.retarget()
+    bpy.ops.keymark.remove_take(delete_data=True)
+    assert list(bpy.data.actions) == [] and rig in list(bpy.data.objects)
