@@ -165,8 +165,13 @@ def _rolled(
     change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
     in_front = [point for point in shape.foot if point[1] < 0.0]
     behind = [point for point in shape.foot if point[1] >= 0.0]
-    most = np.minimum.reduce([_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front])
-    least = np.maximum.reduce([_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind])
+    free = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
+    most = np.minimum.reduce(
+        [free, *(_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front)]
+    )
+    least = np.maximum.reduce(
+        [-free, *(_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind)]
+    )
     change = np.clip(change, np.minimum(least, most), most)
     return np.asarray(turn @ _about_x(np.clip(change, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)))
 

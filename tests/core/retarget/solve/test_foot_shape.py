@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _characters import plain_character, plain_map
-from _performances import shaped
+from _performances import shaped, solved, steps
 from keymark.core.retarget.solve.foot_shape import foot_shape, rest_floor_m, sole_points
 from keymark.core.retarget.solve.rest_body import RestBody
 
@@ -73,3 +73,12 @@ def test_tails_are_believed_where_they_meet_heads() -> None:
     tips = [foot_shape(body, "L", 0.0).toe[:, 1].min() for body in (meant, anywhere)]
     assert len(lengths) == 2
     np.testing.assert_allclose(tips, [-0.08, -0.052], atol=0.01)
+
+
+@pytest.mark.parametrize("points", [((0.1, -0.05, 0.0),), ((0.1, 0.09, 0.0),)], ids=["no heel", "no ball"])
+def test_a_sole_on_one_side_of_the_ankle_is_enough(points: tuple[tuple[float, float, float], ...]) -> None:
+    """As of a mesh whose heel hangs on the shin, or of a map with a single point: the motion is whole."""
+    character = plain_character()
+    soles = {f"foot.{side}": points for side in "LR"}
+    motion = solved(character, replace(plain_map(character), soles=soles), steps())
+    assert all(np.isfinite(pose).all() for pose in motion.poses.values())
