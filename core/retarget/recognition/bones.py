@@ -263,8 +263,9 @@ def _is_hub(bone: int, head: Array, parent: IndexArray, size: float) -> bool:
 
 
 def _meets(tail: Array, head: Array, first: int, second: int, size: float) -> bool:
-    """Whether a bone ends where another begins."""
-    return bool(np.linalg.norm(tail[first] - head[second]) < NEAR_PLACE * size)
+    """Whether a bone begins or ends where another begins."""
+    ends = np.linalg.norm(np.stack([head[first], tail[first]]) - head[second], axis=1)
+    return bool((ends < NEAR_PLACE * size).any())
 
 
 def _limb_ending_at(

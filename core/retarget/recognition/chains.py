@@ -44,7 +44,8 @@ def find_chains(frame: Frame) -> Chains:
             for upper in above[second + 1 :]:
                 found.append((upper, middle, int(end)))
                 attached.append(hangs_on)
-        reach = float(np.max(_length(frame.branch[int(end)] - frame.place[int(end)])))
+        both = int(end), int(frame.symmetry.partner[end])
+        reach = min(float(np.max(_length(frame.branch[each] - frame.place[each]))) for each in both)
         for upper in above:  # a limb may lack its hand
             if reach < SHORT_END * float(_length(frame.place[int(end)] - frame.place[upper])):
                 found.append((upper, int(end), -1))

@@ -62,7 +62,7 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
                 why = f"{other} fits almost as well" if other else "the limb may lack it"
                 found.append(_sentence(role, roles[role], why))
             elif other:
-                found.append(f"{role} was not found, but {other} may be it")
+                found.append(f"{role} not found, but {other} may be it")
     return found
 
 
@@ -70,9 +70,10 @@ def missing_doubts(character_map: CharacterMap) -> list[str]:
     """Roles that most characters have and this one lacks."""
     found = []
     if "head" not in character_map.roles:
-        found.append("head was not found: no bone of the middle lies where a head begins")
-    if "hand.L" not in character_map.roles:
-        found.append("hand.L and hand.R were not found: the forearms are the last bones of the arms")
+        found.append("head not found: no bone of the middle lies where a head begins")
+    hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
+    if hands:
+        found.append(f"{' and '.join(hands)} not found: the forearm is the last bone of the arm")
     return found
 
 

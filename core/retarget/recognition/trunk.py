@@ -154,7 +154,7 @@ def _emissions(frame: Frame, girdles: Girdles, path: list[int], names: Array) ->
             (0.0 if row > rank else UNLIKELY) + min(-0.5 * max(neck, head), 0.0),
         )
         if row and float(np.linalg.norm(place[bone] - place[path[row - 1]])) < SAME_JOINT * girdles.height:
-            scores[row, 3:5] -= 2.0  # the bone that carries it plays the part
+            scores[row, 3:5] -= 4.0  # the bone that carries it plays the part
         if next_level is not None:  # a head is longer than a neck bone
             scores[row, 3] += float(at_most(next_level - level, 0.3, 0.1, 3.0))
     return scores

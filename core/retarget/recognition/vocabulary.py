@@ -41,7 +41,7 @@ TRUNK_WORDS: Mapping[tuple[str, ...], Mapping[str, float]] = {
     ("rib", "cage"): {"spine": 2.5},
     ("上半身",): {"spine": 3.0},
     ("胸",): {"spine": 2.0},
-    ("neck",): {"neck": 3.0},
+    ("neck",): {"neck": 3.0, "head": 0.0},
     ("cervical",): {"neck": 2.5},
     ("首",): {"neck": 3.0},
     ("head",): {"head": 3.0},
