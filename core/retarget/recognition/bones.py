@@ -244,7 +244,7 @@ def _joined_ends(
         reach = float(np.max(np.linalg.norm(head[own] - head[bone], axis=1)))
         if (
             reach < LARGEST_END * size
-            and _is_hub(above, parent)
+            and _is_hub(above, head, parent, size)
             and not _meets(tail, head, above, bone, size)
         ):
             onto = _limb_ending_at(bone, own, head, tail, parent, readings, size)
@@ -253,10 +253,13 @@ def _joined_ends(
     return parent
 
 
-def _is_hub(bone: int, parent: IndexArray) -> bool:
-    """Whether a bone carries half of all, or stands near a root."""
-    near_root = parent[bone] < 0 or parent[parent[bone]] < 0
-    return bool(near_root or 2 * _below(parent, bone).sum() >= len(parent))
+def _is_hub(bone: int, head: Array, parent: IndexArray, size: float) -> bool:
+    """Whether a bone is a root, stands where its root does, or carries half of all bones."""
+    top = bone
+    while parent[top] >= 0:
+        top = int(parent[top])
+    at_root = np.linalg.norm(head[bone] - head[top]) < NEAR_PLACE * size
+    return bool(at_root or 2 * _below(parent, bone).sum() >= len(parent))
 
 
 def _meets(tail: Array, head: Array, first: int, second: int, size: float) -> bool:

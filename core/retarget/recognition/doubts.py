@@ -9,7 +9,7 @@ from .facing import SURE as SURE_SIDES
 from .facing import Facing
 from .figure import Figure
 
-SURE = 0.8
+SURE = 0.75
 """Confidence from which a role is not doubted."""
 
 

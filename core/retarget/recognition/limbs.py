@@ -18,7 +18,7 @@ NO_TOE, NO_SHOULDER = -4.0, -4.0
 """Scores of a foot without a toe and an upper arm without a collar bone, though bones are there."""
 SHORT_LEG = 0.4
 """Length of a leg, in sizes, below which feet do not become smaller with it."""
-TEMPERATURE = 1.5
+TEMPERATURE = 1.0
 """Log-likelihoods are divided by this before they are turned into probabilities: measures hang together."""
 MANY = 150
 """Best limbs of a kind by what is quickly measured; only these are looked at closely."""
@@ -66,7 +66,8 @@ def find_legs(frame: Frame, chains: Chains) -> Limbs:
     score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
     unit = np.maximum(length, SHORT_LEG)
     score += near((ankle[:, 2] - frame.floor) / unit, 0.1, 0.1, 5.0)
-    score += near(hip[:, 0] / length, 0.13, 0.07, 4.0)
+    score += at_least((knee[:, 2] - ankle[:, 2]) / np.maximum(lower, 1e-9), 0.93, 0.15, 4.0)
+    score += near(hip[:, 0] / unit, 0.13, 0.07, 4.0)
     score += near(length, 0.45, 0.15, 3.0)
     for column, part in enumerate(LEG[:3]):
         score += part_scores(frame, part)[chains.bones[:, column]]
@@ -119,7 +120,7 @@ def _foot_scores(frame: Frame, chains: Chains, ankle: Array, unit: Array) -> Arr
         ahead = np.max(np.abs(points[:, 1])) / unit[row]
         below = -np.min(points[:, 2]) / unit[row]
         bare = len(points) < 2
-        found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.1, 3.0) + at_most(below, 0.2, 0.08, 5.0))
+        found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.13, 2.0) + at_most(below, 0.2, 0.08, 5.0))
     return found
 
 
@@ -227,7 +228,7 @@ def _toe(frame: Frame, foot: int, unit: float, names: Array) -> tuple[OptionalPa
     for bone in frame.bones.subtree[foot][1:]:
         x, y, z = (frame.place[bone] - ankle) / unit
         depth = len([each for each in frame.bones.ancestors(bone) if each in frame.bones.subtree[foot]])
-        score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.08, 0.08, 4.0)) + names[bone]
+        score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.09, 0.1, 3.0)) + names[bone]
         options[bone] = score - 0.7 * (depth - 1) - abs(x) - 2.0 * frame.place[bone, 0] / unit
     return _optional(options, NO_TOE)
 

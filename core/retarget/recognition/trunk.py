@@ -16,7 +16,7 @@ STATES = ("below", "hips", "spine", "neck", "head", "end")
 UNLIKELY = -6.0
 NO_HEAD = -5.0
 """Score of a trunk without a head."""
-SURE = 0.8
+SURE = 0.75
 """Probability from which a bone's part is not doubted."""
 SAME_JOINT = 0.02
 """A bone this near above another, in heights of the trunk, begins where it does."""
@@ -149,7 +149,7 @@ def _emissions(frame: Frame, girdles: Girdles, path: list[int], names: Array) ->
             spine + float(at_most(level, 0.98, 0.05, 5.0)) + (0.5 if carries else -1.5),
             neck
             + float(at_least(over, 0.0, 0.08, 5.0) + at_most(over, 0.35, 0.15))
-            - (2.0 if carries else 0.0),
+            - (1.0 if carries else 0.0),
             head + float(near(over, 0.33, 0.2, 5.0)) + min(faces, 2) * 0.8 - (4.0 if carries else 0.0),
             (0.0 if row > rank else UNLIKELY) + min(-0.5 * max(neck, head), 0.0),
         )

@@ -48,6 +48,14 @@ class OpenedCharacter:
     character: Character
     chosen: ChosenMap
 
+    def completed(self, debug: bool) -> tuple[CharacterMap, tuple[str, ...]]:
+        """The map with the controls and soles that only Blender finds, and notes on them."""
+        with blender_silence(debug):
+            from ...bridge.character.complete_map import complete_map
+
+            found = complete_map(self.imported.armature, self.character, self.chosen.character_map)
+        return found.character_map, found.notes
+
 
 @contextmanager
 def opened_character(
@@ -138,11 +146,11 @@ def write_character_result(
             frames=len(frames),
             frame_start=motion.frame_start,
             fps=rate,
-            size=retargeted.motion.size,
+            size=retargeted.size,
             options=settings.options,
             roles=character_map.roles,
-            limbs=keyed_limbs(character_map, settings),
-            quality=_quality(retargeted),
+            limbs=keyed_limbs(retargeted.character_map, settings),
+            quality=retargeted.quality.to_dict(),
             doubts=opened.chosen.doubts,
             notes=(*opened.imported.notes, *retargeted.notes),
             files={CHARACTER_BLEND: curves},
@@ -155,12 +163,6 @@ def motion_segments(motion: Motion) -> SegmentMotion:
     """The segments of a motion, with natural feet and hands."""
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
-
-
-def _quality(retargeted: object) -> Mapping[str, float | None]:
-    """The figures of a retargeted motion."""
-    quality = getattr(retargeted, "quality", None)
-    return {} if quality is None else quality.to_dict()
 
 
 def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Mapping[str, str]:
