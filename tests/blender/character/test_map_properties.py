@@ -6,14 +6,16 @@ from pathlib import Path
 import bpy
 import pytest
 from _character_maps import full_map
-from _rigify import rigify_map
 from keymark.core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.character_map_file import read_character_map
 from keymark.core.retarget.options import RetargetOptions
+from keymark.core.retarget.presets import SHIPPED, read_preset
 from keymark.core.retarget.roles import LIMBS, ROLES
 from keymark.operators.character.map_conversion import map_of, show_found_controls, show_map
 from keymark.operators.character.options import options_of
 from keymark.operators.shell.takes import active_take
+
+RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -23,7 +25,7 @@ def role(character: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGro
     return character.character_map.roles[name]
 
 
-@pytest.mark.parametrize("character_map", [rigify_map(), full_map()], ids=["rigify", "full"])
+@pytest.mark.parametrize("character_map", [RIGIFY, full_map()], ids=["rigify", "full"])
 def test_a_map_goes_into_properties_and_comes_back(
     character: bpy.types.PropertyGroup, character_map: CharacterMap
 ) -> None:
@@ -65,7 +67,7 @@ def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
 
 def test_a_corrected_role_is_the_persons(character: bpy.types.PropertyGroup) -> None:
     """Its doubt is gone, and so is the control that was found for another bone; other roles keep theirs."""
-    show_map(character.character_map, rigify_map(), {"hand.L": "hand.L is doubtful: look at it"})
+    show_map(character.character_map, RIGIFY, {"hand.L": "hand.L is doubtful: look at it"})
     before = map_of(character.character_map)
     shown = role(character, "hand.L")
     assert shown.doubt and shown.source == before.roles["hand.L"].source
