@@ -8,8 +8,11 @@ reach.
 from contextlib import AbstractContextManager
 
 import bpy
+from keymark.core.body.segment_motion import SegmentMotion
+from keymark.core.body.skeleton import SIDES
 from keymark.core.retarget.character_map import CharacterMap
 from keymark.core.retarget.roles import LIMBS
+from mathutils import Matrix, Vector
 
 ACTORS_BONES = {
     "hips": "pelvis",
@@ -31,15 +34,15 @@ def copy_rotations(
 
     Args:
         actor: The actor, which shows its motion.
-        character: The armature object; its controls in FK.
+        character: The armature object; its controls are switched to FK.
         character_map: Which bones play which role.
         frames: First and last scene frame.
     """
-    pairs = {role: character_map.bone(role) for role in ACTORS_BONES}
-    bones = {ACTORS_BONES[role]: bone for role, bone in pairs.items() if bone is not None}
-    spine = character_map.bones("spine")
-    if spine:
-        bones["chest"] = spine[-1]
+    keyed = {role: [bone for bone in character_map.keyed_bones(role) if bone] for role in character_map.roles}
+    bones = {source: keyed[role][0] for role, source in ACTORS_BONES.items() if keyed.get(role)}
+    if keyed.get("spine"):
+        bones["chest"] = keyed["spine"][-1]
+    _set_fk(character, character_map)
     for source, bone in bones.items():
         constraint = character.pose.bones[bone].constraints.new("COPY_ROTATION")
         constraint.target, constraint.subtarget = actor, source
@@ -57,6 +60,28 @@ def copy_rotations(
             bake_types={"POSE"},
         )
     return character.animation_data.action
+
+
+def _set_fk(character: bpy.types.Object, character_map: CharacterMap) -> None:
+    """Switch a control rig to FK, as its settings want it."""
+    for setting in character_map.settings:
+        character.pose.bones[setting.bone][setting.property] = setting.value
+    for controls in character_map.ik.values():
+        if controls.switch is not None:
+            character.pose.bones[controls.switch.bone][controls.switch.property] = controls.switch.fk
+    character.update_tag()
+    bpy.context.view_layer.update()
+
+
+def sized_actor(actor: bpy.types.Object, source: SegmentMotion, size: float) -> None:
+    """Scale the actor about the ground under its first frame, so that it is as large as the character."""
+    hips = source.start["pelvis"][0]
+    floor = min(float(source.end[f"foot.{side}"][:, 2].min()) for side in SIDES)
+    pivot = Vector((hips[0], hips[1], floor))
+    actor.matrix_world = (
+        Matrix.Translation(pivot) @ Matrix.Scale(size, 4) @ Matrix.Translation(-pivot) @ actor.matrix_world
+    )
+    bpy.context.view_layer.update()
 
 
 def _only(character: bpy.types.Object) -> AbstractContextManager[None]:

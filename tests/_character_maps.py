@@ -1,9 +1,11 @@
-"""A character map with every field."""
+"""A character map and a record of retargeting with every field."""
 
 from dataclasses import replace
 
 from _characters import plain_character, plain_map
 from keymark.core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
+from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord
+from keymark.core.take.character_settings import CharacterOptions
 
 
 def full_map() -> CharacterMap:
@@ -35,4 +37,30 @@ def full_map() -> CharacterMap:
         license="CC0-1.0",
         description="For tests.",
         tags=("cartoon",),
+    )
+
+
+def full_record() -> RetargetRecord:
+    """A record with every field."""
+    return RetargetRecord(
+        keymark="1.0.0",
+        take="walk",
+        character_file="anna.blend",
+        character_object="rig",
+        character_sha256="ef" * 32,
+        map_title="Anna",
+        map_origin=RECOGNIZED,
+        preset="rigify",
+        action="walk on rig",
+        frames=8,
+        frame_start=1,
+        fps=30.0,
+        size=0.987,
+        options=CharacterOptions(root_motion="in-place", tolerance_mm=2.5),
+        roles=full_map().roles,
+        limbs={"arm.L": "fk", "leg.L": "both"},
+        quality={"skate_mm_per_frame": 0.012, "hands_mm": None},
+        doubts=("toe.L may be another bone",),
+        notes=("A note.",),
+        files={"character.blend": "ab" * 32},
     )

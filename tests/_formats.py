@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from _character_maps import full_map
+from _character_maps import full_map, full_record
 from _libraries import small_library
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.retarget.character_map_file import map_to_json, read_character_map
+from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery.take_list import read_take_list
 from keymark.core.take.clip_check import check_in_front
@@ -68,6 +69,11 @@ def formats(folder: Path) -> dict[str, Format]:
         Format("motion", _motion(folder), _plain(folder, "motion.json", read_motion)),
         Format(
             "conversion", _record(), _plain(folder, "conversion.json", lambda path: read_record(path.parent))
+        ),
+        Format(
+            "retarget",
+            record_to_json(full_record()),
+            _plain(folder, "retarget.json", lambda path: read_retarget_record(path.parent)),
         ),
         Format(
             "truth",

@@ -1,6 +1,6 @@
 """Extremities: hands and feet, which no degree of freedom turns against forearm and shin."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -18,6 +18,11 @@ class Extremities:
     turns: Mapping[str, Array]
     """(..., 3, 3) by segment: its turn in its parent's frame. One that is not listed is rigid with its
     parent."""
+
+    def without(self, names: Collection[str]) -> "Extremities":
+        """Those that are not named."""
+        kept = {name: turn for name, turn in self.turns.items() if name not in names}
+        return Extremities(MappingProxyType(kept))
 
 
 RIGID = Extremities(MappingProxyType({}))

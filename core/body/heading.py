@@ -25,10 +25,14 @@ def facing_rad(direction: Array) -> float:
 
 def headings_rad(posture: Posture) -> Array:
     """(F,) headings of the pelvis; of the line through the hips where the pelvis faces up or down."""
-    hips = posture.rotations[..., 0, :, :]
-    ahead = np.arctan2(-hips[..., 0, 1], hips[..., 1, 1])
-    across = np.arctan2(hips[..., 1, 0], hips[..., 0, 0])
-    level = np.hypot(hips[..., 0, 1], hips[..., 1, 1])
+    return turn_headings_rad(posture.rotations[..., 0, :, :])
+
+
+def turn_headings_rad(turn: Array) -> Array:
+    """(F,) headings of turns (F, 3, 3); of what was across where they make the front face up or down."""
+    ahead = np.arctan2(-turn[..., 0, 1], turn[..., 1, 1])
+    across = np.arctan2(turn[..., 1, 0], turn[..., 0, 0])
+    level = np.hypot(turn[..., 0, 1], turn[..., 1, 1])
     return np.where(level > np.sqrt(0.5), ahead, across)
 
 

@@ -1,17 +1,19 @@
-"""Contacts of feet: ranges of frames in which an ankle stays slow, low and near one place."""
+"""Contacts of feet: ranges of frames in which an ankle is slow, near one place, and low or carrying."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray
 
 REST_SPEED_M_S = 0.12
 """A resting ankle is slower than this ..."""
 RELEASE_SPEED_M_S = 0.25
 """... once, and stays below this before and after."""
 REST_HEIGHT_M = 0.05
-"""A resting ankle is no higher than this above its own lowest within `NEIGHBORHOOD_S`."""
+"""A resting ankle is no higher than this above its own lowest within `NEIGHBORHOOD_S` ..."""
+STEPPING_SPEED_M_S = 0.5
+"""... or carries the body, as on stairs, while the other ankle is faster than this."""
 NEIGHBORHOOD_S = 1.0
 SHORTEST_S = 0.2
 """Shortest rest; shorter ones are turning points of a moving foot."""
@@ -39,7 +41,8 @@ def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tup
     """Find the contacts of points.
 
     No floor is assumed: a foot may rest on a step or a beam. One that sways or slides farther than it may
-    stray does not rest.
+    stray does not rest. A rest on a step begins when the point comes there, though its way there still tells
+    that it is high.
 
     Args:
         places: (F, N, 3) the points, by frame [m].
@@ -51,24 +54,45 @@ def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tup
     """
     if len(places) < 3:
         return ()
+    speed = np.linalg.norm(np.gradient(places, time_s, axis=0), axis=-1)
     found: list[Contact] = []
     for point in range(places.shape[1]):
-        path = places[:, point]
-        for run in _slow_runs(path, time_s):
+        path, own = places[:, point], speed[:, point]
+        carries = np.delete(speed, point, axis=1).max(axis=1, initial=0.0) > STEPPING_SPEED_M_S
+        may_rest = carries | _is_low(path, time_s)
+        free = 0
+        for run in _slow_runs(own, may_rest):
             first, last = _longest_rest(path, stray_m, *run)
             lasted, whole = time_s[last] - time_s[first], time_s[run[1]] - time_s[run[0]]
             if lasted >= max(SHORTEST_S, MOST_OF_RUN * whole):
-                found.append(Contact(point, first, last, path[first : last + 1].mean(axis=0)))
+                place = path[first : last + 1].mean(axis=0)
+                near = np.linalg.norm(path - place, axis=-1) <= stray_m
+                rest = _widened(~may_rest & near & (own < RELEASE_SPEED_M_S), first, last, free)
+                found.append(Contact(point, *rest, place))
+                free = rest[1] + 1
     return tuple(found)
 
 
-def _slow_runs(path: Array, time_s: Array) -> list[tuple[int, int]]:
-    """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
-    speed = np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1)
+def _is_low(path: Array, time_s: Array) -> BoolArray:
+    """(F,) whether a point is near its own lowest."""
     low = np.array(
         [path[np.abs(time_s - now) <= NEIGHBORHOOD_S, 2].min() for now in time_s], dtype=np.float64
     )
-    slow = (speed < RELEASE_SPEED_M_S) & (path[:, 2] - low < REST_HEIGHT_M)
+    return np.asarray(path[:, 2] - low < REST_HEIGHT_M)
+
+
+def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, int]:
+    """The range of frames (first, last) with the frames from `free` on beside it in which the point stays."""
+    while first > free and stays[first - 1]:
+        first -= 1
+    while last < len(stays) - 1 and stays[last + 1]:
+        last += 1
+    return first, last
+
+
+def _slow_runs(speed: Array, may_rest: BoolArray) -> list[tuple[int, int]]:
+    """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
+    slow = (speed < RELEASE_SPEED_M_S) & may_rest
     edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))
     runs = zip(edges[::2], edges[1::2] - 1, strict=True)
     return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < REST_SPEED_M_S]

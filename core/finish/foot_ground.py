@@ -15,8 +15,12 @@ from .foot_pitch import Shins, Soles
 
 SETTLING_S = 0.1
 """Time from the beginning of a rest until the foot lies, and from when it begins to roll off to its end."""
+ROLLING_S = 0.15
+"""Time before and after a rest in which the foot is over the same ground, coming down or rolling off."""
 SAME_PLACE_M = 0.12
 """Distance on the ground within which two rests are on one floor."""
+HELD_M = 0.3
+"""A foot that rests this much higher than the other one, which rests meanwhile, is held in the air."""
 NOISE_M = 0.03
 """Two rests on one floor differ by no more than this unless one is on the toes."""
 LOW_SHARE = 0.1
@@ -61,6 +65,22 @@ def find_ground(shins: Shins, soles: Soles, time_s: Array, contacts: Sequence[Co
     return FootGround(np.minimum(height, beneath), resting, on_toes)
 
 
+def on_ground(contacts: Sequence[Contact]) -> tuple[Contact, ...]:
+    """The rests of feet that are not just held still in the air."""
+
+    def beside(contact: Contact, other: Contact) -> bool:
+        shared = min(contact.last, other.last) - max(contact.first, other.first)
+        return other.point != contact.point and 2 * shared > contact.last - contact.first
+
+    return tuple(
+        contact
+        for contact in contacts
+        if not any(
+            beside(contact, other) and contact.place[2] - other.place[2] > HELD_M for other in contacts
+        )
+    )
+
+
 def _floor(index: int, contacts: Sequence[Contact], own: Sequence[float]) -> float:
     """The ground's height at a rest: the lowest of those at the same place, if it is well below."""
     here = contacts[index].place[:2]
@@ -94,7 +114,8 @@ def _between(foot: int, contacts: Sequence[Contact], levels: Sequence[float], ti
     height = np.full(len(time_s), rests[0][1])
     for (before, low), (after, high) in zip(rests, rests[1:], strict=False):
         start, stop = time_s[before.last], time_s[after.first]
-        share = (time_s - start) / max(stop - start, 1e-9)
+        rolling = min(ROLLING_S, (stop - start) / 3.0)
+        share = (time_s - start - rolling) / max(stop - start - 2.0 * rolling, 1e-9)
         height[before.last :] = low + (high - low) * smooth_step(share[before.last :])
     return height
 

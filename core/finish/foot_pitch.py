@@ -90,26 +90,34 @@ class Soles:
         return np.asarray(np.maximum(np.minimum.reduce(depths), LEAST_CLEARANCE_M))
 
     def above_ground(self, pitch: Array, height_m: Array, level: Array, shins: Shins) -> Array:
+        """As `ahead`, but toes that the ankle cannot bring up in front of the shin go behind it."""
+        _, most = self._range(height_m, level)
+        # Behind, the tip is as steep as in front.
+        behind = np.maximum(pitch, np.pi - most - 2.0 * self.tip_rad)
+        return np.where(shins.lowest_pitch > most, behind, self.ahead(pitch, height_m, level))
+
+    def ahead(self, pitch: Array, height_m: Array, level: Array) -> Array:
         """The nearest pitches (F, 2) with neither heel nor tip below the ground [rad].
 
         Args:
             pitch: (F, 2) wanted pitches [rad].
             height_m: (F, 2) heights of the ankles above the ground.
             level: (F, 2) cosines of the feet's rolls.
-            shins: The shins; toes that the ankle cannot bring up in front of them go behind.
         """
-        reach = np.maximum(level, 1e-6)
-        tip, heel = height_m / (reach * self.tip_m), height_m / (reach * self.heel_m)
-        rise = np.arcsin(np.clip(tip, -1.0, 1.0))
-        most = np.where(tip < 1.0, rise - self.tip_rad, np.inf)
-        least = np.where(heel < 1.0, self.heel_rad - np.arcsin(np.clip(heel, -1.0, 1.0)), -np.inf)
-        ahead = np.clip(pitch, np.minimum(least, most), most)
-        behind = np.maximum(pitch, np.pi - rise - self.tip_rad)
-        return np.where(shins.lowest_pitch > most, behind, ahead)
+        least, most = self._range(height_m, level)
+        return np.clip(pitch, np.minimum(least, most), most)
 
     def on_toes(self, height_m: Array) -> Array:
         """(F, 2) pitches that put the tips on the ground, the ankles being higher than above flat feet."""
         return np.asarray(np.arcsin(np.clip(height_m / self.tip_m, -1.0, 1.0)) - self.tip_rad)
+
+    def _range(self, height_m: Array, level: Array) -> tuple[Array, Array]:
+        """(F, 2) pitches at which heel and tip touch the ground; infinite where they are too high to."""
+        reach = np.maximum(level, 1e-6)
+        tip, heel = height_m / (reach * self.tip_m), height_m / (reach * self.heel_m)
+        least = np.where(heel < 1.0, self.heel_rad - np.arcsin(np.clip(heel, -1.0, 1.0)), -np.inf)
+        most = np.where(tip < 1.0, np.arcsin(np.clip(tip, -1.0, 1.0)) - self.tip_rad, np.inf)
+        return least, most
 
     def _depth_m(self, pitch: Array) -> Array:
         """(..., 2) depth of the lower of heel and tip below the ankle [m]."""

@@ -63,7 +63,7 @@ def foot_turns(
     pitch = soles.above_ground(
         _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
     )
-    standing = ground.resting + (1.0 - ground.resting) * _still(speed, above)
+    standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
     pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
     turned = upright * _held_heading(shins, contacts, time_s)
     steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
@@ -73,10 +73,10 @@ def foot_turns(
 
 
 def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array]:
-    """Turns as of `foot_turns`, of single postures: rigid but where heel or tip would pass a floor."""
-    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.clearance_m(shins))
+    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip into the floor."""
+    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.flat_m)
     nothing = np.zeros_like(height)
-    pitch = soles.above_ground(shins.pitch, height, np.cos(shins.roll), shins)
+    pitch = soles.ahead(shins.pitch, height, np.cos(shins.roll))
     return _by_side(shins, pitch, nothing, nothing)
 
 

@@ -11,9 +11,9 @@ from ..body.rotations import exponential
 from ..body.skeleton import SIDES
 from .joint_speed import steadied
 
-CURL_RAD = np.radians(12.0)
+CURL_RAD = np.radians(10.0)
 """Bend of a relaxed hand toward the palm, half-closed fingers included, which one bone stands for."""
-DROOP_RAD = np.radians(12.0)
+DROOP_RAD = np.radians(8.0)
 """What its weight bends a hand by when the forearm is level."""
 BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)
 """Extension and flexion of a wrist (AAOS 1965, *Joint Motion*)."""

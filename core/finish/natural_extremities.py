@@ -8,7 +8,7 @@ from ..body.extremities import Extremities
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from .contacts import Contact, find_contacts
-from .foot_ground import find_ground
+from .foot_ground import find_ground, on_ground
 from .foot_pitch import Shins, Soles
 from .foot_turns import foot_turns
 from .hand_turns import hand_turns
@@ -27,9 +27,8 @@ def natural_extremities(
     """
     pose = body.pose(posture)
     shins, soles = Shins.of(body, pose), Soles.of(body)
-    if contacts is None:
-        contacts = find_contacts(shins.ankle, time_s)
-    ground = find_ground(shins, soles, time_s, contacts)
-    feet = foot_turns(shins, soles, ground, time_s, contacts)
+    rests = on_ground(find_contacts(shins.ankle, time_s) if contacts is None else contacts)
+    ground = find_ground(shins, soles, time_s, rests)
+    feet = foot_turns(shins, soles, ground, time_s, rests)
     hands = hand_turns(body, pose, ground.height_m.min(axis=1), time_s)
     return Extremities(MappingProxyType({**feet, **hands}))

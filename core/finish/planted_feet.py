@@ -32,6 +32,8 @@ UNCHANGED_STD = 1e-6
 """Factor of `CHANGE_STD` in frames without a correction."""
 RESTING_TOLERANCE_M = 0.0005
 """Largest error that key reduction may give a resting ankle [m]: it must not slide again."""
+SOLE_TOLERANCE_M = 0.001
+"""Largest error that it may give heel and tip of a resting foot [m], which lies flat."""
 ITERATIONS = 8
 CONVERGED = 1e-5
 
@@ -96,13 +98,19 @@ def point_tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: S
         rig: The actor.
         frame_count: F.
         tolerance_m: The general tolerance [m].
-        contacts: Rests of the ankles, left and right, whose tolerance is at most `RESTING_TOLERANCE_M`.
+        contacts: Rests of the ankles, left and right, whose tolerance is at most `RESTING_TOLERANCE_M`, and
+            that of soles `SOLE_TOLERANCE_M`.
     """
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
     for contact in contacts:
-        ankle = rig.point_slices[row[f"shin.{SIDES[contact.point]}"]].start + 1
-        allowed[contact.first : contact.last + 1, ankle] = min(RESTING_TOLERANCE_M, tolerance_m)
+        frames, side = slice(contact.first, contact.last + 1), SIDES[contact.point]
+        ankle = rig.point_slices[row[f"shin.{side}"]].start + 1
+        allowed[frames, ankle] = min(RESTING_TOLERANCE_M, tolerance_m)
+        if f"foot.{side}" in row:
+            foot = rig.point_slices[row[f"foot.{side}"]]
+            allowed[frames, foot.start] = min(RESTING_TOLERANCE_M, tolerance_m)
+            allowed[frames, foot.start + 1 : foot.stop] = min(SOLE_TOLERANCE_M, tolerance_m)
     return allowed
 
 

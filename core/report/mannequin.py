@@ -85,7 +85,7 @@ def draw_mannequin(image: Image, body: Body, posture: Posture, view: View) -> Im
     height, width = image.shape[:2]
     size = (height * SUPERSAMPLING, width * SUPERSAMPLING)
     surface = mannequin_surface(body, _spacing_m(view))
-    rotations, origins = skin_frames(body, body.pose(posture))
+    rotations, origins = skin_frames(body, posture)
     onto = view.axes * np.array([[view.scale], [-view.scale], [1.0]])
     facing, shown, thrown = [], [], []
     for frame, skin in surface.parts:

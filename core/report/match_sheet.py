@@ -50,7 +50,11 @@ def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
     canvas, cells = sheet(
         title, footer, [keyframe.index for keyframe in keyframes], COLUMNS, CELL_WIDTH, picture + STRIP
     )
-    figure = posed_figure(take.body, Posture.stack([keyframe.posture for keyframe in keyframes]))
+    figure = posed_figure(
+        take.body,
+        Posture.stack([keyframe.posture for keyframe in keyframes]),
+        np.array([keyframe.index / take.fps for keyframe in keyframes]),
+    )
     for index, (cell, keyframe) in enumerate(zip(cells, keyframes, strict=True)):
         tile = Canvas(cell.width, picture)
         tile.paste(paler(images[cell.frame]), 0, 0, cell.width, picture)

@@ -2,21 +2,19 @@
 
 from pathlib import Path
 
-import cv2
-import numpy as np
-
-from ..arrays import Array, Image
+from ..arrays import Array
 from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import SCALE, write_jpg, write_png
+from .canvas import write_jpg, write_png
 from .contact_sheet import evenly_spaced_frames
 from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import film_strip
+from .footage_frames import footage_frames
 from .match_sheet import match_sheet, shown_keyframes
-from .overlay_sheet import CELL_WIDTH, overlay_sheet
+from .overlay_sheet import overlay_sheet
 from .speed_plot import speed_plot
 from .view_sheet import view_sheet
 
@@ -54,8 +52,7 @@ def write_pictures(
     keyed = [keyframe.index for keyframe in shown_keyframes(take)] if matched else []
     in_strip = evenly_spaced_frames(len(motion.time_s), STRIP_FRAMES)
     wanted = sorted({*frames, *in_strip, *keyed})
-    source = Clip.open(take.clip, fps=take.fps).source
-    shown = {frame: _reduced(image) for frame, image in source.at(wanted)}
+    shown = footage_frames(Clip.open(take.clip, fps=take.fps), wanted)
     found = {frame: shown[frame] for frame in frames if frame in shown}
     if not found:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
@@ -72,13 +69,3 @@ def write_pictures(
     write_jpg(str(folder / STRIP), film_strip(take, motion, strip))
     matches = (MATCHES,) if matched else ()
     return tuple(folder / name for name in (*PICTURES, *matches))
-
-
-def _reduced(image: Image) -> Image:
-    """The frame, reduced to the width of a cell: dozens of full 8K frames would fill the memory."""
-    height, width = image.shape[:2]
-    most = CELL_WIDTH * SCALE
-    if width <= most:
-        return image
-    size = (most, max(1, round(most * height / width)))
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..body.kinematics import Body, Pose
+from ..body.extremities import segment_ends
+from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..finish.natural_extremities import natural_extremities
 from ..take.motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
 
@@ -40,22 +42,23 @@ class StickFigure:
 
 def stick_figure(motion: Motion) -> StickFigure:
     """The lines of a motion's performer: arms and legs with hands and feet, hips, shoulders and spine."""
-    return _figure(motion.body, motion.body.pose(motion.posture), motion.points)
+    return _figure(motion.body, motion.posture, motion.time_s, motion.points)
 
 
-def posed_figure(body: Body, posture: Posture) -> StickFigure:
-    """The lines of a batch of F postures, each of which counts as a frame."""
-    pose = body.pose(posture)
-    return _figure(body, pose, body.points(pose))
+def posed_figure(body: Body, posture: Posture, time_s: Array) -> StickFigure:
+    """The lines of a batch of F postures, each of which counts as a frame, at rising times (F,) [s]."""
+    return _figure(body, posture, time_s, body.points(body.pose(posture)))
 
 
-def _figure(body: Body, pose: Pose, points: Array) -> StickFigure:
+def _figure(body: Body, posture: Posture, time_s: Array, points: Array) -> StickFigure:
+    pose, extremities = body.pose(posture), natural_extremities(body, posture, time_s)
     by_name = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
     limbs = []
     for side in ("L", "R"):
         for joints, end in ((("shoulder", "elbow", "wrist"), "hand"), (("hip", "knee", "ankle"), "foot")):
             line = [by_name[f"{joint}.{side}"] for joint in joints]
-            limbs.append(Limb(side, np.stack([*line, _tip(body, pose, f"{end}.{side}")], axis=1)))
+            tip = segment_ends(body, pose, extremities, f"{end}.{side}")[1]
+            limbs.append(Limb(side, np.stack([*line, tip], axis=1)))
     hips = 0.5 * (by_name["hip.L"] + by_name["hip.R"])
     shoulders = 0.5 * (by_name["shoulder.L"] + by_name["shoulder.R"])
     waist = body.segment_ends(pose, "chest")[0]
@@ -63,10 +66,6 @@ def _figure(body: Body, pose: Pose, points: Array) -> StickFigure:
     limbs.append(Limb("", np.stack([by_name["hip.L"], hips, by_name["hip.R"]], axis=1)))
     limbs.append(Limb("", np.stack([by_name["shoulder.L"], shoulders, by_name["shoulder.R"]], axis=1)))
     return StickFigure(tuple(limbs), by_name["head"], HEAD_RADIUS * body.actor.stature_m)
-
-
-def _tip(body: Body, pose: Pose, segment: str) -> Array:
-    return body.segment_ends(pose, segment)[1]
 
 
 def draw_figure(

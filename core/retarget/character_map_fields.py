@@ -55,7 +55,7 @@ def read_map_fields(fields: Fields, source: str = "you", others: Collection[str]
         InputError: A field is missing, unknown or invalid.
     """
     fields.refuse_others((*HEADER, *others))
-    roles = _roles(fields, source)
+    roles = read_roles(fields, source)
     return CharacterMap(
         title=text_line(fields, "title", LONGEST_NAME),
         roles=roles,
@@ -121,7 +121,8 @@ def _object(fields: Fields, name: str, known: Collection[str], of_what: str) -> 
     return child
 
 
-def _roles(fields: Fields, source: str) -> Mapping[str, RoleBones]:
+def read_roles(fields: Fields, source: str = "you") -> Mapping[str, RoleBones]:
+    """The field `roles`: the bones of each role, in the order of `ROLES`."""
     child = fields.child("roles", "an object of bones by role")
     child.refuse_others(ROLES)
     if not child.values:

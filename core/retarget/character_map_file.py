@@ -4,6 +4,7 @@
 """
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -77,9 +78,7 @@ def map_to_json(character_map: CharacterMap) -> dict[str, Any]:
         "license": character_map.license,
         "description": character_map.description,
         "tags": list(character_map.tags),
-        "roles": {
-            role: _role_to_json(character_map.roles[role]) for role in ROLES if role in character_map.roles
-        },
+        "roles": roles_to_json(character_map.roles),
         "fk": {role: list(character_map.fk[role]) for role in ROLES if role in character_map.fk},
         "ik": {limb: _controls_to_json(character_map.ik[limb]) for limb in LIMBS if limb in character_map.ik},
         "settings": [
@@ -105,6 +104,11 @@ def map_to_json(character_map: CharacterMap) -> dict[str, Any]:
 def map_digest(character_map: CharacterMap) -> str:
     """Digest of a map's content, whatever the path and the layout of its file."""
     return digest(json.dumps(map_to_json(character_map), sort_keys=True))
+
+
+def roles_to_json(roles: Mapping[str, RoleBones]) -> dict[str, Any]:
+    """The field `roles`."""
+    return {role: _role_to_json(roles[role]) for role in ROLES if role in roles}
 
 
 def _role_to_json(role: RoleBones) -> dict[str, Any]:

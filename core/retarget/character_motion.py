@@ -1,9 +1,12 @@
 """A motion as the character performs it: the poses of the bones that play a role, before any control."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 
-from ..arrays import Array
+import numpy as np
+
+from ..arrays import Array, BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,21 @@ class FootRest:
     last: int
     """Its last frame, included."""
     floor_m: float
-    """Height of the ground there, along the character's up [m]."""
+    """Height of the ground there, along the character's up from the armature's origin [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class HandGoal:
+    """Where a hand of the character belongs by what the performer's hand is near."""
+
+    place_m: Array
+    """(F, 3) place of the wrist, canonical, before any way is taken off [m]."""
+    share: Array
+    """(F,) how much it counts against the direction of the arm, 0 to 1."""
+    floor_share: Array
+    """(F,) how much the floor counts in it, 0 to 1."""
+    in_reach: BoolArray
+    """(F,) whether the arm reaches it without being stretched."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,5 +75,16 @@ class CharacterMotion:
     """(N, 3) by role of foot and toe: points of the sole at rest, in the armature's space."""
     size: float
     """The character's size: its legs' length over the performer's."""
+    stance: Array = field(default_factory=lambda: np.eye(3))
+    """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these
+    axes and in meters, from the armature's origin."""
+    facing: Array = field(default_factory=lambda: np.eye(3))
+    """(3, 3) from directions of the performer's world to the character's; 1 with `Placement.PERFORMER`."""
+    way_m: Array = field(default_factory=lambda: np.zeros(3))
+    """(F, 3) or (3,) way over the ground that `RootMotion.IN_PLACE` took off, canonical [m]."""
+    ground_m: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
+    """(F,) by limb of each planted foot: height of the ground under it, canonical [m]."""
+    hands: Mapping[str, HandGoal] = field(default_factory=lambda: MappingProxyType({}))
+    """Where hands belong, by side, of those that reach."""
     notes: tuple[str, ...] = ()
     """What a person should know, in sentences without a full stop."""

@@ -1,7 +1,8 @@
-"""Channels of controls from the poses they are to have, without Blender: each in the space that carries it."""
+"""Channels of controls from the poses they are to have: each in the space of what turns and carries it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -48,6 +49,11 @@ class ControlChannels:
     place: Array
     """(F, 3) its head in the armature's space, as the channels give it."""
 
+    def on(self, carrier: "ControlChannels") -> "ControlChannels":
+        """The same where turn and place are those in the axes of what carries it."""
+        place = carrier.place + (carrier.turn @ self.place[..., None])[..., 0]
+        return replace(self, turn=carrier.turn @ self.turn, place=place)
+
 
 def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
     """The controls in an order in which those that turn or carry others come before them.
@@ -78,7 +84,10 @@ def _placed(control: Control, place: Mapping[int, int], number: int) -> Control:
 
 
 def control_channels(
-    controls: Sequence[Control], wanted: Mapping[str, Array], size: float
+    controls: Sequence[Control],
+    wanted: Mapping[str, Array],
+    size: float,
+    known: Mapping[int, ControlChannels] = MappingProxyType({}),
 ) -> tuple[ControlChannels, ...]:
     """The channels that give controls the poses they are to have, or the nearest that they can.
 
@@ -86,11 +95,15 @@ def control_channels(
         controls: The controls, those that turn or carry others before them.
         wanted: (F, 4, 4) by name the pose of each in the armature's space; of a pole only the place counts.
         size: The character's, in the armature's units.
+        known: Controls by index whose channels are known already.
     """
     frames = len(next(iter(wanted.values()), np.zeros((1, 4, 4))))
     still, origin = np.broadcast_to(np.eye(3), (frames, 3, 3)), np.zeros((frames, 3))
     found: list[ControlChannels] = []
-    for control in controls:
+    for index, control in enumerate(controls):
+        if index in known:
+            found.append(known[index])
+            continue
         space, pose = control.space, wanted[control.name]
         turner = still if space.turner == NOTHING else found[space.turner].turn
         axes, place = still, origin

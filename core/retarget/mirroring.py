@@ -15,7 +15,9 @@ WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("
 """How names tell the sides."""
 NEAR = 0.03
 """Share of the character's extent by which a mirrored bone may lie off."""
-ALONG_AXIS = np.cos(np.radians(20.0))
+LOOSE, REFINEMENTS = 0.1, 3
+"""The same while the plane between the sides is sought, and how often it is fitted to what was found."""
+ALONG_AXIS = np.cos(np.radians(5.0))
 """Cosine of the angle within which the sides are taken to lie along an axis of the armature."""
 
 
@@ -86,8 +88,11 @@ def mirrored_map(
             continue
         roles[_other(role)] = RoleBones(partners, shares=character_map.roles[role].shares)
         fk.pop(_other(role), None)
-        controls = tuple(map(sides.partner, character_map.fk.get(role, ())))
-        if controls and all(control is not None for control in controls):
+        keyed = character_map.fk.get(role, ())
+        controls = tuple(map(sides.partner, keyed))
+        if keyed and all(
+            (own is None) == (other is None) for own, other in zip(keyed, controls, strict=True)
+        ):
             fk[_other(role)] = controls
     for limb in LIMBS:
         mirrored = _mirrored_controls(sides, ik[limb]) if limb in ik and limb.endswith(from_side) else None
@@ -106,20 +111,36 @@ def _sides(
     character: Character, character_map: CharacterMap, given: dict[str, tuple[str, ...]]
 ) -> _Sides | None:
     """The plane between the sides, along the trunk, across which the given bones lie; None without bones."""
-    used = {name for bones in given.values() for name in bones if name in character.index}
+    used = dict.fromkeys(name for bones in given.values() for name in bones if name in character.index)
     middle = [character_map.bone(role) for role in MIDDLE]
     trunk = [character.bone(name).head for name in middle if name is not None and name in character.index]
-    if not used or not trunk:
+    others = [bone.head for bone in character.bones if bone.name not in used]
+    if not used or not trunk or not others:
         return None
     origin = np.mean(trunk, axis=0)
     across = np.mean([character.bone(name).head for name in used], axis=0) - origin
     up = trunk[-1] - trunk[0]
     across = across - up * float(across @ up) / max(float(up @ up), 1e-12)
     across = across / max(float(np.linalg.norm(across)), 1e-12)
+    heads = np.array([character.bone(name).head for name in used])
+    size = float(np.ptp(np.concatenate([heads, others]), axis=0).max())
+    for _ in range(REFINEMENTS):
+        across, origin = _fitted(heads, np.array(others), origin, across, LOOSE * size)
     nearest = np.eye(3)[int(np.argmax(np.abs(across)))]
     normal = nearest if abs(float(across @ nearest)) > ALONG_AXIS else across
-    heads = np.array([bone.head for bone in character.bones])
-    return _Sides(character, origin, normal, NEAR * float(np.ptp(heads, axis=0).max()), used)
+    return _Sides(character, origin, normal, NEAR * size, used)
+
+
+def _fitted(given: Array, others: Array, origin: Array, normal: Array, near: float) -> tuple[Array, Array]:
+    """Normal and origin of the plane between given points and those that they nearly mirror."""
+    mirrored = given - 2.0 * ((given - origin) @ normal)[:, None] * normal
+    distance = np.linalg.norm(mirrored[:, None] - others[None], axis=2)
+    partner, found = others[np.argmin(distance, axis=1)], distance.min(axis=1) < near
+    apart = np.sum((given - partner)[found], axis=0)
+    length = float(np.linalg.norm(apart))
+    if length <= near:
+        return normal, origin
+    return apart / length, np.mean(0.5 * (given + partner)[found], axis=0)
 
 
 def _other_names(name: str) -> set[str]:

@@ -1,6 +1,7 @@
 """Slotted Actions, by the API that Blender 4.5 and 5.x share."""
 
 import hashlib
+from collections.abc import Iterable
 
 import bpy
 import numpy as np
@@ -61,8 +62,19 @@ def curve_digest(animated: bpy.types.Object) -> str:
 
     It is the same in every run, unlike a .blend, which holds memory addresses.
     """
+    return _digest(_curves(animated))
+
+
+def action_digest(action: bpy.types.Action) -> str:
+    """SHA-256 of the curves of an Action with one slot, as `curve_digest` gives it of what it animates."""
+    strips = action.layers[0].strips if action.layers else ()
+    bags = [bag for strip in strips for bag in strip.channelbags]
+    return _digest([curve for bag in bags for curve in bag.fcurves])
+
+
+def _digest(curves: Iterable[bpy.types.FCurve]) -> str:
     hashed = hashlib.sha256()
-    for curve in sorted(_curves(animated), key=lambda curve: (curve.data_path, curve.array_index)):
+    for curve in sorted(curves, key=lambda curve: (curve.data_path, curve.array_index)):
         points = np.empty(2 * len(curve.keyframe_points), dtype="<f4")
         curve.keyframe_points.foreach_get("co", points)
         hashed.update(f"{curve.data_path} {curve.array_index} {len(points)}:".encode())

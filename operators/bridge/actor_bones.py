@@ -1,10 +1,16 @@
-"""Telling Keymark's actors from other armatures, by the names of their bones alone: quick enough to draw."""
+"""Telling Keymark's actors and their Actions from others, by the names of bones alone: quick enough to draw.
+
+Nothing that starts slowly is imported, so that fields can ask while Blender starts.
+"""
 
 import bpy
 
 from ...core.body.human import HUMAN
 
 ACTOR_BONES = frozenset(segment.name for segment in HUMAN.segments)
+TELLING = ("pelvis", "girdle.L")
+"""Bones that every motion of an actor moves; other rigs have hardly both."""
+TURNS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle")
 
 
 def is_actor(candidate: bpy.types.Object | None) -> bool:
@@ -12,3 +18,19 @@ def is_actor(candidate: bpy.types.Object | None) -> bool:
     if candidate is None or candidate.type != "ARMATURE" or candidate.data is None:
         return False
     return ACTOR_BONES <= set(candidate.data.bones.keys())
+
+
+def missing_bones(armature_object: bpy.types.Object) -> list[str]:
+    """Bones of Keymark's skeleton that an armature lacks, in the skeleton's order."""
+    there = armature_object.data.bones
+    return [segment.name for segment in HUMAN.segments if segment.name not in there]
+
+
+def moves_an_actor(action: bpy.types.Action) -> bool:
+    """Whether an Action turns the bones of a Keymark actor."""
+    bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+    return any(all(_turns(bag, bone) for bone in TELLING) for bag in bags)
+
+
+def _turns(bag: bpy.types.ActionChannelbag, bone: str) -> bool:
+    return any(bag.fcurves.find(f'pose.bones["{bone}"].{turn}') is not None for turn in TURNS)

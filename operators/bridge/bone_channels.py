@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body import rotations
+from ...core.body.extremities import RIGID, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
 from .actor_lengths import skeleton_bones
@@ -26,12 +27,15 @@ class BoneChannels:
     """(F, 3) [m, before the object's scale]; None for all but the root."""
 
 
-def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple[BoneChannels, ...]:
-    """Channels of every bone with degrees of freedom that show a batch of postures in the world.
+def bone_channels(
+    armature_object: bpy.types.Object, postures: Posture, extremities: Extremities = RIGID
+) -> tuple[BoneChannels, ...]:
+    """Channels of bones that show a batch of postures in the world.
 
     Args:
         armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
         postures: A batch of F.
+        extremities: Hands and feet; those that are not listed get no channels.
 
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
@@ -39,11 +43,15 @@ def bone_channels(armature_object: bpy.types.Object, postures: Posture) -> tuple
     models = skeleton_bones(armature_object, postures.skeleton)
     bones = armature_object.data.bones
     rest = {model.name: np.array(bones[model.name].matrix_local, dtype=np.float64) for model in models}
-    return channels_at_rest(models, rest, object_space(armature_object), postures)
+    return channels_at_rest(models, rest, object_space(armature_object), postures, extremities)
 
 
 def channels_at_rest(
-    models: tuple[BoneModel, ...], rest: Mapping[str, Array], space: ObjectSpace, postures: Posture
+    models: tuple[BoneModel, ...],
+    rest: Mapping[str, Array],
+    space: ObjectSpace,
+    postures: Posture,
+    extremities: Extremities = RIGID,
 ) -> tuple[BoneChannels, ...]:
     """Channels as `bone_channels`, of bones that need not be in an armature.
 
@@ -52,12 +60,15 @@ def channels_at_rest(
         rest: (4, 4) rest matrix of each bone, in the object's space.
         space: From the object's space to the world.
         postures: A batch of F.
+        extremities: Hands and feet; those that are not listed get no channels.
     """
     frames: dict[str, Array] = {}
     channels = []
     for model in models:
         frames[model.name] = _joint_frame(postures, model, frames)
-        if not model.chain:
+        if model.name in extremities.turns:
+            frames[model.name] = frames[model.name] @ extremities.turns[model.name]
+        elif not model.chain:
             continue
         turn = rest[model.name][:3, :3]
         posed = _posed(frames, model, space.rotation)

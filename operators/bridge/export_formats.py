@@ -25,7 +25,7 @@ class ExportFormat:
     description: str
     """Tooltip: what the format is for."""
     write: Callable[[bpy.types.Object, Path], None]
-    """Write the motion of an armature over its scene's frames; it is the only selected object."""
+    """Write the motion of an armature over its scene's frames, with the other selected objects."""
     operator_type: str = ""
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
     addon: str = ""
@@ -67,7 +67,7 @@ def _write_fbx(_: bpy.types.Object, path: Path) -> None:
     bpy.ops.export_scene.fbx(
         filepath=str(path),
         use_selection=True,
-        object_types={"ARMATURE"},
+        object_types={"ARMATURE", "MESH", "EMPTY"},
         add_leaf_bones=False,
         bake_anim=True,
         bake_anim_use_nla_strips=False,

@@ -5,20 +5,23 @@ from collections.abc import Callable, Iterable
 import bpy
 
 from ...core.arrays import Array
+from ...core.body.extremities import RIGID, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
+from ...core.finish.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
-from .actions import assign_action, channelbag_for, existing_channelbag
+from .actions import assign_action, channelbag_for
 from .actor_lengths import skeleton_bones
 from .bone_channels import BoneChannels, bone_channels
-from .keys import add_generated_keys, copy_as_generated, ensure_fcurve, remove_generated_keys
-from .rotation_modes import ALL_PATHS, rotation_path, rotation_values
+from .extremity_curves import copy_posed_extremities, extremity_paths, posed_extremities
+from .keys import add_generated_keys, remove_generated_keys
+from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 
 
 def posture_columns(
-    armature_object: bpy.types.Object, postures: Posture
+    armature_object: bpy.types.Object, postures: Posture, extremities: Extremities = RIGID
 ) -> list[tuple[str, int, str, Array]]:
-    """Contents of the F-curves of a batch of F postures.
+    """Contents of the F-curves of a batch of F postures, and of the hands and feet that are given.
 
     Every bone keeps the rotation mode that the animator has chosen.
 
@@ -29,7 +32,8 @@ def posture_columns(
         InputError: A bone is missing, or the object is scaled unevenly.
     """
     bones = armature_object.pose.bones
-    return channel_columns(bone_channels(armature_object, postures), lambda bone: bones[bone].rotation_mode)
+    channels = bone_channels(armature_object, postures, extremities)
+    return channel_columns(channels, lambda bone: bones[bone].rotation_mode)
 
 
 def channel_columns(
@@ -46,11 +50,6 @@ def channel_columns(
             path = bone_path(channel.bone, name)
             rows += [(path, index, channel.bone, column) for index, column in enumerate(columns.T)]
     return rows
-
-
-def bone_path(bone: str, channel: str) -> str:
-    """Data path of a pose bone's property."""
-    return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{channel}'
 
 
 def moved_paths(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[str, ...]:
@@ -79,44 +78,26 @@ def write_motion(
         armature_object: The actor, with any location and even scale; it shows the motion's world positions.
         motion: The motion to write.
         action: The Action to write into; a new one by default.
-        keyframe_action: Where the animator keyed bones without degrees of freedom (hands, feet); their curves
-            are copied, so that they move as posed.
+        keyframe_action: Where the animator may have posed hands and feet; those that are move as their curves
+            there say, the others naturally.
         frames: (F,) scene frames; the motion's own by default.
 
     Raises:
         InputError: A bone is missing, or the object is scaled unevenly.
     """
-    columns = posture_columns(armature_object, motion.posture)
+    skeleton = motion.body.skeleton
+    posed = posed_extremities(armature_object, skeleton, keyframe_action)
+    natural = natural_extremities(motion.body, motion.posture, motion.time_s).without(posed)
+    columns = posture_columns(armature_object, motion.posture, natural)
     frames = motion.scene_frames if frames is None else frames
     if action is None:
         action = bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)
-    remove_generated_keys(channelbag, moved_paths(armature_object, motion.body.skeleton))
+    remove_generated_keys(channelbag, moved_paths(armature_object, skeleton))
+    remove_generated_keys(channelbag, extremity_paths(skeleton))
     for path, index, bone, column in columns:
         add_generated_keys(channelbag, path, index, bone, frames, column)
     if keyframe_action is not None:
-        _copy_leaves(armature_object, motion.body.skeleton, keyframe_action, channelbag)
+        copy_posed_extremities(armature_object, skeleton, keyframe_action, posed, channelbag)
     assign_action(armature_object, action)
     return action
-
-
-def _copy_leaves(
-    armature_object: bpy.types.Object,
-    skeleton: Skeleton,
-    source: bpy.types.Action,
-    channelbag: bpy.types.ActionChannelbag,
-) -> None:
-    """Copy the curves of bones without degrees of freedom; of what is there, only earlier copies go."""
-    leaves = {
-        bone_path(model.name, channel): model.name
-        for model in skeleton_bones(armature_object, skeleton)
-        if not model.chain
-        for channel in (*ALL_PATHS, "location")
-    }
-    remove_generated_keys(channelbag, leaves)
-    given = existing_channelbag(source, armature_object)
-    for curve in given.fcurves if given is not None else ():
-        bone = leaves.get(curve.data_path)
-        if bone is None:
-            continue
-        copy_as_generated(curve, ensure_fcurve(channelbag, curve.data_path, curve.array_index, bone))

@@ -1,11 +1,12 @@
 """Channel values read from an Action, the animator's changes included, and the final Action written."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 
 import bpy
 import numpy as np
 
-from ...core.arrays import Array, IndexArray
+from ...core.arrays import Array, BoolArray, IndexArray
+from ...core.body.extremities import Extremities
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
@@ -15,13 +16,13 @@ from ...core.finish.hermite import Spline
 from ...core.finish.rig import Rig, RigPose, channel_count
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
-from .fcurves import bone_path, moved_paths, posture_columns
+from .fcurves import moved_paths, posture_columns
 from .joint_frames import posture_from_frames
 from .keyframes import keyed_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
 from .matched_keyframes import untouched_frames
 from .review_curves import is_review_curve
-from .rotation_modes import rotation_path
+from .rotation_modes import ALL_PATHS, bone_path, rotation_path
 
 Channel = tuple[int, int, str, int]
 """Index of a bone in the rig, column of its values, data path and array index of the property."""
@@ -132,6 +133,37 @@ def with_planted_legs(
     return changed
 
 
+def with_turned_extremities(
+    armature_object: bpy.types.Object,
+    rig: Rig,
+    values: Sequence[Array],
+    posture: Posture,
+    extremities: Extremities,
+    where: Mapping[str, BoolArray],
+) -> list[Array]:
+    """Values with hands and feet turned anew; the rest stays.
+
+    Args:
+        armature_object: The actor.
+        rig: The actor, with the hands and feet as bones.
+        values: What each bone of the rig holds, (F, C).
+        posture: A batch of F postures.
+        extremities: Its hands and feet.
+        where: (F,) by name of hand or foot: in which frames.
+    """
+    columns = posture_columns(armature_object, posture, extremities)
+    stored = {(path, index): column for path, index, _, column in columns}
+    changed = [column.copy() for column in values]
+    for bone, column, path, index in rig_channels(rig):
+        rows = where.get(rig.bones[bone].name)
+        if rows is not None:
+            changed[bone][rows, column] = stored[path, index][rows]
+    for bone, model in enumerate(rig.bones):
+        if model.name in where and model.mode == "QUATERNION":
+            changed[bone][:, :4] = _unit_quaternions(changed[bone][:, :4])
+    return changed
+
+
 def largest_leg_distance_m(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> float:
     """The largest distance of a leg's joint or end between a rig's poses and postures [m]."""
     pose = body.pose(posture)
@@ -172,7 +204,7 @@ def write_final(
 
     Args:
         armature_object: The actor.
-        source: The Action the motion was read from; its other curves (hands, feet, properties) are
+        source: The Action the motion was read from; its other curves (posed hands and feet, properties) are
             copied, but for review curves.
         action: The final Action.
         body: The actor's body.
@@ -196,6 +228,7 @@ def write_final(
             write_linear_keys(fcurve, frames, held[:, column])
         count += len(fcurve.keyframe_points)
     written = set(moved_paths(armature_object, body.skeleton))
+    written |= {bone_path(bone.name, channel) for bone in rig.bones for channel in ALL_PATHS}
     given = existing_channelbag(source, armature_object)
     for fcurve in given.fcurves if given is not None else ():
         if fcurve.data_path not in written and not is_review_curve(fcurve):

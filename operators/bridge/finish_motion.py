@@ -5,17 +5,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
+import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ...core.finish.contacts import Contact
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
-from ...core.finish.planted_feet import plant_feet, point_tolerances
-from ...core.finish.rig import Rig
+from ...core.finish.natural_extremities import natural_extremities
+from ...core.finish.planted_feet import PlantedFeet, plant_feet, point_tolerances
+from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
 from .actor_lengths import read_body
+from .extremity_curves import turned_extremities
 from .final_motion import (
     largest_leg_distance_m,
     motion_frames,
@@ -23,6 +27,7 @@ from .final_motion import (
     read_values,
     shown_postures,
     with_planted_legs,
+    with_turned_extremities,
     write_final,
 )
 from .rig import read_rig
@@ -30,6 +35,7 @@ from .rig import read_rig
 Note = tuple[str, dict[str, Any]]
 """A sentence's template, and what fills its braces."""
 
+PLANTING = "Planting the feet"
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
 NOTICEABLE_M = 0.005
@@ -113,43 +119,42 @@ def finish_motion(
         InputError: The Action has no motion of the actor, or the armature is not an actor's.
     """
     body = read_body(armature_object, HUMAN)
-    rig = read_rig(armature_object, body)
+    turned = turned_extremities(armature_object, body.skeleton, action, keyframe_action)
+    rig = read_rig(armature_object, body, turned)
     frames = motion_frames(armature_object, action, body)
     exact = posed_indices(armature_object, keyframe_action, body.skeleton, frames)
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
-    contacts: tuple[Contact, ...] = ()
+    yield Progress(PLANTING, READ)
+    time_s = (frames - frames[0]) * frame_s
+    shown = rig.pose(values)
+    planted = PlantedFeet(shown_postures(armature_object, rig, shown, body), ())
     notes: tuple[Note, ...] = ()
+    yield Progress(PLANTING, SEEN)
     if options.stray_m is not None:
-        time_s = (frames - frames[0]) * frame_s
-        planting = _plant(armature_object, body, rig, values, time_s, options.stray_m)
-        values, contacts, notes = yield from planting
+        before = planted.posture
+        planting = plant_feet(body, before, time_s, options.stray_m)
+        planted = yield from within(PLANTING, planting, SEEN, PLANTED)
+        notes = _planting_notes(rig, shown, body, before, planted)
+        if planted.contacts:
+            values = with_planted_legs(armature_object, rig, values, planted.posture)
+    if turned:
+        contacts = planted.contacts or None
+        natural = natural_extremities(body, planted.posture, time_s, contacts)
+        where = {name: np.isin(frames, np.round(own, 3)) for name, own in turned.items()}
+        values = with_turned_extremities(armature_object, rig, values, planted.posture, natural, where)
     if options.tolerance_m is None:
-        return Finished(body, rig, frames, values, 0.0, contacts, notes)
-    allowed = point_tolerances(rig, len(frames), options.tolerance_m, contacts)
+        return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
+    allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts)
     reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
-    return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, contacts, notes)
+    return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, planted.contacts, notes)
 
 
-def _plant(
-    armature_object: bpy.types.Object,
-    body: Body,
-    rig: Rig,
-    values: list[Array],
-    time_s: Array,
-    stray_m: float,
-) -> Job[tuple[list[Array], tuple[Contact, ...], tuple[Note, ...]]]:
-    stage = "Planting the feet"
-    yield Progress(stage, READ)
-    shown = rig.pose(values)
-    posture = shown_postures(armature_object, rig, shown, body)
-    yield Progress(stage, SEEN)
-    planted = yield from within(stage, plant_feet(body, posture, time_s, stray_m), SEEN, PLANTED)
+def _planting_notes(
+    rig: Rig, shown: RigPose, body: Body, before: Posture, planted: PlantedFeet
+) -> tuple[Note, ...]:
     if not planted.contacts:
-        return values, (), ((NO_REST, {}),)
-    notes: tuple[Note, ...] = ()
-    beyond_m = largest_leg_distance_m(rig, shown, body, posture)
-    if beyond_m > NOTICEABLE_M:
-        notes = ((BEYOND, {"distance": 1000.0 * beyond_m}),)
-    return with_planted_legs(armature_object, rig, values, planted.posture), planted.contacts, notes
+        return ((NO_REST, {}),)
+    beyond_m = largest_leg_distance_m(rig, shown, body, before)
+    return ((BEYOND, {"distance": 1000.0 * beyond_m}),) if beyond_m > NOTICEABLE_M else ()

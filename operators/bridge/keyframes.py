@@ -14,11 +14,11 @@ from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
-from .fcurves import bone_path, moved_paths, posture_columns
+from .fcurves import moved_paths, posture_columns
 from .keys import animator_frames, set_posed_keys
 from .matched_keyframes import DIGITS, write_matched
 from .pose import read_posture
-from .rotation_modes import rotation_path
+from .rotation_modes import bone_path, rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 Matches = Mapping[float, Matched]

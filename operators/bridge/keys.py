@@ -140,6 +140,14 @@ def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
     return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
 
 
+def generated_frames(fcurve: bpy.types.FCurve) -> Array:
+    """Frames (N,) of the GENERATED keys that are unchanged."""
+    if not len(fcurve.keyframe_points):
+        return np.zeros(0)
+    keys = _read_keys(fcurve)
+    return np.asarray(keys["co"][_generated(keys), 0], dtype=np.float64)
+
+
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
     """Remove the GENERATED keys of the curves with these data paths, and curves left without keys.
 

@@ -14,9 +14,9 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
-from .fcurves import bone_path, moved_paths, posture_columns
+from .fcurves import moved_paths, posture_columns
 from .keys import give_to_animator, matched_frames_of, remove_keys, set_matched_keys
-from .rotation_modes import rotation_path
+from .rotation_modes import bone_path, rotation_path
 
 DIGITS = 3
 """Decimals to which frames are told apart, as in `keyed_frames`."""

@@ -1,6 +1,6 @@
 """Export of an actor's motion by Blender's own exporters; formats are listed in `export_formats`."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,22 +19,28 @@ def export_motion(
     frames: tuple[int, int],
     export_format: ExportFormat,
     path: Path,
+    along: Sequence[bpy.types.Object] = (),
 ) -> None:
-    """Write an actor's motion; the scene, its selection and its frame are as before afterwards.
+    """Write an actor's or a character's motion; scene, selection and frame are as before afterwards.
 
     Args:
         scene: The scene that holds the actor.
-        armature_object: The actor; nothing else is written.
+        armature_object: The actor.
         action: The motion.
         frames: First and last scene frame.
         export_format: The format to write.
         path: The file; it appears complete or not at all.
+        along: Other objects that are written too, where the format has any; nothing else is.
 
     Raises:
         InputError: The actor is hidden with its collection.
         ConversionError: The exporter failed, or the file cannot be written.
     """
-    with _only(scene, armature_object), _frame_range(scene, frames), showing_action(armature_object, action):
+    with (
+        _only(scene, armature_object, along),
+        _frame_range(scene, frames),
+        showing_action(armature_object, action),
+    ):
 
         def write(beside: Path) -> None:
             try:
@@ -63,8 +69,10 @@ def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[No
 
 
 @contextmanager
-def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
-    """Select one object only and make it active, in object mode; then restore selection and mode."""
+def _only(
+    scene: bpy.types.Scene, chosen: bpy.types.Object, along: Sequence[bpy.types.Object]
+) -> Iterator[None]:
+    """Select some objects only and make one active, in object mode; then restore selection and mode."""
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     active, hidden = layer.objects.active, chosen.hide_get(view_layer=layer)
     mode = active.mode if active is not None else "OBJECT"
@@ -76,7 +84,8 @@ def _only(scene: bpy.types.Scene, chosen: bpy.types.Object) -> Iterator[None]:
             raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
         for one in selected:
             one.select_set(False, view_layer=layer)
-        chosen.select_set(True, view_layer=layer)
+        for one in (*along, chosen):
+            one.select_set(True, view_layer=layer)
         layer.objects.active = chosen
         yield
     finally:

@@ -19,12 +19,11 @@ from ...core.finish.rig import channel_count
 from .actions import new_channelbag
 from .bone_channels import channels_at_rest
 from .bones import BoneModel, bone_models, rest_matrices, usual_mode
-from .fcurves import bone_path
 from .joint_frames import posture_from_frames
 from .keys import set_posed_keys
 from .object_space import AT_ORIGIN
 from .rig import rig_at_rest
-from .rotation_modes import rotation_path, rotation_values
+from .rotation_modes import bone_path, rotation_path, rotation_values
 
 Values = dict[str, Array]
 """Channel values by bone: the rotation's, for the root then the location's."""

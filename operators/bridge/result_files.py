@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.take.motion import Motion
 from ...core.take.take import Take
 from .actions import curve_digest
@@ -55,15 +56,25 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         return curve_digest(armature_object)
 
 
-def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.Object:
-    """Put footage, camera, actor with motion, and body into a scene; returns the armature object."""
+def show_take(scene: bpy.types.Scene, take: Take, motion: Motion) -> Array:
+    """Put footage and camera into a scene, with rate, range and look; returns the motion's scene frames (F,).
+
+    Raises:
+        InputError: Blender cannot read the clip.
+    """
     clip = load_footage(take.clip)
     rate = clip_rate(clip, motion.fps)
     frames = scene_frames(motion.time_s, motion.frame_start, rate)
     count = len(motion.time_s)
     show_footage(scene, take.camera, take.clip, rate, motion.frame_start, count, frames)
     scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))
-    _set_look(scene)
+    set_look(scene)
+    return frames
+
+
+def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.Object:
+    """Put footage, camera, actor with motion, and body into a scene; returns the armature object."""
+    frames = show_take(scene, take, motion)
     armature_object = build_armature(scene, take.body, "Actor")
     write_motion(armature_object, motion, frames=frames)
     build_body_mesh(armature_object, take.body, take.markers)
@@ -71,7 +82,7 @@ def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.
     return armature_object
 
 
-def _set_look(scene: bpy.types.Scene) -> None:
+def set_look(scene: bpy.types.Scene) -> None:
     """Workbench in material colors, which every Blender has, and light for the other engines."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.display.shading.color_type = "MATERIAL"

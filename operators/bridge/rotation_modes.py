@@ -18,6 +18,11 @@ def rotation_path(mode: str) -> str:
     return PATHS.get(mode, "rotation_euler")
 
 
+def bone_path(bone: str, channel: str) -> str:
+    """Data path of a pose bone's property."""
+    return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{channel}'
+
+
 def rotation_values(rotation: Array, mode: str) -> Array:
     """The values of the property `rotation_path(mode)` over time, without jumps.
 

@@ -8,6 +8,7 @@ from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import active_take
 from .characters import add_character, candidates, may_be_character
+from .recognition import all_doubts
 from .requirements import take
 
 
@@ -33,7 +34,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
             say(self, "WARNING", "{problem}", problem=character.problem)
         elif chosen is None:
             say(self, "INFO", "Choose the character's armature")
-        elif len(character.doubts):
+        elif all_doubts(character):
             say(self, "WARNING", "Check the bones of '{name}': some are doubtful", name=chosen.name)
         else:
             say(self, "INFO", "Recognized the bones of '{name}'", name=chosen.name)

@@ -3,12 +3,13 @@
 import bpy
 
 from ...core.errors import InputError
+from ..bridge.character.read_character import needs_override
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
-from .characters import active_character, find_character
+from .characters import active_character
 from .map_conversion import map_of, show_map
-from .requirements import armature, is_linked
+from .requirements import armature
 
 
 def linked(context: bpy.types.Context) -> str | None:
@@ -16,7 +17,7 @@ def linked(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    return None if is_linked(find_character(context.scene).armature) else "The character is not linked"
+    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
@@ -32,52 +33,65 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
         character = active_character(context.scene)
         original = character.armature
         instance = _instance_of(context.scene, original)
-        overridden = _override(context, original, instance)
-        shown = map_of(character.character_map)
+        if instance is not None:
+            overridden = _override_instance(context, original, instance)
+        else:
+            overridden = _override_object(context, original)
+        known = map_of(character.character_map)
         character.armature = overridden
-        show_map(character.character_map, shown)
+        if known.roles:
+            show_map(character.character_map, known)
         say(self, "INFO", "'{name}' can be animated now", name=overridden.name)
 
 
-def _override(
-    context: bpy.types.Context, original: bpy.types.Object, instance: bpy.types.Object | None
-) -> bpy.types.Object:
-    """The override of a linked armature.
+def _override_object(context: bpy.types.Context, original: bpy.types.Object) -> bpy.types.Object:
+    """Override a linked armature object and what belongs to it; returns the override.
 
     Raises:
-        InputError: Blender cannot override it.
+        InputError: Blender refuses.
     """
-    root = original if instance is None else instance.instance_collection
-    made = root.override_hierarchy_create(
+    if original.override_library is not None:  # one of Blender's own, of what the animator did not choose
+        original.override_library.is_system_override = False
+        return original
+    made = original.override_hierarchy_create(context.scene, context.view_layer, do_fully_editable=True)
+    if made is None or made.type != "ARMATURE":
+        raise InputError(f"Blender makes no library override of '{original.name}'; append it instead")
+    return made
+
+
+def _override_instance(
+    context: bpy.types.Context, original: bpy.types.Object, instance: bpy.types.Object
+) -> bpy.types.Object:
+    """Override a linked collection in place of the empty that shows it; returns the armature's override.
+
+    Raises:
+        InputError: Blender refuses.
+    """
+    collection = instance.instance_collection
+    made = collection.override_hierarchy_create(
         context.scene, context.view_layer, reference=instance, do_fully_editable=True
     )
-    if made is not None and instance is not None:
-        bpy.data.objects.remove(instance)  # the override takes its place
-    found = next(
-        (
-            each
-            for each in context.scene.objects
-            if each.override_library is not None and each.override_library.reference == original
-        ),
-        None,
-    )
-    if found is None:
+    overrides = (each for each in context.scene.objects if each.override_library is not None)
+    found = next((each for each in overrides if each.override_library.reference == original), None)
+    if made is None or found is None:
         raise InputError(
-            f"Blender makes no override of '{original.name}'; link its collection instead of the object, "
-            "or append it"
+            f"Blender makes no library override of collection '{collection.name}', which holds "
+            f"'{original.name}'; append it instead"
         )
     return found
 
 
 def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.types.Object | None:
-    """The empty of the scene that shows the linked collection an object is in."""
+    """The empty of the scene that shows the linked collection an object is in; None where there is none."""
+    if original.name in scene.objects:
+        return None
     return next(
         (
             each
             for each in scene.objects
             if each.instance_type == "COLLECTION"
             and each.instance_collection is not None
-            and original.name in each.instance_collection.all_objects
+            and original in each.instance_collection.all_objects[:]
         ),
         None,
     )

@@ -7,7 +7,7 @@ from ..shell.panel import draw_sentence
 from .characters import full_title, missing_roles
 from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
 
-LABEL_SHARE = 0.3
+LABEL_SHARE = 0.29
 """Share of the width that a role's name takes."""
 MOST_LINES = 5
 
@@ -91,27 +91,24 @@ def _draw_role(
         name = split.row()
         name.alignment = "RIGHT"
         name.label(text=role_title(role.name) if index == 0 else "")
+        if is_chain(role.name) and index == len(role.bones) - 1:
+            name.operator("keymark.add_chain_bone", text="", icon="ADD", emboss=False).role = role.name
         row = split.row(align=True)
         field = row.row(align=True)
         field.alert = bool(entry.bone) and entry.bone not in bones
-        icon = "ERROR" if role.doubt or field.alert else "BONE_DATA"
+        icon = "ERROR" if role.doubt or field.alert else "NONE"
         field.prop_search(entry, "bone", character.armature.data, "bones", text="", icon=icon)
         _draw_buttons(row, role, index)
     if role.doubt:
-        draw_sentence(column, context, role.doubt, "BLANK1", MOST_LINES)
+        why = role.doubt.partition(": ")[2] or role.doubt
+        draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
 
 
 def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:
-    """Draw the eyedropper, the button for the active bone, and those that lengthen and shorten a chain."""
-    active = row.operator("keymark.use_active_bone", text="", icon="RESTRICT_SELECT_OFF")
-    active.role, active.index = role.name, index
+    """Draw the eyedropper, and what takes an empty field out of a chain."""
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
-    if not is_chain(role.name):
-        return
-    if index == len(role.bones) - 1:
-        row.operator("keymark.add_chain_bone", text="", icon="ADD").role = role.name
-    else:
+    if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
         remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
         remove.role, remove.index = role.name, index
 
@@ -135,8 +132,7 @@ def _draw_controls(
         return
     column, armature = body.column(align=True), character.armature.data
     for role, entry in keyed:
-        text = label("{role} FK", role=label(role_title(role.name)))
-        _draw_control(column, armature, entry, "control", text)
+        _draw_control(column, armature, entry, "control", label(role_title(role.name)))
     for name in controls:
         _draw_control(column, armature, limb, name, label(limb.bl_rna.properties[name].name))
     if limb is not None and limb.switch_bone:

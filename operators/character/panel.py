@@ -2,12 +2,13 @@
 
 import bpy
 
+from ..bridge.character.read_character import needs_override
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
-from .characters import find_character, missing_roles, shown_result
+from .characters import active_character, find_character, missing_roles, shown_result
 from .map_rows import draw_map
-from .requirements import is_linked
+from .requirements import recognized
 from .results import is_shown
 
 MOST_LINES = 6
@@ -42,17 +43,17 @@ class KEYMARK_PT_character(TakePanel, bpy.types.Panel):
             row.scale_y = 1.2
             row.operator("keymark.add_character", icon="COMMUNITY")
             return
-        _draw_list(self.layout, take)
-        column = self.column()
-        column.prop(character, "armature")
+        column = _draw_choice(self, take, character)
         if character.armature is None:
             draw_sentence(column, context, label("Choose the armature that is to move"), "FORWARD")
             return
-        if is_linked(character.armature):
+        if needs_override(character.armature):
             draw_sentence(column, context, label("It is linked; an override can be animated here"), "LINKED")
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
-        if character.problem:
+        elif character.problem:
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES)
+        elif (unmet := recognized(context)) is not None:
+            draw_sentence(column, context, unmet, "ERROR", MOST_LINES)
         _draw_source(column, take, character)
         row = column.row()
         row.scale_y = 1.4
@@ -63,15 +64,26 @@ class KEYMARK_PT_character(TakePanel, bpy.types.Panel):
             _draw_results(column, context, character)
 
 
-def _draw_list(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the list of characters, and the buttons that add and remove one."""
-    row = layout.row()
-    row.template_list(
-        "KEYMARK_UL_characters", "", take, "characters", take, "active_character", rows=2, maxrows=4
-    )
-    buttons = row.column(align=True)
+def _draw_choice(
+    panel: KEYMARK_PT_character, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
+) -> bpy.types.UILayout:
+    """Draw the list of characters and the chosen one's armature; a single character is one row."""
+    row = panel.layout.row()
+    single = len(take.characters) == 1
+    if single:
+        buttons = row.row(align=True)
+        buttons.prop(character, "armature", text="")
+    else:
+        row.template_list(
+            "KEYMARK_UL_characters", "", take, "characters", take, "active_character", rows=2, maxrows=4
+        )
+        buttons = row.column(align=True)
     buttons.operator("keymark.add_character", text="", icon="ADD")
     buttons.operator("keymark.remove_character", text="", icon="REMOVE")
+    column = panel.column()
+    if not single:
+        column.prop(character, "armature")
+    return column
 
 
 def _draw_source(
@@ -107,7 +119,7 @@ def _draw_results(
         return
     lines = column.column(align=True)
     if chosen.outdated:
-        draw_sentence(lines, context, label("The motion is newer: retarget again"), "ERROR")
+        draw_sentence(lines, context, label("Motion is newer: retarget again"), "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")
     column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")
@@ -133,7 +145,7 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw them."""
-        column, options = self.column(), find_character(context.scene).options
+        column, options = self.column(), active_character(context.scene).options
         column.prop(options, "arms")
         column.prop(options, "legs")
         column.prop(options, "root_motion")
@@ -156,14 +168,14 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draw a mark, so that doubts are noticed while the panel is closed."""
-        character = find_character(context.scene)
+        character = active_character(context.scene)
         doubtful = any(role.doubt for role in character.character_map.roles)
         if doubtful or len(character.doubts) or missing_roles(character):
             self.layout.label(text="", icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw recognition, the map's file, and the roles by limb."""
-        draw_map(self.layout, context, find_character(context.scene))
+        draw_map(self.layout, context, active_character(context.scene))
 
 
 register, unregister = bpy.utils.register_classes_factory(

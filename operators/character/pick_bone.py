@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.error_reports import reported
@@ -9,9 +10,11 @@ from ..shell.footage_clicks import NAVIGATION
 from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .bone_under_mouse import bone_under
-from .characters import find_character, full_title
+from .characters import active_character, find_character, full_title
 from .requirements import armature
-from .role_bone import RoleBoneOperator, give_bone, told
+from .role_bone import RoleBoneOperator, active_bone_of, give_bone, told
+
+TAKES_ACTIVE = {"RET", "NUMPAD_ENTER"}
 
 
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
@@ -51,6 +54,8 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _watch(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type in TAKES_ACTIVE and event.value == "PRESS":
+            return self._take(context, active_bone_of(active_character(context.scene)))
         clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if not clicked and event.type != "MOUSEMOVE":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
@@ -62,17 +67,28 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         if not clicked:
             self._ask(context, under or "")
             return {"PASS_THROUGH"}
-        if under is None:
+        return self._take(context, under)
+
+    def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
+        """Give the bone to the role; wait on where there is none."""
+        if bone is None:
             say(self, "WARNING", "There is no bone of the character; click on one")
             return {"RUNNING_MODAL"}
-        self.bone = under
+        self.bone = bone
         self.cancel(context)
         return self.execute(context)
 
     def _ask(self, context: bpy.types.Context, under: str) -> None:
         role = full_title(self.role)
+        active = active_bone_of(active_character(context.scene))
         if under:
             words = label("{role}: {bone}   |   Esc: Cancel", role=role.capitalize(), bone=under)
+        elif active is not None:
+            words = label(
+                "Click on the bone: {role}   |   Enter: {bone}, the active one   |   Esc: Cancel",
+                role=role,
+                bone=active,
+            )
         else:
             words = label("Click on the bone: {role}   |   Esc: Cancel", role=role)
         context.workspace.status_text_set(words)
@@ -85,7 +101,9 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Give the bone to the role."""
-        give_bone(find_character(context.scene), self.role, self.index, self.bone)
+        if not self.bone:
+            raise InputError("no bone is chosen; click on one in Pose Mode, or give its name")
+        give_bone(active_character(context.scene), self.role, self.index, self.bone)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_bone,))

@@ -4,7 +4,7 @@ import bpy
 
 from ...core.finish.contacts import STRAY_M
 from ...core.retarget.options import RetargetOptions
-from ..bridge.actor_bones import is_actor
+from ..bridge.actor_bones import is_actor, moves_an_actor
 from .map_properties import KEYMARK_PG_character_map
 
 MM = 1000.0
@@ -73,8 +73,6 @@ def _is_actor(_character: bpy.types.PropertyGroup, candidate: bpy.types.Object) 
 
 
 def _moves_an_actor(_character: bpy.types.PropertyGroup, action: bpy.types.Action) -> bool:
-    from .source_motion import moves_an_actor
-
     return moves_an_actor(action)
 
 

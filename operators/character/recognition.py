@@ -6,7 +6,8 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError, KeymarkError
-from ..library.user_folder import own_folder
+from ...core.retarget.roles import ROLES
+from ..library import user_folder
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 
@@ -17,24 +18,37 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     Raises:
         InputError: It is no character; the properties keep what they held.
     """
-    from ...core.retarget.recognition import recognize
+    from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
 
     armature_object = character.armature
     if not may_be_character(armature_object):
         raise InputError(_not_a_character(armature_object))
     found = recognize(read_character(armature_object))
-    show_map(character.character_map, found.character_map)
-    show_doubts(character, found.doubts)
+    by_role = {_role_of(sentence): sentence for sentence in found.doubts}
+    show_map(character.character_map, found.character_map, by_role)
+    show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
     character.problem = ""
 
 
 def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
-    """Show what is doubtful about a character's map."""
+    """Show what is doubtful about a character's map as a whole."""
     character.doubts.clear()
     for sentence in doubts:
         line = character.doubts.add()
         line.text, line.level = sentence[:1].upper() + sentence[1:], "ERROR"
+
+
+def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
+    """All that is doubtful about a character's map, in sentences."""
+    doubted = [role.doubt for role in character.character_map.roles if role.doubt]
+    return [line.text for line in character.doubts] + doubted
+
+
+def _role_of(sentence: str) -> str:
+    """The role that a doubt is about, with whose name it begins; empty where it is about none alone."""
+    word = sentence.partition(" ")[0]
+    return word if word in ROLES else ""
 
 
 def armature_chosen(character: bpy.types.PropertyGroup) -> None:
@@ -70,7 +84,7 @@ def suggest_map(character: bpy.types.PropertyGroup) -> None:
 
 def map_folders() -> list[Path]:
     """Folders in which character maps are looked for: that of the user's keyframe libraries."""
-    return [own_folder()]
+    return [user_folder.own_folder()]
 
 
 def _not_a_character(armature_object: bpy.types.Object | None) -> str:

@@ -6,7 +6,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
 from ..shell.requirements import idle
 from .characters import active_character
-from .recognition import recognize_bones
+from .recognition import all_doubts, recognize_bones
 from .requirements import armature
 
 
@@ -22,9 +22,10 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
         """Recognize the bones, and show them."""
         character = active_character(context.scene)
         recognize_bones(character)
-        if len(character.doubts):
-            for doubt in character.doubts:
-                self.report({"WARNING"}, doubt.text)
+        doubts = all_doubts(character)
+        for doubt in doubts:
+            self.report({"WARNING"}, doubt[:1].upper() + doubt[1:])
+        if doubts:
             return
         say(self, "INFO", "Recognized the bones of '{name}'", name=character.armature.name)
 

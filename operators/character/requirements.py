@@ -2,9 +2,11 @@
 
 import bpy
 
+from ..bridge.character.read_character import needs_override
 from ..shell.messages import label
-from ..shell.takes import find_take
-from .characters import few, find_character, full_title, lost_bones, missing_roles
+from ..shell.takes import active_take, find_take
+from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
+from .role_bone import active_bone_of
 from .source_motion import missing_source
 
 
@@ -35,8 +37,8 @@ def editable(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    chosen = find_character(context.scene).armature
-    if is_linked(chosen):
+    chosen = active_character(context.scene).armature
+    if needs_override(chosen):
         return label("'{name}' is linked; make a library override of it first", name=chosen.name)
     if chosen.name not in context.scene.objects:
         return label("'{name}' is not in this scene; add it, or choose another armature", name=chosen.name)
@@ -48,7 +50,7 @@ def recognized(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    chosen = find_character(context.scene)
+    chosen = active_character(context.scene)
     if not len(chosen.character_map.roles):
         return "Recognize the character's bones first"
     missing = [full_title(role) for role in missing_roles(chosen)]
@@ -67,7 +69,7 @@ def recognized(context: bpy.types.Context) -> str | None:
 def source(context: bpy.types.Context) -> str | None:
     """There is a motion for the character to perform."""
     chosen = find_character(context.scene)
-    return character(context) if chosen is None else missing_source(find_take(context.scene), chosen)
+    return character(context) if chosen is None else missing_source(active_take(context.scene), chosen)
 
 
 def result(context: bpy.types.Context) -> str | None:
@@ -84,11 +86,6 @@ def active_bone(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    if find_character(context.scene).armature.data.bones.active is None:
+    if active_bone_of(active_character(context.scene)) is None:
         return "Make a bone of the character active first: click on it in Pose Mode"
     return None
-
-
-def is_linked(armature_object: bpy.types.Object) -> bool:
-    """Whether an object comes from another file, and has no override here."""
-    return armature_object.library is not None

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 import bpy
 
+from .characters import shown_result
 from .source_motion import SourceMotion
 
 OF_THE_TAKE = ("FINAL", "MOTION")
@@ -12,21 +13,29 @@ OF_THE_TAKE = ("FINAL", "MOTION")
 def result_to_replace(
     character: bpy.types.PropertyGroup, kind: str, source_action: bpy.types.Action | None
 ) -> bpy.types.PropertyGroup | None:
-    """The result that retargeting again replaces: the newest of the same motion; None where there is none.
+    """The result that retargeting again replaces: the chosen one, or else the newest, of the same motion.
 
     The take's final and its reconstructed motion are one motion; any other Action is one of its own.
     """
-    for result in (each for each in reversed(character.results) if each.action is not None):
-        of_take = kind in OF_THE_TAKE and result.source in OF_THE_TAKE
-        if of_take or (result.source == kind and result.source_action == source_action):
-            return result
-    return None
+    same = [
+        result
+        for result in character.results
+        if result.action is not None
+        and (
+            (kind in OF_THE_TAKE and result.source in OF_THE_TAKE)
+            or (result.source == kind and result.source_action == source_action)
+        )
+    ]
+    chosen = shown_result(character)
+    return chosen if chosen in same else next(reversed(same), None)
 
 
 def add_result(
     character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action
 ) -> bpy.types.PropertyGroup:
-    """List an Action as a result, in place of what was listed of it, and choose it."""
+    """List an Action as a result, in place of what was listed of it, and choose it; deleted ones go."""
+    for empty in reversed([i for i, each in enumerate(character.results) if each.action is None]):
+        character.results.remove(empty)
     index = next((i for i, each in enumerate(character.results) if each.action == action), None)
     if index is None:
         index = len(character.results)
@@ -45,14 +54,6 @@ def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: I
         for sentence in sentences:
             line = result.lines.add()
             line.text, line.level = sentence[:1].upper() + sentence[1:], level
-
-
-def drop_empty_results(character: bpy.types.PropertyGroup) -> None:
-    """Take results out of the list whose Actions were deleted."""
-    for index in reversed(range(len(character.results))):
-        if character.results[index].action is None:
-            character.results.remove(index)
-    character.active_result = max(0, min(character.active_result, len(character.results) - 1))
 
 
 def is_shown(character: bpy.types.PropertyGroup, result: bpy.types.PropertyGroup) -> bool:

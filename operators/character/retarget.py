@@ -13,7 +13,7 @@ from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
 from .characters import active_character
 from .figures import figures
-from .map_conversion import map_of
+from .map_conversion import map_of, show_found_controls
 from .options import options_of
 from .requirements import editable, recognized, source
 from .results import add_result, result_to_replace, show_lines
@@ -82,11 +82,10 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
             earlier = result_to_replace(character, result.kind, source_action)
         into = earlier.action if earlier is not None else f"{result.title} {character.armature.name}"
         action = result.retargeted.write(scene, into)
-        action.use_fake_user = True
         source = SourceMotion(result.kind, source_action, actor, result.title)
         listed = add_result(character, source, action)
-        show_lines(listed, figures(result.retargeted), result.retargeted.notes)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
+        show_found_controls(character.character_map, result.retargeted.character_map)
         for note in result.retargeted.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
         say(

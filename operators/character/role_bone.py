@@ -41,16 +41,22 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
     shown.bones[index].bone = bone
 
 
+def active_bone_of(character: bpy.types.PropertyGroup) -> str | None:
+    """Name of the active bone of a character's armature; None where there is none."""
+    active = character.armature.data.bones.active if character.armature is not None else None
+    return active.name if active is not None else None
+
+
 def told(context: bpy.types.Context, role: str) -> str:
     """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
     character = find_character(context.scene)
     if character is None or role not in character.character_map.roles:
         return ""
     shown = character.character_map.roles[role]
+    if shown.doubt:
+        return shown.doubt[:1].upper() + shown.doubt[1:]
     if not any(entry.bone for entry in shown.bones):
         return label("{role}: no bone", role=full_title(role).capitalize())
-    if shown.doubt:
-        return shown.doubt
     if shown.source == "you":
         return label("{role}: chosen by you", role=full_title(role).capitalize())
     return label(

@@ -6,12 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..bridge.actor_bones import is_actor
-from ..bridge.fcurves import bone_path
-from ..bridge.rotation_modes import ALL_PATHS
 from ..shell.messages import label
-
-TELLING = ("pelvis", "girdle.L")
-"""Bones that every motion of an actor moves; other rigs have hardly both."""
 
 
 @dataclass(frozen=True)
@@ -57,16 +52,6 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     if not is_actor(actor):
         return label("'{name}' is no actor of Keymark's; choose the motion's actor", name=actor.name)
     return None
-
-
-def moves_an_actor(action: bpy.types.Action) -> bool:
-    """Whether an Action has curves of a Keymark actor's bones."""
-    bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
-    return any(all(_turns(bag, bone) for bone in TELLING) for bag in bags)
-
-
-def _turns(bag: bpy.types.ActionChannelbag, bone: str) -> bool:
-    return any(bag.fcurves.find(bone_path(bone, path)) is not None for path in ALL_PATHS)
 
 
 def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str:

@@ -5,7 +5,7 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from .characters import active_character
 from .requirements import active_bone
-from .role_bone import RoleBoneOperator, give_bone
+from .role_bone import RoleBoneOperator, active_bone_of, give_bone
 
 
 class KEYMARK_OT_use_active_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
@@ -19,7 +19,7 @@ class KEYMARK_OT_use_active_bone(RoleBoneOperator, BaseOperator, bpy.types.Opera
     def run(self, context: bpy.types.Context) -> None:
         """Give it to the role."""
         character = active_character(context.scene)
-        give_bone(character, self.role, self.index, character.armature.data.bones.active.name)
+        give_bone(character, self.role, self.index, active_bone_of(character) or "")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_use_active_bone,))

@@ -20,6 +20,8 @@ examples:
   {program} check shoot
   {program} batch shoot --output out --jobs 4
   {program} merge out --output library.blend
+  {program} character anna.blend --output anna.json
+  {program} retarget out/walk --character anna.blend --output out/anna_walk --format fbx
   {program} propose takes/walk --count 12
   {program} library list
 

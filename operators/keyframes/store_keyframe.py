@@ -7,7 +7,7 @@ from ..bridge.actions import assign_action
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.keyframe_action import new_keyframe_action, shows_keyframes
+from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
 from ..shell.messages import say
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
@@ -35,6 +35,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
             take.keyframe_action = new_keyframe_action(armature_object)
         frame = scene.frame_current_final
         switched = not shows_keyframes(take)
+        straighten_unposed(take)
         was_matched = frame in known_matches(take)
         store_pose(armature_object, take.keyframe_action, HUMAN, frame)
         assign_action(armature_object, take.keyframe_action)

@@ -13,7 +13,7 @@ from ...core.body.posture import Posture
 from ..bridge.actions import assign_action
 from ..bridge.matched_keyframes import write_matched
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.keyframe_action import new_keyframe_action
+from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
 from ..shell.takes import actor_of
 from .properties import PLACE_VALUES
 
@@ -52,6 +52,7 @@ def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence
     actor = actor_of(take)
     take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)
     write_matched(actor, take.keyframe_action, frames, postures)
+    straighten_unposed(take)
     assign_action(actor, take.keyframe_action)
     invalidate_keyed_frames()
 

@@ -4,6 +4,7 @@ import bpy
 
 from ..bridge.actions import assign_action
 from ..shell.base_operator import BaseOperator
+from ..shell.keyframe_action import straighten_unposed
 from ..shell.messages import say
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
@@ -44,6 +45,8 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
         if action is None:
             say(self, "ERROR", MISSING[self.which])
             return {"CANCELLED"}
+        if self.which == "KEYFRAMES":
+            straighten_unposed(settings)
         assign_action(settings.armature, action)
         return None
 

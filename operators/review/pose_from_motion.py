@@ -7,7 +7,7 @@ from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.keyframe_action import new_keyframe_action
+from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
@@ -45,6 +45,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         action = take.keyframe_action or new_keyframe_action(take.armature)
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
             go_to(frame)
+            straighten_unposed(take)
             store_pose(take.armature, action, HUMAN, frame)
         take.keyframe_action = action
         assign_action(take.armature, action)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..bridge.object_space import evaluated
 
@@ -20,12 +21,27 @@ def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
     data = take.armature.animation_data
     if data is None or data.action == take.keyframe_action:
         return False
+    straighten_unposed(take)
     if take.keyframe_action is None:
         data.action = None
     else:
         assign_action(take.armature, take.keyframe_action)
     evaluated(take.armature)
     return True
+
+
+def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
+    """Put hands and feet back to rest where they stand as the motion that is shown has turned them.
+
+    To be called before keyframes are stored or shown: nobody has posed these.
+    """
+    from ..bridge.extremity_curves import straighten_extremities
+
+    data = take.armature.animation_data
+    shown = None if data is None else data.action
+    if shown is not None and shown in (take.motion_action, take.finish.action):
+        frame = float(bpy.context.scene.frame_current_final)
+        straighten_extremities(take.armature, HUMAN, shown, take.keyframe_action, frame)
 
 
 def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:

@@ -79,6 +79,12 @@ def source_origin(source: SegmentMotion, segment: str) -> Array:
     return source.start[segment]
 
 
+def in_segment(source: SegmentMotion, segment: str, points: Array) -> Array:
+    """(F, 3) points of the world in the axes of a performer's segment, from its origin [m]."""
+    local = points - source_origin(source, segment)
+    return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ local[..., None])[..., 0])
+
+
 def places_by_part(
     parts: Sequence[PartShape],
     source: SegmentMotion,
@@ -101,8 +107,7 @@ def places_by_part(
     """
     found = []
     for part in parts:
-        local = points - source_origin(source, part.segment)
-        inside = (np.swapaxes(source.turn[part.segment], -1, -2) @ local[..., None])[..., 0]
+        inside = in_segment(source, part.segment, points)
         turn = turns[part.bone] @ alignment[part.bone].T
         origin = places[part.bone] + turns[part.bone] @ part.origin
         found.append(origin + (turn @ (part.scale * inside)[..., None])[..., 0])

@@ -12,17 +12,19 @@ from scipy.spatial.transform import Rotation
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
+from ...body.soles import sole_offsets
 from ...finish.contacts import RELEASE_SPEED_M_S, Contact
 from .foot_shape import FootShape
-from .ground import Ground, is_rigid, sole_offsets
+from .ground import Ground, is_rigid
+from .hips import straightness
 from .holds import Hold, faded
-from .smoothing import ease
+from .smoothing import ease, speeds
 from .stage import Stage
-from .two_bone import smallest_rotation
+from .two_bone import LimbPose, smallest_rotation
 
-UP = np.array([0.0, 0.0, 1.0])
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
 """Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
 LOW_M = (0.02, 0.10)
@@ -30,8 +32,11 @@ LOW_M = (0.02, 0.10)
 which it is rigid with the shin."""
 TOUCHING_M = (0.01, 0.04)
 """Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
-POINTING_RAD = (np.radians(3.0), np.radians(10.0))
-"""Pitch from which a foot on the ground rolls over its front, and does so in full."""
+SLIDING_M_S = (0.4, 1.2)
+"""Speed of the tip up to which the foot rolls over it, and from which it swings over the ground."""
+LARGEST_ROLL_RAD = np.radians(20.0)
+"""Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
+rises higher than that front allows leaves the ground with it."""
 LARGEST_CHANGE_RAD = np.radians(45.0)
 """Largest change of a foot's pitch for a foot of another shape."""
 BALL_AHEAD = 0.62
@@ -50,6 +55,8 @@ class FootPath:
     """(F, 3) where the ankle shall be [m]."""
     planted: BoolArray
     """(F,) whether the ankle must get there: the foot stands on the ground."""
+    over_m: Array
+    """(F,) how much higher that is than with the sole on the ground [m]."""
     ground_m: Array
     """(F,) height of the ground under it [m]."""
 
@@ -70,7 +77,7 @@ def leveled(turn: Array, share: Array) -> Array:
 
 
 def plan_foot(
-    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, ankle: Array
+    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
 ) -> FootPath:
     """Plan a foot.
 
@@ -80,9 +87,9 @@ def plan_foot(
         ground: The performer's ground.
         shape: The character's foot.
         side: `L` or `R`.
-        ankle: (F, 3) where the directions of the leg put the ankle, canonical [m].
+        leg: The leg by the performer's directions, canonical [m].
     """
-    point, time_s = SIDES.index(side), source.time_s
+    point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
     ground_m = stage.heights(ground.height_m[:, point])
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
@@ -99,13 +106,13 @@ def plan_foot(
     for number, (rest, stand) in enumerate(zip(rests, stands, strict=True)):
         first, last = _with_rolls(number, rests, still, time_s)
         frames = slice(first, last + 1)
-        place = _footprint(rest, stand, turn[frames], shape, ankle, first)
+        place = _footprint(rest, stand, turn[frames], shape, leg, first)
         place[:, 2] = ground_m[frames] + depth_m[frames]
         holds.append(Hold(first, place - ankle[frames]))
         planted[frames] = True
     path = ankle + faded(holds, time_s)
     path[:, 2] = np.maximum(path[:, 2], ground_m + depth_m)
-    return FootPath(turn, path, planted, ground_m)
+    return FootPath(turn, path, planted, path[:, 2] - ground_m - depth_m, ground_m)
 
 
 def sole_depth_m(turn: Array, shape: FootShape) -> Array:
@@ -144,18 +151,42 @@ def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
 def _rolled(
     source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, height_m: Array
 ) -> Array:
-    """Turns of the foot, pitched so that its front stays on the ground where the performer's does."""
+    """Turns of the foot, pitched so that its front stays on the ground where the performer's does.
+
+    Nowhere is it pitched further than the ground lets it: a larger foot than the performer's lifts its toes.
+    """
     turn = foot_turns(source, stage, ground, side)
     point = SIDES.index(side)
-    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body, side)[1]
-    over = tip[:, 2] - ground.height_m[:, point]
-    pitch = np.arcsin(np.clip(turn[:, 2, 1], -1.0, 1.0))
-    share = (1.0 - ease(over, *TOUCHING_M)) * ease(pitch, *POINTING_RAD)
-    level, a, b = _heights(turn, shape.front)
-    ratio = np.clip((-height_m - level) / np.maximum(np.hypot(a, b), 1e-9), -1.0, 1.0)
-    middle = (np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi
-    change = np.clip(middle + np.arccos(ratio), -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)
-    return np.asarray(turn @ _about_x(share * change))
+    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
+    speed = speeds(tip, source.time_s)
+    touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
+    touching *= 1.0 - ease(speed, *SLIDING_M_S)
+    rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
+    change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
+    in_front = [point for point in shape.foot if point[1] < 0.0]
+    behind = [point for point in shape.foot if point[1] >= 0.0]
+    free = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
+    most = np.minimum.reduce(
+        [free, *(_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front)]
+    )
+    least = np.maximum.reduce(
+        [-free, *(_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind)]
+    )
+    change = np.clip(change, np.minimum(least, most), most)
+    return np.asarray(turn @ _about_x(np.clip(change, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)))
+
+
+def _pitches_to_ground(turn: Array, point: Array, height_m: Array, toes: float) -> Array:
+    """(F,) pitches that bring a point of the sole down to the ground, toes downward (1) or upward (-1).
+
+    Infinite, in that direction, where the ankle is so high that no pitch does.
+    """
+    level, a, b = _heights(turn, point)
+    ratio = (-height_m - level) / np.maximum(np.hypot(a, b), 1e-9)
+    # The pitch at which the point is highest, a quarter turn or so from the standing foot.
+    highest = toes * ((toes * np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi)
+    pitch = highest + toes * np.arccos(np.clip(ratio, -1.0, 1.0))
+    return np.where(ratio < -1.0, toes * np.inf, pitch)
 
 
 def _heights(turn: Array, point: Array) -> tuple[Array, Array, Array]:
@@ -179,14 +210,11 @@ def _standing(turn: Array) -> Array:
 def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:
     """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
     turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
-    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body, side))
+    heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
     ball = ankle + BALL_AHEAD * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
-    slow = [
-        np.linalg.norm(np.gradient(path, source.time_s, axis=0), axis=-1) < RELEASE_SPEED_M_S
-        for path in (heel, tip, ball)
-    ]
+    slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
     on_front = (slow[1] | slow[2]) & (tip[:, 2] - ground_m < TOUCHING_M[1]) & (pitch >= 0.0)
     return on_heel, on_front
@@ -213,9 +241,16 @@ def _run(flags: BoolArray) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 
-def _footprint(rest: Contact, stand: Array, turn: Array, shape: FootShape, ankle: Array, first: int) -> Array:
-    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant."""
-    place = ankle[rest.first : rest.last + 1].mean(axis=0)
+def _footprint(
+    rest: Contact, stand: Array, turn: Array, shape: FootShape, leg: LimbPose, first: int
+) -> Array:
+    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant.
+
+    The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the leg is
+    nearly straight count more: there a knee bends a lot for a little way.
+    """
+    frames = slice(rest.first, rest.last + 1)
+    place = np.average(leg.end[frames], axis=0, weights=straightness(leg)[frames])
     found = np.broadcast_to(place, (len(turn), 3)).copy()
     into, out = rest.first - first, rest.last + 1 - first
     found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel

@@ -39,7 +39,7 @@ class FootShape:
     toe_joint: Array | None
     """(3,) the toe's joint from the ankle [m]; None without one."""
     front: Array
-    """(3,) where the foot rolls when the heel rises, from the ankle [m]: the ball, or the tip without a toe."""
+    """(3,) where it rolls when the heel rises, from the ankle [m]: the ball; the tip without a toe."""
     heel: Array
     """(3,) where it rolls when the toes rise, from the ankle [m]."""
 

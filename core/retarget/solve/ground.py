@@ -9,18 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...body.kinematics import Body
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
-from ...body.soles import HEEL_BEHIND
+from ...body.soles import sole_offsets
 from ...finish.contacts import Contact, find_contacts
+from .smoothing import smooth_above
 
 SAME_LEVEL_M = 0.03
 """Rests whose heights follow each other within this are on one level: the noise of an estimate ..."""
 LEVEL_RANGE_M = 0.05
 """... if all of them lie within this; a slope is no level."""
 SCENE_GROUND_M = 0.025
-"""A level that near to the scene's ground, z = 0, is it: an ankle's height over its sole is not known better."""
+"""A level that near to the scene's ground, z = 0, is it: no ankle's height over its sole is known better."""
 CHANGE_S = 0.15
 """Time in which the ground under a moving foot changes its height, after a rest and before the next one."""
 LOW_SHARE = 5.0
@@ -41,13 +41,6 @@ class Ground:
     """Height of a resting ankle over the ground [m]."""
 
 
-def sole_offsets(body: Body, side: str) -> Array:
-    """(2, 3) heel and tip of a foot from its ankle, in the foot's frame [m]."""
-    foot = next(segment for segment in body.skeleton.segments if segment.name == f"foot.{side}")
-    tip = body.local(foot.end) - body.local(foot.start)
-    return np.array([[tip[0], HEEL_BEHIND * body.actor.segments_m[foot.name], tip[2]], tip])
-
-
 def find_ground(source: SegmentMotion, stray_m: float) -> Ground:
     """Find the ground.
 
@@ -58,7 +51,7 @@ def find_ground(source: SegmentMotion, stray_m: float) -> Ground:
     ankles = np.stack([source.start[f"foot.{side}"] for side in SIDES], axis=1)
     rests = find_contacts(ankles, source.time_s, stray_m)
     depth = np.stack([_depth_m(source, side) for side in SIDES], axis=1)
-    flat = float(np.mean([-sole_offsets(source.body, side)[:, 2].min() for side in SIDES]))
+    flat = float(-sole_offsets(source.body)[..., 2].min(axis=1).mean())
     if not rests:
         low = float(np.percentile(ankles[..., 2].min(axis=1), LOW_SHARE))
         level = _level_m(low - flat)
@@ -73,6 +66,12 @@ def find_ground(source: SegmentMotion, stray_m: float) -> Ground:
         if rest.place[2] - height < 1.2 * flat
     ]
     under = np.stack([_under(number, rests, levels, source.time_s) for number in range(2)], axis=1)
+    for number in range(2):
+        # Where a sole is clearly lower than where it rests, the ground is no higher than it: a step down
+        # without a rest. Not so under the scene's own ground.
+        lowest = -smooth_above(depth[:, number] - ankles[:, number, 2], source.time_s, CHANGE_S)
+        lowered = np.minimum(under[:, number], lowest + SAME_LEVEL_M)
+        under[:, number] = np.where(under[:, number] > 0.0, np.maximum(lowered, 0.0), under[:, number])
     return Ground(rests, tuple(levels), under, float(np.median(standing)) if standing else flat)
 
 
@@ -83,7 +82,7 @@ def is_rigid(source: SegmentMotion, side: str) -> bool:
 
 def _depth_m(source: SegmentMotion, side: str) -> Array:
     """(F,) depth of the lowest point of the sole below the ankle [m]."""
-    offsets = sole_offsets(source.body, side)
+    offsets = sole_offsets(source.body)[SIDES.index(side)]
     if is_rigid(source, side):
         return np.full(len(source.time_s), -offsets[:, 2].min())
     return np.asarray(-(source.turn[f"foot.{side}"][:, 2] @ offsets.T).min(axis=1))

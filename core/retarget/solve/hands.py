@@ -10,24 +10,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, BoolArray
 from ...body import rotations
+from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
-from .body_frames import distances_m, part_shapes, places_by_part
+from ..character_motion import HandGoal
+from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
-from .smoothing import ease, smoothed
+from .smoothing import ease, smoothed, speeds
 from .stage import Stage
-from .two_bone import LimbPose, reach_for, stretched_m, unit
+from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
-NEAR_M = (0.03, 0.14)
+NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
 like the others for a performer of `OF_STATURE_M`."""
 TOGETHER_M = (0.15, 0.40)
 """The same for the distance of the wrists from each other."""
 FLOOR_M = (0.12, 0.35)
 """The same for the height of a wrist over the floor."""
+PASSING_M_S = (0.25, 0.75)
+"""Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
+LINGER_S = 0.25
+"""Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
 CHANGE_S = 0.1
 """Standard deviation in time of the smoothing of what counts how much."""
@@ -35,6 +41,8 @@ ARM_SOFT = 0.97
 """Share of its length from which an arm resists being stretched."""
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
+LEAST_HEADING = 0.02
+"""Part of the back of the hand in the heading of fingers."""
 ROUNDS = 4
 """Rounds in which two hands find a place that both reach."""
 
@@ -63,17 +71,19 @@ def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]
     for side in SIDES:
         wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]
         along = [wrist, 0.5 * (wrist + end), end]
-        parts[side] = np.stack(
-            [
-                _near(
-                    source, np.minimum.reduce([distances_m(source, name, point) for point in along]), NEAR_M
-                )
-                for name in segments
-            ]
-        )
+        parts[side] = np.stack([_near_part(source, name, along) for name in segments])
     floor = {side: near_floor(source, ground, side) for side in SIDES}
     apart_m = np.linalg.norm(source.start["hand.R"] - source.start["hand.L"], axis=-1)
     return Nearness(parts, floor, _near(source, apart_m, TOGETHER_M))
+
+
+def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
+    """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
+    distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
+    inside = in_segment(source, segment, hand[0])
+    speed = speeds(inside, source.time_s)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S, ends_kept=False), *PASSING_M_S)
+    return _near(source, distance_m, NEAR_M) * touching
 
 
 def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
@@ -85,17 +95,7 @@ def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
 def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float]) -> Array:
     unit_m = source.body.actor.stature_m / OF_STATURE_M
     share = 1.0 - ease(distance_m / unit_m, *bounds)
-    return np.clip(smoothed(share, source.time_s, CHANGE_S), 0.0, 1.0)
-
-
-@dataclass(frozen=True, eq=False)
-class HandGoals:
-    """Where the wrists belong."""
-
-    place: Mapping[str, Array]
-    """(F, 3) by side [m]."""
-    share: Mapping[str, Array]
-    """(F,) by side: how much that counts against the directions of the arm, 0 to 1."""
+    return np.clip(smoothed(share, source.time_s, CHANGE_S, ends_kept=False), 0.0, 1.0)
 
 
 def hand_goals(
@@ -107,8 +107,8 @@ def hand_goals(
     turns: Sequence[Array],
     alignment: Mapping[str, Array],
     arms: Mapping[str, LimbPose],
-) -> HandGoals:
-    """Where the wrists belong by the body, the floor and the other hand.
+) -> dict[str, HandGoal]:
+    """Where the wrists belong by the body, the floor and the other hand, by side.
 
     Args:
         body: The character at rest.
@@ -140,13 +140,15 @@ def hand_goals(
         height = floor_m + stage.size * (wrist[:, 2] - ground.height_m.min(axis=1))
         goal[:, 2] += nearness.floor[side] * (height - goal[:, 2])
         goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - nearness.floor[side])
-    if len(arms) < len(SIDES):
-        return HandGoals(goals, shares)
-    between = source.start["hand.R"] - source.start["hand.L"]
-    apart = _arm_ratio(body, source) * between @ stage.turn.T
-    goals = _brought_together(goals, arms, apart, nearness.together)
-    shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
-    return HandGoals(goals, shares)
+    if len(arms) == len(SIDES):
+        between = source.start["hand.R"] - source.start["hand.L"]
+        apart = _arm_ratio(body, source) * between @ stage.turn.T
+        goals = _brought_together(goals, arms, apart, nearness.together)
+        shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
+    return {
+        side: HandGoal(goals[side], shares[side], nearness.floor[side], _in_reach(arms[side], goals[side]))
+        for side in arms
+    }
 
 
 def floor_goals(
@@ -173,6 +175,24 @@ def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
     return LimbPose(upper, lower, arm.start, middle, end, hinge)
 
 
+def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
+    """(F, 3, 3) turns of a hand, bent back at the wrist where it would be in the floor.
+
+    Args:
+        turn: (F, 3, 3) of the hand, canonical.
+        wrist_m: (F,) height of the wrist over the floor [m].
+        along: (3,) from wrist to fingertips at rest, palm down, canonical [m].
+    """
+    length_m = float(np.linalg.norm(along))
+    fingers = turn @ (along / length_m)
+    least = np.clip(-wrist_m / length_m, -1.0, 0.0)
+    # Fingers that point straight down have no heading of their own: they bend toward the back of the hand.
+    level = (fingers + LEAST_HEADING * turn[..., 2]) * [1.0, 1.0, 0.0]
+    level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
+    bent = smallest_rotation(fingers, unit(level)) @ turn
+    return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
+
+
 def _brought_together(
     goals: Mapping[str, Array], arms: Mapping[str, LimbPose], apart: Array, share: Array
 ) -> dict[str, Array]:
@@ -188,15 +208,15 @@ def _brought_together(
 
 def _reachable(arm: LimbPose, goal: Array) -> Array:
     way = goal - arm.start
-    length_m = float(
-        np.median(
-            np.linalg.norm(arm.middle - arm.start, axis=-1) + np.linalg.norm(arm.end - arm.middle, axis=-1)
-        )
-    )
     wanted_m = np.linalg.norm(way, axis=-1)
-    return np.asarray(
-        arm.start + unit(way) * stretched_m(wanted_m, arm.extension_m, length_m, ARM_SOFT)[:, None]
-    )
+    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT)
+    return np.asarray(arm.start + unit(way) * reached_m[:, None])
+
+
+def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
+    """(F,) whether an arm reaches a goal without resisting."""
+    wanted_m = np.linalg.norm(goal - arm.start, axis=-1)
+    return np.asarray(stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT) >= wanted_m - 1e-6)
 
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:

@@ -14,15 +14,17 @@ import numpy as np
 from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError
+from ...files.json_file import shown
 from ..character import Character
 from ..character_map import CharacterMap
-from ..roles import LIMBS, MIDDLE, REQUIRED
+from ..map_check import check_map
+from ..roles import LIMBS, MIDDLE
 from ..stance import find_stance
 
 SHORTEST_SHARE = 0.005
 """Least length of a long bone, as a share of the body's extent."""
 MEETING_SHARE = 0.02
-"""Distance from a bone's tail to the nearest child's head that still counts as met, as a share of its length."""
+"""Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +59,8 @@ class RestBody:
         Raises:
             InputError: A required role is missing, a bone is not there, or a limb has no length.
         """
-        check_roles(character, character_map)
+        check_map(character_map, character)
+        _check_single_roles(character_map)
         stance = find_stance(character, character_map)
         bones: list[RestBone] = []
         for role in _order():
@@ -148,7 +151,8 @@ class RestBody:
         """
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
         for limb, roles in LIMBS.items():
-            there = [role for role in roles[1:] if role in self.first]
+            long_bones = roles[1:] if limb.startswith("arm") else roles[:3]
+            there = [role for role in long_bones if role in self.first]
             for role, below in zip(there, there[1:], strict=False):
                 if not self.length_m(role, below) > SHORTEST_SHARE * extent:
                     raise InputError(
@@ -158,28 +162,14 @@ class RestBody:
                     )
 
 
-def check_roles(character: Character, character_map: CharacterMap) -> None:
-    """Refuse a map that does not fit a character.
-
-    Raises:
-        InputError: A required role is missing, or a bone is not there or plays two roles.
-    """
-    for role in REQUIRED:
-        if not character_map.bones(role):
-            raise InputError(
-                f"the map {character_map.title} gives no bone for {role}; it needs {', '.join(REQUIRED)}"
-            )
+def _check_single_roles(character_map: CharacterMap) -> None:
     seen: dict[str, str] = {}
     for role in _order():
         for name in character_map.bones(role):
-            if name not in character.index:
-                raise InputError(
-                    f"{character.name} has no bone {name}, which the map {character_map.title} gives for {role}"
-                )
             if name in seen:
                 raise InputError(
-                    f"the map {character_map.title} gives the bone {name} for both {seen[name]} and {role}; "
-                    "a bone plays one role"
+                    f"character map {shown(character_map.title)} gives bone {shown(name)} for both "
+                    f"{seen[name]} and {role}; a bone plays one role"
                 )
             seen[name] = role
 

@@ -1,38 +1,23 @@
 """A performer's motion solved for a character: what its role bones do, before any control."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...arrays import Array
+from ...body.heading import turn_headings_rad
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
 from ..character import Character
 from ..character_map import CharacterMap
-from ..character_motion import CharacterMotion, FootRest, Similarity
+from ..character_motion import CharacterMotion, Similarity
 from ..options import Placement, RetargetOptions, RootMotion
-from ..roles import LIMBS
 from .alignment import rest_alignment
-from .feet import FootPath, foot_turns, plan_foot, toe_bends
-from .foot_shape import FootShape, foot_shape, rest_floor_m, sole_points
-from .ground import Ground, find_ground
-from .hands import ARM_SOFT, floor_goals, hand_goals, reach
-from .hips import LEG_SOFT, lowered_m, needed_drop_m
+from .foot_shape import foot_shape, rest_floor_m, sole_points
+from .ground import find_ground
 from .rest_body import RestBody
 from .root_motion import root_poses, smooth_headings_rad, smooth_way
-from .stage import Stage, facings_rad, find_stage
-from .turns import bone_turns, joint_places
-from .two_bone import LimbPose, reach_for
-
-HINGES = {
-    "arm.L": (0.0, 0.0, -1.0),
-    "arm.R": (0.0, 0.0, 1.0),
-    "leg.L": (1.0, 0.0, 0.0),
-    "leg.R": (1.0, 0.0, 0.0),
-}
-"""Axis of elbow or knee by limb, of the performer at rest."""
+from .solution import Solution
+from .stage import find_stage
 
 
 def solve_motion(
@@ -71,21 +56,18 @@ def solve_motion(
     ankle_m = float(np.mean([shape.ankle_m for shape in shapes.values()]))
     stage = find_stage(source, ground, stand, body.leg_m, ankle_m)
     yield Progress("Turning bones", 0.2)
-    solution = _Solution.by_directions(body, alignment, source, stage, ground)
+    solution = Solution.by_directions(body, alignment, source, stage, ground)
     yield Progress("Planting feet", 0.4)
     feet = solution.plan_feet(shapes) if options.plant_feet else {}
     arms = solution.arms() if options.reach_hands else {}
-    solution.lower_hips(feet, arms)
+    solution.move_hips(feet, arms)
     solution.plant(feet, shapes)
     yield Progress("Reaching with hands", 0.6)
-    solution.reach_with_hands(arms)
+    hands = solution.reach_with_hands() if arms else {}
     yield Progress("Going over the ground", 0.8)
     way, root, notes = _root_motion(solution, options)
-    to_world = (
-        stage.to_world(body.stance, character.scale)
-        if options.placement is Placement.PERFORMER
-        else object_space
-    )
+    filmed = options.placement is Placement.PERFORMER
+    to_world = stage.to_world(body.stance, character.scale) if filmed else object_space
     return CharacterMotion(
         poses=solution.poses(way),
         bends=solution.bends(),
@@ -94,168 +76,16 @@ def solve_motion(
         rests=solution.rests(feet),
         soles=sole_points(body, shapes),
         size=stage.size,
+        stance=body.stance,
+        facing=to_world.rotation @ body.stance.T @ stage.turn,
+        way_m=way,
+        ground_m={f"leg.{side}": foot.ground_m for side, foot in feet.items()},
+        hands=hands,
         notes=notes,
     )
 
 
-@dataclass(eq=False)
-class _Solution:
-    """A motion of the character on its stage while it is solved."""
-
-    body: RestBody
-    alignment: Mapping[str, Array]
-    source: SegmentMotion
-    stage: Stage
-    ground: Ground
-    hips: Array
-    """(F, 3) the midpoint of the hip joints, canonical [m]."""
-    turns: list[Array]
-    """(F, 3, 3) a bone: its turn from rest, canonical."""
-
-    @classmethod
-    def by_directions(
-        cls,
-        body: RestBody,
-        alignment: Mapping[str, Array],
-        source: SegmentMotion,
-        stage: Stage,
-        ground: Ground,
-    ) -> "_Solution":
-        """The motion by the performer's directions alone."""
-        turn = stage.turned(source.turn)
-        for side in SIDES:
-            turn[f"foot.{side}"] = foot_turns(source, stage, ground, side)
-        middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
-        if not body.is_moved("hips"):
-            middle = np.broadcast_to(body.hip_joints, middle.shape).copy()
-        return cls(body, alignment, source, stage, ground, middle, bone_turns(body, turn, alignment))
-
-    def places(self) -> list[Array]:
-        """(F, 3) the joint of each bone, canonical [m]."""
-        return [self.hips + place for place in joint_places(self.body, self.turns)]
-
-    def limb(self, limb: str) -> LimbPose | None:
-        """A limb as it is; None where its end is not there or one of its bones is left alone."""
-        roles = LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
-        if not all(self.body.is_moved(role) for role in roles):
-            return None
-        places = self.places()
-        upper, lower, end = (self.body.first[role] for role in roles)
-        return LimbPose(
-            self.turns[upper] @ self.alignment[roles[0]].T,
-            self.turns[lower] @ self.alignment[roles[1]].T,
-            places[upper],
-            places[lower],
-            places[end],
-            self.turns[upper] @ (self.alignment[roles[0]].T @ np.array(HINGES[limb])),
-        )
-
-    def arms(self) -> dict[str, LimbPose]:
-        """The arms that can reach, by side."""
-        found = {side: self.limb(f"arm.{side}") for side in SIDES}
-        return {side: arm for side, arm in found.items() if arm is not None}
-
-    def plan_feet(self, shapes: Mapping[str, FootShape]) -> dict[str, FootPath]:
-        """Paths of the feet that can be planted, by side."""
-        if not self.body.is_moved("hips"):
-            return {}
-        return {
-            side: plan_foot(self.source, self.stage, self.ground, shapes[side], side, leg.end)
-            for side in SIDES
-            if (leg := self.limb(f"leg.{side}")) is not None
-        }
-
-    def lower_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
-        """Lower the hips for feet that stand and hands on the floor."""
-        if not feet:
-            return
-        needed = []
-        for side, foot in feet.items():
-            leg = self.limb(f"leg.{side}")
-            if leg is not None:
-                length_m = _length_m(self.body, "thigh", "shin", "foot", side)
-                needed.append(
-                    needed_drop_m(leg.start, foot.ankle, leg.extension_m, length_m, foot.planted, LEG_SOFT)
-                )
-        for side, arm in arms.items():
-            goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
-            length_m = _length_m(self.body, "upper_arm", "forearm", "hand", side)
-            drop = needed_drop_m(arm.start, goal, arm.extension_m, length_m, share > 0.0, ARM_SOFT)
-            needed.append(share * drop)
-        drop_m = lowered_m(needed, self.source.time_s, self.body.leg_m)
-        self.hips = self.hips - drop_m[:, None] * np.array([0.0, 0.0, 1.0])
-
-    def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
-        """Bring legs to where the feet belong."""
-        for side, foot in feet.items():
-            leg = self.limb(f"leg.{side}")
-            if leg is None:
-                continue
-            solved = reach_for(leg, leg.start, foot.ankle, LEG_SOFT)
-            self._turn(f"thigh.{side}", solved.upper_turn)
-            self._turn(f"shin.{side}", solved.lower_turn)
-            self._turn(f"foot.{side}", foot.turn)
-            toe = toe_bends(foot.turn, shapes[side], solved.end[:, 2] - foot.ground_m)
-            self._turn(f"toe.{side}", toe)
-
-    def reach_with_hands(self, arms: Mapping[str, LimbPose]) -> None:
-        """Bring hands to where they belong."""
-        if not arms:
-            return
-        arms = self.arms()
-        goals = hand_goals(
-            self.body, self.source, self.stage, self.ground, self.places(), self.turns, self.alignment, arms
-        )
-        for side, arm in arms.items():
-            solved = reach(arm, goals.place[side], goals.share[side])
-            self._turn(f"upper_arm.{side}", solved.upper_turn)
-            self._turn(f"forearm.{side}", solved.lower_turn)
-
-    def _turn(self, role: str, turn: Array) -> None:
-        if self.body.is_moved(role):
-            self.turns[self.body.first[role]] = np.asarray(turn @ self.alignment[role])
-
-    def poses(self, way: Array) -> dict[str, Array]:
-        """(F, 4, 4) by name of bone that is moved, in the armature's space, `way` (F, 3) taken off [m]."""
-        stance, character = self.body.stance, self.body.character
-        found = {}
-        for bone, turn, place in zip(self.body.bones, self.turns, self.places(), strict=True):
-            if not self.body.is_moved(bone.role):
-                continue
-            pose = np.broadcast_to(np.eye(4), (len(turn), 4, 4)).copy()
-            pose[:, :3, :3] = stance.T @ turn @ stance @ character.bone(bone.name).rest[:3, :3]
-            pose[:, :3, 3] = (place - way) @ stance / character.scale
-            found[bone.name] = pose
-        return found
-
-    def bends(self) -> dict[str, Array]:
-        """(F, 3) by limb: toward its elbow or knee, in the armature's axes."""
-        found = {}
-        for limb in LIMBS:
-            pose = self.limb(limb)
-            if pose is not None:
-                found[limb] = pose.bend @ self.body.stance
-        return found
-
-    def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
-        """Rests of the planted feet."""
-        levels = self.stage.heights(np.array(self.ground.levels_m))
-        return tuple(
-            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last, float(level))
-            for rest, level in zip(self.ground.rests, levels, strict=True)
-            if SIDES[rest.point] in feet
-        )
-
-
-def _length_m(body: RestBody, upper: str, lower: str, end: str, side: str) -> float:
-    return body.length_m(f"{upper}.{side}", f"{lower}.{side}") + body.length_m(
-        f"{lower}.{side}", f"{end}.{side}"
-    )
-
-
-def _root_motion(
-    solution: _Solution, options: RetargetOptions
-) -> tuple[Array, Array | None, tuple[str, ...]]:
+def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, Array | None, tuple[str, ...]]:
     """What is taken off the way (F, 3) [m], the root bone's poses in the armature's space, and notes."""
     body, time_s = solution.body, solution.source.time_s
     none = np.zeros_like(solution.hips)
@@ -269,11 +99,9 @@ def _root_motion(
         return (
             none,
             None,
-            (
-                f"{character.name} has no root bone apart from the hips, so the way over the ground stays on the hips",
-            ),
+            (f"{character.name} has no root bone apart from its hips, which keep the way over the ground",),
         )
-    heading = smooth_headings_rad(facings_rad(solution.source.turn["pelvis"]), time_s)
+    heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
     rest = np.eye(4)
     rest[:3, :3] = body.stance @ character.bone(name).rest[:3, :3]
     rest[:3, 3] = character.scale * body.stance @ character.bone(name).head

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...body.heading import yaw_rotation
+from ...body.heading import turn_headings_rad, yaw_rotation
 from ...body.segment_motion import SegmentMotion
 from ..character_motion import Similarity
 from .ground import Ground
@@ -67,7 +67,7 @@ def find_stage(source: SegmentMotion, ground: Ground, stand: Array, leg_m: float
     size = leg_m / source_leg_m(source)
     hips = 0.5 * (source.start["thigh.L"][0] + source.start["thigh.R"][0])
     under = np.array([hips[0], hips[1], ground.height_m[0].min()])
-    heading = float(facings_rad(source.turn["pelvis"][:1])[0])
+    heading = float(turn_headings_rad(source.turn["pelvis"][:1])[0])
     return Stage(heading, under, stand, size, ankle_m - size * ground.ankle_m)
 
 
@@ -75,11 +75,3 @@ def source_leg_m(source: SegmentMotion) -> float:
     """Mean length of the performer's legs [m]."""
     lengths = source.body.actor.segments_m
     return 0.5 * sum(lengths[f"{part}.{side}"] for part in ("thigh", "shin") for side in "LR")
-
-
-def facings_rad(turn: Array) -> Array:
-    """(F,) headings of turns (F, 3, 3); of the line through the hips where the body faces up or down."""
-    ahead = np.arctan2(-turn[..., 0, 1], turn[..., 1, 1])
-    across = np.arctan2(turn[..., 1, 0], turn[..., 0, 0])
-    level = np.hypot(turn[..., 0, 1], turn[..., 1, 1])
-    return np.where(level > np.sqrt(0.5), ahead, across)

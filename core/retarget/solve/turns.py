@@ -1,4 +1,4 @@
-"""Turns of a character's bones that follow from the performer's segments alone, and where they put the joints."""
+"""Turns of bones that follow from the performer's segments alone, and where they put the joints."""
 
 from collections.abc import Mapping
 

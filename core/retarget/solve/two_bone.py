@@ -41,6 +41,21 @@ class LimbPose:
         return np.asarray(np.linalg.norm(self.end - self.start, axis=-1))
 
     @property
+    def upper_m(self) -> float:
+        """Length of the upper bone [m]."""
+        return float(np.median(np.linalg.norm(self.middle - self.start, axis=-1)))
+
+    @property
+    def lower_m(self) -> float:
+        """Length of the lower bone [m]."""
+        return float(np.median(np.linalg.norm(self.end - self.middle, axis=-1)))
+
+    @property
+    def length_m(self) -> float:
+        """Length of both bones [m]."""
+        return self.upper_m + self.lower_m
+
+    @property
     def bend(self) -> Array:
         """(F, 3) unit direction from the line through its ends toward knee or elbow, bent or straight."""
         line = unit(self.end - self.start)
@@ -79,8 +94,7 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> 
         goal: (F, 3) of ankle or wrist [m].
         soft: Share of its length from which it resists being stretched.
     """
-    upper_m = float(np.median(np.linalg.norm(limb.middle - limb.start, axis=-1)))
-    lower_m = float(np.median(np.linalg.norm(limb.end - limb.middle, axis=-1)))
+    upper_m, lower_m = limb.upper_m, limb.lower_m
     way = goal - start
     wanted_m = np.linalg.norm(way, axis=-1)
     distance = stretched_m(wanted_m, limb.extension_m, upper_m + lower_m, soft)
@@ -104,7 +118,7 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> 
 
 
 def smallest_rotation(source: Array, target: Array) -> Array:
-    """(..., 3, 3) the smallest rotations that take unit vectors to others; opposite ones turn about some axis."""
+    """(..., 3, 3) the smallest rotations of unit vectors to others, about any axis for opposite ones."""
     axis = rotations.cross(source, target)
     cos = np.sum(source * target, axis=-1)[..., None, None]
     K = rotations.cross_matrix(axis)

@@ -1,11 +1,12 @@
 """The check of one take before it is converted: description, clip, keyframes, markers, cost."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...matching.match_take import take_to_match
+from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ...take.description import Description
@@ -51,6 +52,7 @@ def check_take(
     found: ShootTake,
     find_libraries: Callable[[str], object],
     defaults: ConversionSettings = NO_SETTINGS,
+    check_character: Callable[[CharacterSettings], Sequence[str]] = lambda _settings: (),
 ) -> TakeCheck:
     """Check one take; nothing is written.
 
@@ -58,6 +60,8 @@ def check_take(
         found: The take.
         find_libraries: Raises `InputError` where there is no such library.
         defaults: Settings for what its description leaves out.
+        check_character: Raises `InputError` where a character or its map cannot be used, and returns what is
+            doubtful about it.
     """
     findings = Findings()
     description = None
@@ -69,6 +73,9 @@ def check_take(
     if settings.library is not None:
         with findings.catching():
             find_libraries(settings.library)
+    if settings.character is not None:
+        with findings.catching():
+            findings.warn(*check_character(settings.character))
     clip = None
     with findings.catching():
         clip = open_footage(description.clip, None)

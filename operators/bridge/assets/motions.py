@@ -11,6 +11,7 @@ from pathlib import Path
 
 import bpy
 
+from ....core.finish.natural_extremities import natural_extremities
 from ....core.report.thumbnail import thumbnail
 from ....core.take.motion import Motion
 from ..actions import assign_action, new_channelbag
@@ -23,9 +24,10 @@ from ..object_space import AT_ORIGIN
 from ..own_scene import own_scene
 from ..scene_frames import scene_frames
 from .asset_blend import write_asset_blend
+from .character_actions import CharacterAsset
 from .marking import AssetDetails, mark_asset
 
-MOTIONS, ACTORS = "Keymark", "Keymark Actors"
+MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 """Parents of the catalogs of all shoots."""
 
 
@@ -48,18 +50,19 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     models = bone_models(body)
     modes = {model.name: usual_mode(skeleton, model) for model in models}
     frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
-    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture)
+    extremities = natural_extremities(body, motion.posture, motion.time_s)
+    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture, extremities)
     for path, index, bone, column in channel_columns(channels, modes.__getitem__):
         add_generated_keys(channelbag, path, index, bone, frames, column)
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
 
 
-def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
+def write_motion_library(path: Path, assets: Iterable[MotionAsset | CharacterAsset]) -> None:
     """Write motions as assets into a .blend, and their catalogs into the file beside it.
 
     Each is written twice: as an Action, for any actor; and as an actor that it animates, because only objects
-    can be dragged from an asset browser into a scene.
+    can be dragged from an asset browser into a scene. A character's is an Action for that character.
 
     Args:
         path: The .blend; one that is there is replaced, while catalogs that are there are kept.
@@ -74,13 +77,18 @@ def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
 
 
 def _motion_assets(
-    scene: bpy.types.Scene, assets: Iterable[MotionAsset]
+    scene: bpy.types.Scene, assets: Iterable[MotionAsset | CharacterAsset]
 ) -> Iterator[tuple[bpy.types.ID, str]]:
     """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
     actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
     for asset in assets:
         picture = thumbnail(asset.motion)
         details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
+        if isinstance(asset, CharacterAsset):
+            asset.action.name = asset.name
+            mark_asset(asset.action, details, picture)
+            yield asset.action, f"{CHARACTERS}/{asset.catalog}"
+            continue
         action = bpy.data.actions.new(asset.name)
         write_motion_curves(action, asset.motion)
         mark_asset(action, details, picture)

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 import bpy
 
 BONE_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]')
+PROPERTY_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]\["((?:[^"\\]|\\.)*)"\]$')
 CONSTRAINT_PATH = re.compile(r'^pose\.bones\["(?:[^"\\]|\\.)*"\]\.constraints\["((?:[^"\\]|\\.)*)"\]')
 VECTORS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 """Properties of several components, each with a driver of its own."""
@@ -28,14 +29,13 @@ def dependencies(armature_object: bpy.types.Object) -> Graph:
             for moved in constrained_bones(bone, constraint):
                 graph[moved.name] |= targets
     for driver in drivers(armature_object):
-        read = set(_read_by(armature_object, driver))
+        seen = set(_read_by(armature_object, driver))
         bone, node = driven_bone(driver.data_path), driven_property(driver)
-        graph.setdefault(node, set()).update(read)
+        graph.setdefault(node, set()).update(seen)
         if bone in graph and not _is_custom_property(driver.data_path):
             graph[bone].add(node)
-    for path, read in list(graph.items()):
-        if path not in armature_object.pose.bones:
-            graph[path] = {one for one in read if one in graph}
+    read = {one for nodes in graph.values() for one in nodes}
+    graph |= {one: set() for one in read if one not in graph}
     return graph
 
 
@@ -52,15 +52,12 @@ def upstream(graph: Graph, names: Iterable[str]) -> set[str]:
 
 
 def active_constraints(bone: bpy.types.PoseBone) -> list[bpy.types.Constraint]:
-    """The constraints of a bone that move it, or may do so once their influence is driven or keyed."""
+    """The constraints of a bone that move it, or may do so once their influence is driven."""
+    working = [constraint for constraint in bone.constraints if not constraint.mute and constraint.is_valid]
+    if all(constraint.influence > 0.0 for constraint in working):
+        return working
     driven = _driven_constraints(bone)
-    return [
-        constraint
-        for constraint in bone.constraints
-        if not constraint.mute
-        and constraint.is_valid
-        and (constraint.influence > 0.0 or constraint.name in driven)
-    ]
+    return [one for one in working if one.influence > 0.0 or one.name in driven]
 
 
 def constraint_bones(armature_object: bpy.types.Object, constraint: bpy.types.Constraint) -> Iterator[str]:
@@ -80,7 +77,8 @@ def constrained_bones(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint
     """The bones that a constraint of a bone moves: with inverse kinematics a chain of parents."""
     if constraint.type not in ("IK", "SPLINE_IK"):
         return [bone]
-    chain, above = [], bone if getattr(constraint, "use_tail", True) else bone.parent
+    chain: list[bpy.types.PoseBone] = []
+    above = bone if getattr(constraint, "use_tail", True) else bone.parent
     while above is not None and (constraint.chain_count == 0 or len(chain) < constraint.chain_count):
         chain.append(above)
         above = above.parent
@@ -109,6 +107,14 @@ def driven_constraint(path: str) -> str | None:
     """The constraint whose property a data path names."""
     found = CONSTRAINT_PATH.match(path)
     return bpy.utils.unescape_identifier(found[1]) if found else None
+
+
+def custom_property(path: str) -> tuple[str, str] | None:
+    """The bone and the custom property of it that a data path names."""
+    found = PROPERTY_PATH.match(path)
+    if found is None:
+        return None
+    return bpy.utils.unescape_identifier(found[1]), bpy.utils.unescape_identifier(found[2])
 
 
 def _driven_constraints(bone: bpy.types.PoseBone) -> set[str]:

@@ -1,6 +1,6 @@
 """A character's shape in the current frame, for pictures: its meshes, or its bones where it has none."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 
 import bpy
 import numpy as np
@@ -8,24 +8,26 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.report.canvas import LEFT, RIGHT
 from ....core.report.character_figure import SKIN, CharacterFigure
+from ....core.retarget.figure_lines import FigureLine
 from ..object_space import evaluated
+from .skins import skins
 
 MOST_TRIANGLES = 200_000
 """With more, bones are drawn: a picture need not take half a minute."""
 WAIST, THICKNESS = 0.15, 0.09
 """An octahedral bone's widest place and its half-width there, in bone lengths."""
+LEAST_M = 1e-6
 CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
-def character_figure(armature_object: bpy.types.Object, sides: Mapping[str, str]) -> CharacterFigure:
+def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:
     """The character as its scene shows it now.
 
     Args:
         armature_object: The armature.
-        sides: `L`, `R` or an empty text for each bone that plays a role; these are drawn where there is no
-            mesh.
+        lines: What is drawn where there is no mesh.
     """
-    meshes = [_mesh(one) for one in _skins(armature_object)]
+    meshes = [_mesh(one) for one in skins(armature_object)]
     if meshes and sum(len(triangles) for _, triangles in meshes) <= MOST_TRIANGLES:
         starts = np.cumsum([0, *(len(points) for points, _ in meshes)])
         points = np.concatenate([points for points, _ in meshes])
@@ -33,21 +35,7 @@ def character_figure(armature_object: bpy.types.Object, sides: Mapping[str, str]
             [rows + start for (_, rows), start in zip(meshes, starts[:-1], strict=True)]
         )
         return CharacterFigure(points, triangles, np.tile(np.array(SKIN, dtype=float), (len(triangles), 1)))
-    return _bones(armature_object, sides)
-
-
-def _skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
-    """The visible meshes that the armature deforms or carries."""
-    found = []
-    for scene in armature_object.users_scene[:1]:
-        for one in scene.objects:
-            deformed = any(
-                modifier.type == "ARMATURE" and modifier.object == armature_object
-                for modifier in one.modifiers
-            )
-            if one.type == "MESH" and not one.hide_render and (deformed or one.parent == armature_object):
-                found.append(one)
-    return found
+    return _bones(armature_object, lines)
 
 
 def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:
@@ -69,31 +57,45 @@ def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:
     )
 
 
-def _bones(armature_object: bpy.types.Object, sides: Mapping[str, str]) -> CharacterFigure:
-    """Octahedra along the bones that play a role."""
+def _bones(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:
+    """Octahedra along the lines."""
     shown = evaluated(armature_object)
     world = np.array(shown.matrix_world, dtype=np.float64)
+    poses = {bone.name: world @ np.array(bone.matrix, dtype=np.float64) for bone in shown.pose.bones}
     points: list[Array] = []
     triangles: list[tuple[int, int, int]] = []
     colors: list[tuple[int, int, int]] = []
-    for name, side in sides.items():
-        pose_bone = shown.pose.bones.get(name)
-        if pose_bone is None:
+    for line in lines:
+        if line.start not in poses:
             continue
-        matrix = world @ np.array(pose_bone.matrix, dtype=np.float64)
-        along = matrix[:3, 1] * pose_bone.bone.length
-        size = float(np.linalg.norm(along))
-        x, z = (matrix[:3, column] / np.linalg.norm(matrix[:3, column]) for column in (0, 2))
-        waist = matrix[:3, 3] + WAIST * along
-        ring = [waist + THICKNESS * size * (a * x + b * z) for a, b in CORNERS]
+        matrix = poses[line.start]
+        start = matrix[:3, 3]
+        end = start + matrix[:3, 1] * shown.pose.bones[line.start].bone.length
+        if line.end is not None and line.end in poses:
+            end = poses[line.end][:3, 3]
+        ring = _ring(start, end)
+        if ring is None:
+            continue
         first = 6 * len(points)
-        points.append(np.array([matrix[:3, 3], matrix[:3, 3] + along, *ring]))
+        points.append(np.array([start, end, *ring]))
         for corner in range(4):
             a, b = first + 2 + corner, first + 2 + (corner + 1) % 4
-            triangles += [(first, a, b), (first + 1, b, a)]
-        colors += [{"L": LEFT, "R": RIGHT}.get(side, SKIN)] * 8
+            triangles += [(first, b, a), (first + 1, a, b)]
+        colors += [{"L": LEFT, "R": RIGHT}.get(line.side, SKIN)] * 8
     return CharacterFigure(
         np.concatenate(points) if points else np.zeros((0, 3)),
         np.array(triangles, dtype=np.intp).reshape(-1, 3),
         np.array(colors, dtype=np.float64).reshape(-1, 3),
     )
+
+
+def _ring(start: Array, end: Array) -> list[Array] | None:
+    """The four corners of an octahedron's waist; None where it has no length."""
+    along = end - start
+    size = float(np.linalg.norm(along))
+    if size < LEAST_M:
+        return None
+    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    across /= np.linalg.norm(across)
+    other = np.cross(along / size, across)
+    return [start + WAIST * along + THICKNESS * size * (a * across + b * other) for a, b in CORNERS]

@@ -64,6 +64,7 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
     members = _members(armature, found.values())
     notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
     _into_collection(scene, armature.name, members)
+    armature.hide_viewport = False  # else Blender would not evaluate it
     scene.view_layers[0].update()
     return ImportedCharacter(file, armature, tuple(members), texts, notes)
 
@@ -123,7 +124,8 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves"
+            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves, "
+            "and one that is linked from another file is named by that file"
         )
     if file.object is not None:
         if file.object not in armatures:

@@ -14,26 +14,36 @@ from ..scene_frames import showing_action
 
 Property = tuple[str, str]
 """Name of a pose bone, and of one of its custom properties."""
+Value = float | int | bool
+OBJECT_CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 @contextmanager
-def posing(armature_object: bpy.types.Object, properties: Sequence[Property] = ()) -> Iterator[None]:
-    """Let a pose be changed without any Action; afterwards all is as it was, to the last bit.
+def posing(
+    armature_object: bpy.types.Object,
+    properties: Sequence[Property] = (),
+    action: bpy.types.Action | None = None,
+) -> Iterator[None]:
+    """Let a pose be changed, or an Action be shown; afterwards all is as it was, to the last bit.
 
     Args:
         armature_object: The character.
         properties: Custom properties that may be changed as well.
+        action: The Action to show meanwhile; none by default.
     """
     had_data, data = armature_object.animation_data is not None, armature_object.animation_data_create()
     with_strips, bones = data.use_nla, armature_object.pose.bones
-    before = {(bone, name): bones[bone][name] for bone, name in properties}
+    values = {(bone, name): bones[bone][name] for bone, name in properties}
+    channels = {name: tuple(getattr(armature_object, name)) for name in OBJECT_CHANNELS}
     try:
-        with showing_action(armature_object, None):
+        with showing_action(armature_object, action):
             data.use_nla = False
             yield
     finally:
-        for (bone, name), value in before.items():
+        for (bone, name), value in values.items():
             bones[bone][name] = value
+        for name, channel in channels.items():
+            setattr(armature_object, name, channel)
         data.use_nla = with_strips
         if not had_data:
             armature_object.animation_data_clear()
@@ -41,7 +51,7 @@ def posing(armature_object: bpy.types.Object, properties: Sequence[Property] = (
         evaluated(armature_object)
 
 
-def set_properties(armature_object: bpy.types.Object, values: Mapping[Property, float | int | bool]) -> None:
+def set_properties(armature_object: bpy.types.Object, values: Mapping[Property, Value]) -> None:
     """Set custom properties of pose bones, each in the type that it has."""
     for (bone, name), value in values.items():
         held = armature_object.pose.bones[bone]

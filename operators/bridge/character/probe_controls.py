@@ -1,11 +1,10 @@
 """Find out how a character's controls act: pose them at random for a moment, and see what moves what."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
 from ....core.retarget.character_map import CharacterMap
@@ -14,13 +13,15 @@ from ....core.retarget.control_plan import ControlKind, PlannedControl
 from ....core.retarget.control_spaces import PosedControls, find_spaces
 from ....core.retarget.control_targets import PoleSetting
 from ....core.retarget.rigid_offset import rigid_offset
-from .posing import Property, posing, read_poses, set_channels, set_properties
+from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics
+from .random_poses import RandomPoses, pose_at_random
+from .shown_properties import probed_properties
 
-SEED = 4
 STILL, MOVED = 3, 4
 """Poses at random, without and with locations."""
-TURN_STD_RAD = 0.4
+TURN_RAD = 0.4
+"""Standard deviation of random turns about each axis."""
 MOVE_SHARE = 0.1
 """Standard deviation of random locations, in sizes of the character."""
 DISPLACED = 1e-5
@@ -57,20 +58,27 @@ def probe_controls(
         planned: The controls.
     """
     size = character_size(armature_object, character_map)
-    in_fk, in_ik = (shown_properties(character_map, ik=ik) for ik in (False, True))
+    in_fk, in_ik = (probed_properties(character_map, in_ik) for in_ik in (False, True))
     displaced = _displaced(armature_object, planned, size)
     modes = [armature_object.pose.bones[control.name].rotation_mode for control in planned]
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
-        posed, bones = _random_poses(armature_object, planned, size)
+        names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
+        poses = RandomPoses(STILL, MOVED, TURN_RAD, MOVE_SHARE * size)
+        channels, shown, followed = pose_at_random(armature_object, names, bones, poses)
+        posed = PosedControls(channels, shown, STILL)
         spaces = find_spaces(posed)
         controls = [
             Control(plan, mode, space, plan.kind is not ControlKind.POLE, plan.name in displaced)
             for plan, mode, space in zip(planned, modes, spaces, strict=True)
         ]
         ordered = ordered_controls(controls)
-        offsets, notes = _fk_offsets(armature_object, posed, bones, planned, size)
+        offsets, notes = _fk_offsets(armature_object, posed, followed, planned, size)
         ik = try_inverse_kinematics(armature_object, character_map, ordered, size, in_ik)
+    ordered = tuple(
+        replace(one, space=replace(one.space, origin=ik.origins[one.name])) if one.name in ik.origins else one
+        for one in ordered
+    )
     notes = (*_loose(controls, size), *notes, *ik.notes)
     return ProbedControls(ordered, offsets | dict(ik.offsets), ik.poles, size, notes)
 
@@ -83,40 +91,10 @@ def character_size(armature_object: bpy.types.Object, character_map: CharacterMa
     return float(np.ptp(heads, axis=0).max())
 
 
-def shown_properties(character_map: CharacterMap, ik: bool) -> dict[Property, float | int | bool]:
-    """The map's settings, and its switches to IK or FK."""
-    values = {(setting.bone, setting.property): setting.value for setting in character_map.settings}
-    for controls in character_map.ik.values():
-        if controls.switch is not None:
-            switch = controls.switch
-            values[switch.bone, switch.property] = switch.ik if ik else switch.fk
-    return values
-
-
 def _displaced(armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float) -> set[str]:
     """The controls that have a location now."""
     bones = armature_object.pose.bones
     return {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
-
-
-def _random_poses(
-    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
-) -> tuple[PosedControls, Array]:
-    """The controls in random poses, and the poses (S, C, 4, 4) of their bones."""
-    rng = np.random.default_rng(SEED)
-    names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
-    channels, poses = [], []
-    for sample in range(STILL + MOVED):
-        matrices = np.tile(np.eye(4), (len(names), 1, 1))
-        matrices[:, :3, :3] = Rotation.from_rotvec(rng.normal(0.0, TURN_STD_RAD, (len(names), 3))).as_matrix()
-        if sample >= STILL:
-            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (len(names), 3))
-        set_channels(armature_object, dict(zip(names, matrices, strict=True)))
-        own, pose = read_poses(armature_object, [*names, *bones])
-        channels.append(own[: len(names)])
-        poses.append(pose)
-    both = np.array(poses)
-    return PosedControls(np.array(channels), both[:, : len(names)], STILL), both[:, len(names) :]
 
 
 def _fk_offsets(

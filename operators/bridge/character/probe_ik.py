@@ -11,9 +11,10 @@ from ....core.arrays import Array
 from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.control_channels import Control, ControlChannels, control_channels
 from ....core.retarget.control_plan import ControlKind, limb_bones
+from ....core.retarget.control_spaces import NOTHING
 from ....core.retarget.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from ....core.retarget.rigid_offset import rigid_offset
-from .posing import Property, read_poses, set_channels, set_properties
+from .posing import Property, Value, read_poses, set_channels, set_properties
 
 TRIALS = ((0.8, 0.0, (0.2, -0.1, 0.15)), (0.7, 0.5, (-0.15, 0.2, 0.1)))
 """Of each trial: distance of the limb's end from its root, in that at rest; turn of the pole about the line
@@ -31,6 +32,8 @@ class TriedInverseKinematics:
     offsets: Mapping[str, Array]
     """(4, 4) by goal or toe control the pose of its bone in its own axes."""
     poles: Mapping[str, PoleSetting]
+    origins: Mapping[str, Array]
+    """(3,) by toe control its place in its carrier's axes, which only a leg within reach shows."""
     notes: tuple[str, ...]
 
 
@@ -45,8 +48,8 @@ class _Limb:
     bones: tuple[str, str, str]
     rest: Array
     """(3, 4, 4) the poses of the bones."""
-    rest_pole: Array | None
-    """(3,)."""
+    rest_pole: Array
+    """(3,) the place of the pole; the joint's own where there is none."""
 
 
 def try_inverse_kinematics(
@@ -54,7 +57,7 @@ def try_inverse_kinematics(
     character_map: CharacterMap,
     controls: Sequence[Control],
     size: float,
-    in_ik: Mapping[Property, float | int | bool],
+    in_ik: Mapping[Property, Value],
 ) -> TriedInverseKinematics:
     """Pull hands and feet toward the body, and look; inside of `posing`.
 
@@ -66,7 +69,7 @@ def try_inverse_kinematics(
         in_ik: The custom properties with which its limbs show IK.
     """
     if not any(control.plan.kind is ControlKind.GOAL for control in controls):
-        return TriedInverseKinematics({}, {}, ())
+        return TriedInverseKinematics({}, {}, {}, ())
     names = [control.name for control in controls]
     set_channels(armature_object, {name: np.eye(4) for name in names})
     _, rest = read_poses(armature_object, names)
@@ -76,6 +79,7 @@ def try_inverse_kinematics(
     seen = [_try(armature_object, controls, limbs, at_rest, size, *trial) for trial in TRIALS]
     offsets: dict[str, Array] = {}
     poles: dict[str, PoleSetting] = {}
+    origins: dict[str, Array] = {}
     notes: list[str] = []
     for limb in limbs:
         poses = {name: np.array([one[name] for one in seen]) for name in seen[0]}
@@ -90,9 +94,12 @@ def try_inverse_kinematics(
                 )
                 offset = np.linalg.inv(at_rest[control.name]) @ limb.rest[2]
             offsets[control.name] = offset
+        if limb.toe is not None and limb.toe.space.carrier != NOTHING:
+            carrier = controls[limb.toe.space.carrier].name
+            origins[limb.toe.name] = rigid_offset(poses[carrier], poses[limb.toe.name])[0][:3, 3]
         if limb.pole is not None:
-            poles[limb.pole.name] = _pole_setting(limb, poses, notes)
-    return TriedInverseKinematics(offsets, poles, tuple(notes))
+            poles[limb.pole.name] = _pole_setting(limb, limb.pole.name, poses, notes)
+    return TriedInverseKinematics(offsets, poles, origins, tuple(notes))
 
 
 def _limbs(
@@ -110,7 +117,7 @@ def _limbs(
         pole, toe = own.get(ControlKind.POLE), own.get(ControlKind.TOE)
         bones = limb_bones(character_map, limb)
         _, rest = read_poses(armature_object, bones)
-        rest_pole = None if pole is None else at_rest[pole.name][:3, 3]
+        rest_pole = rest[1, :3, 3] if pole is None else at_rest[pole.name][:3, 3]
         found.append(_Limb(limb, goal, pole, toe, bones, rest, rest_pole))
     return found
 
@@ -174,16 +181,14 @@ def _tried_pole(limb: _Limb, turn_rad: float) -> Array:
     return root + along + Rotation.from_rotvec(turn_rad * axis).as_matrix() @ across
 
 
-def _pole_setting(limb: _Limb, poses: Mapping[str, Array], notes: list[str]) -> PoleSetting:
+def _pole_setting(limb: _Limb, name: str, poses: Mapping[str, Array], notes: list[str]) -> PoleSetting:
     """Where the pole belongs; a sentence is added where it steers nothing."""
-    root, middle, end = (poses[name][:, :3, 3] for name in limb.bones)
-    pole = poses[limb.pole.name][:, :3, 3]
+    root, middle, end = (poses[bone][:, :3, 3] for bone in limb.bones)
+    pole = poses[name][:, :3, 3]
     offsets = np.array([pole_offset(*points) for points in zip(root, middle, end, pole, strict=True)])
     mean = float(np.angle(np.exp(1j * offsets).mean()))
     if np.abs(np.angle(np.exp(1j * (offsets - mean)))).max() > AGREE_RAD:
-        notes.append(
-            f"Pole '{limb.pole.name}' does not steer bone '{limb.bones[1]}'; in IK it may point elsewhere"
-        )
+        notes.append(f"Pole '{name}' does not steer bone '{limb.bones[1]}'; in IK it may point elsewhere")
     rest = limb.rest[:, :3, 3]
     length = float(np.linalg.norm(rest[1] - rest[0]) + np.linalg.norm(rest[2] - rest[1]))
     distance = float(np.linalg.norm(limb.rest_pole - rest[1]))

@@ -120,7 +120,7 @@ def _require_evaluated(armature_object: bpy.types.Object) -> None:
     layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
     if not armature_object.visible_get(view_layer=layer):
         raise InputError(
-            f"armature '{name}' is hidden in view layer '{layer.name}', so that Blender does not evaluate its "
+            f"armature '{name}' is hidden in view layer '{layer.name}', where Blender evaluates no "
             "pose; show it while the motion is made"
         )
 

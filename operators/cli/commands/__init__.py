@@ -6,6 +6,7 @@ Each file declares a command's arguments and its `run`, which imports the use ca
 
 from ..command import Command, CommandGroup
 from .batch import BATCH
+from .character import CHARACTER
 from .check import CHECK
 from .convert import CONVERT
 from .demo import DEMO
@@ -13,6 +14,7 @@ from .library import LIBRARY
 from .merge import MERGE
 from .new import NEW
 from .propose import PROPOSE
+from .retarget import RETARGET
 from .worker import WORKER
 
 COMMANDS: tuple[Command | CommandGroup, ...] = (
@@ -22,6 +24,8 @@ COMMANDS: tuple[Command | CommandGroup, ...] = (
     BATCH,
     MERGE,
     WORKER,
+    CHARACTER,
+    RETARGET,
     PROPOSE,
     LIBRARY,
     DEMO,

@@ -1,7 +1,7 @@
 """Conversion of one take into one complete folder of results; running it again gives the same result."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,22 +14,27 @@ from ....core.library.library_file import library_digest
 from ....core.matching.match_take import take_to_match
 from ....core.progress import run
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
+from ....core.retarget.choose_map import map_digests
+from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
+from ....core.retarget.retarget_record import RetargetRecord
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE as RECORD
-from ....core.take.conversion_record import write_record
+from ....core.take.conversion_record import find_record, write_record
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.keyframe_file import write_keyframes
 from ....core.take.methods import METHODS
+from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
 from ..console import Console
-from ..library_search_path import requested_libraries
+from ..library_search_path import library_folders, requested_libraries
 from ..require_blender import require_blender
 from ..version import version
 from .blender_files import BLEND, BVH, write_blender_files
-from .changed_files import AS_MADE, changed_files, kept_note, write_made_digest
+from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
+from .character_result import CHARACTER_BLEND, opened_character, write_character_result
 from .matched_keyframes import reconstruct_or_match
 from .result import Conversion, conversion_record
 from .unsupported_paths import refuse_unsupported_paths
@@ -40,12 +45,14 @@ RESULT_FILES = (
     MOTION,
     BLEND,
     BVH,
+    CHARACTER_BLEND,
+    RETARGET,
     *(f"{REPORT}/{name}" for name in PICTURES),
     f"{REPORT}/{MATCHES}",
 )
 """Every file that a conversion may make, but for the keyframes: a person may have corrected these meanwhile,
 so that only a conversion that makes them anew may replace them."""
-EDITABLE_FILES = (BLEND, KEYFRAMES)
+EDITABLE_FILES = (BLEND, CHARACTER_BLEND, KEYFRAMES)
 """Files that people go on working in; one that no record vouches for is taken to be theirs."""
 
 
@@ -104,7 +111,8 @@ def prepared_conversion(
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD, kept_names) as staging_folder:
         libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
-        digest = conversion_digest(description, settings, digests, output, version())
+        maps = () if settings.character is None else map_digests(settings.character.map, library_folders())
+        digest = conversion_digest(description, settings, digests, output, version(), maps)
         yield PreparedConversion(description, settings, libraries, digest, output, staging_folder, kept_names)
 
 
@@ -112,6 +120,10 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     """Make every file of the result in the staging folder; the record comes last."""
     settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
     take = _read_take(prepared.description, settings, output)
+    if settings.character is not None:
+        console.stage("Opening the character")
+        with opened_character(settings.character.file, settings.character.map, debug):
+            pass  # what is wrong with it is better known before the work
     method = settings.method or METHODS[0]
     job = reconstruct_or_match(take, prepared.libraries, method, settings.floor_m)
     matched = run(job, console.progress)
@@ -121,14 +133,18 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     if matched.choice is not None:
         write_keyframes(staging_folder / KEYFRAMES, take.keyframes, take.body, take.frame_start)
     console.stage("Writing Blender's files")
-    curves = write_blender_files(take, result.motion, staging_folder, real_path(output), debug)
-    write_made_digest(staging_folder, BLEND)
+    curves = {BLEND: write_blender_files(take, result.motion, staging_folder, real_path(output), debug)}
+    character = _write_character(prepared, take, result.motion, console, debug)
+    curves |= {} if character is None else {CHARACTER_BLEND: character.files[CHARACTER_BLEND]}
+    write_made_digests(staging_folder, curves)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
         write_pictures(staging_folder / REPORT, take, result.motion, result.tracks, result.speed)
     made = [name for name in (*RESULT_FILES, KEYFRAMES) if (staging_folder / name).exists()]
     prepared.kept_names.update(
-        changed_files(output, staging_folder, (*RESULT_FILES, KEYFRAMES), EDITABLE_FILES)
+        changed_files(
+            output, staging_folder, (*RESULT_FILES, KEYFRAMES), EDITABLE_FILES, _recorded_files(output)
+        )
     )
     conversion = Conversion(
         take,
@@ -138,14 +154,39 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
         conversion_notes=(
             *_unused_keyframes_note(prepared.description, settings),
             *matched.mismatch_notes,
+            *(() if character is None else (*character.doubts, *character.notes)),
             *(kept_note(*names) for names in prepared.kept_names.items()),
         ),
     )
     write_record(
         staging_folder,
-        conversion_record(conversion, prepared.digest, staging_folder, made, {BLEND: curves}),
+        conversion_record(conversion, prepared.digest, staging_folder, made, curves),
     )
     return conversion
+
+
+def _write_character(
+    prepared: PreparedConversion, take: Take, motion: Motion, console: Console, debug: bool
+) -> RetargetRecord | None:
+    """Put the motion onto the character that the take names, if any."""
+    if prepared.settings.character is None:
+        return None
+    from ...bridge.result_files import show_take
+
+    return write_character_result(
+        prepared.settings.character,
+        motion,
+        take.name,
+        lambda scene, shown: show_take(scene, take, shown),
+        (prepared.staging_folder, real_path(prepared.output)),
+        console,
+        debug,
+    )
+
+
+def _recorded_files(output: Path) -> Mapping[str, str]:
+    record = find_record(output)
+    return {} if record is None else record.files
 
 
 def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:

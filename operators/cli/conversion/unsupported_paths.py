@@ -19,6 +19,15 @@ def refuse_unsupported_paths(description: Description, output: Path) -> None:
         InputError: A path is unsupported; the sentence says how long it may be.
     """
     _check(description.clip, 0)
+    refuse_unsupported_output(output)
+
+
+def refuse_unsupported_output(output: Path) -> None:
+    """Refuse an output folder in which Blender could not write.
+
+    Raises:
+        InputError: Its path is too long for Blender or not valid UTF-8.
+    """
     _check(output, FILE_NAME_BYTES)
 
 

@@ -14,6 +14,7 @@ from ....core.shoot.shoot import Shoot, ShootTake
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.text import pluralize
 from ..console import arguments_console
+from ..conversion.character_checks import CharacterChecks
 from ..library_search_path import requested_libraries
 from ..line_wrapping import terminal_columns
 from ..usage import UsageError
@@ -37,17 +38,20 @@ def check_command(arguments: argparse.Namespace) -> None:
     defaults = ConversionSettings(library=arguments.library, method=arguments.method)
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
-        checks = run(_check_takes(shoot, defaults, jobs, arguments.debug), console.progress)
+        characters = CharacterChecks(shoot, arguments.debug)
+        checks = run(_check_takes(shoot, defaults, characters, jobs, arguments.debug), console.progress)
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
 
 
-def _check_takes(shoot: Shoot, defaults: ConversionSettings, jobs: int, debug: bool) -> Job[list[TakeCheck]]:
+def _check_takes(
+    shoot: Shoot, defaults: ConversionSettings, characters: CharacterChecks, jobs: int, debug: bool
+) -> Job[list[TakeCheck]]:
     """Check all takes, several at a time in threads: decoders release the interpreter lock."""
     find_libraries = cache(requested_libraries)
-    tasks = [partial(_check_one, take, find_libraries, defaults, debug) for take in shoot.takes]
+    tasks = [partial(_check_one, take, find_libraries, characters, defaults, debug) for take in shoot.takes]
     checks: dict[int, TakeCheck] = {}
     yield Progress(STAGE, 0.0)
     for index, check in _in_threads(tasks, jobs):
@@ -57,11 +61,15 @@ def _check_takes(shoot: Shoot, defaults: ConversionSettings, jobs: int, debug: b
 
 
 def _check_one(
-    take: ShootTake, find_libraries: Callable[[str], object], defaults: ConversionSettings, debug: bool
+    take: ShootTake,
+    find_libraries: Callable[[str], object],
+    characters: CharacterChecks,
+    defaults: ConversionSettings,
+    debug: bool,
 ) -> TakeCheck:
     """Check one take; an unexpected error becomes a problem of this take and does not stop the others."""
     try:
-        return check_take(take, find_libraries, defaults)
+        return check_take(take, find_libraries, defaults, characters.check)
     except Exception as error:
         if debug:
             raise

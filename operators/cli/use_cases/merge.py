@@ -11,17 +11,22 @@ from ....core.files.digest import content_digest
 from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
 from ....core.progress import Progress
+from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
+from ....core.retarget.retarget_record import read_retarget_record
 from ....core.shoot.outcomes.failures import Failure, read_failures
 from ....core.shoot.outcomes.results import Result, Results, find_results
 from ....core.take.motion import Motion
 from ....core.take.motion_file import read_motion
+from ....core.text import pluralize
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console
+from ..conversion.character_result import CHARACTER_BLEND
 from ..conversion.convert_take import MOTION
 from ..line_wrapping import terminal_columns, wrapped
 from ..require_blender import require_blender
 
 if TYPE_CHECKING:
+    from ...bridge.assets.character_actions import CharacterAsset
     from ...bridge.assets.motions import MotionAsset
 
 SUFFIX = ".blend"
@@ -56,8 +61,8 @@ def merge_command(arguments: argparse.Namespace) -> None:
             write_motion_library(arguments.output, gathering.assets())
         files = [str(arguments.output), str(arguments.output.parent / NAME)]
         problems = gathering.problems
-        result = {"motions": gathering.count, "wrong": problems, "files": files}
-        console.finish(result, _text(gathering.count, files, problems))
+        counts = {"motions": gathering.count, "character_actions": gathering.character_count}
+        console.finish({**counts, "wrong": problems, "files": files}, _text(counts, files, problems))
     if problems:
         named = listed(sorted(problems), MOST_NAMED)
         raise ConversionError(f"{arguments.output} lacks takes or holds earlier results of them: {named}")
@@ -72,9 +77,11 @@ class MotionGathering:
         self.problems |= {failure.take: failure.error for failure in failures}
         self.count = 0
         """Number of motions in the library."""
+        self.character_count = 0
+        """Number of characters' Actions in the library."""
         self._found, self._shoot, self._console = found, shoot, console
 
-    def assets(self) -> "Iterator[MotionAsset]":
+    def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
         """Yield the asset of every sound motion, one at a time: together they may not fit into memory.
 
         Raises:
@@ -95,8 +102,35 @@ class MotionGathering:
             self.count += 1
             catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
             yield MotionAsset(name, catalog, description(result), tags(result), motion)
+            yield from self._character(result, catalog, motion, names)
         if not names:
             raise ConversionError(f"none of the results can be used: {_listed(self.problems)}")
+
+    def _character(
+        self, result: Result, catalog: str, motion: Motion, names: set[str]
+    ) -> "Iterator[CharacterAsset]":
+        """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
+        from ...bridge.assets.character_actions import CharacterAsset, load_character_action
+
+        made = result.record.files
+        if CHARACTER_BLEND not in made:
+            return
+        try:
+            if content_digest(result.folder / RETARGET) != made.get(RETARGET):
+                raise InputError(f"{result.folder / RETARGET}: is not the file that the conversion wrote")
+            record = read_retarget_record(result.folder)
+            blend = result.folder / CHARACTER_BLEND
+            action = load_character_action(blend, record.action, made[CHARACTER_BLEND])
+        except InputError as error:
+            self.problems[result.name] = str(error)
+            return
+        name = asset_name(f"{result.name} {record.character_object}", names)
+        names.add(name)
+        self.character_count += 1
+        words = f"For the character '{record.character_object}' of {record.character_file}. "
+        about = shortened(words + description(result))
+        marks = (*tags(result), *_short_tags(record.character_object, record.preset))
+        yield CharacterAsset(name, catalog, about, marks, motion, action)
 
 
 def asset_name(take: str, taken: Collection[str]) -> str:
@@ -131,16 +165,22 @@ def description(result: Result) -> str:
     if record.confidence is not None:
         weakest = "" if record.weakest is None else f", {record.weakest:.0%} where it is weakest"
         sentences.append(f"Confidence {record.confidence:.0%}{weakest}")
-    text = " ".join(f"{sentence.rstrip('.')}." for sentence in (*sentences, *record.notes))
+    return shortened(" ".join(f"{sentence.rstrip('.')}." for sentence in (*sentences, *record.notes)))
+
+
+def shortened(text: str) -> str:
+    """A description that an asset browser has room for."""
     return text if len(text) <= LONGEST_DESCRIPTION else f"{text[: LONGEST_DESCRIPTION - 3]}..."
 
 
 def tags(result: Result) -> tuple[str, ...]:
     """The tags of a motion in an asset browser."""
-    library = () if result.record.library is None else (result.record.library,)
+    return _short_tags("keymark", result.record.method, result.record.library)
+
+
+def _short_tags(*words: str | None) -> tuple[str, ...]:
     return tuple(
-        tag.encode()[:LONGEST_TAG_BYTES].decode(errors="ignore")
-        for tag in ("keymark", result.record.method, *library)
+        word.encode()[:LONGEST_TAG_BYTES].decode(errors="ignore") for word in words if word is not None
     )
 
 
@@ -169,8 +209,11 @@ def _check_output(output: Path, found: Results) -> None:
             )
 
 
-def _text(count: int, files: Sequence[str], problems: dict[str, str]) -> str:
-    lines = ["1 motion:" if count == 1 else f"{count} motions:", *(f"  {file}" for file in files)]
+def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]) -> str:
+    heading = pluralize(counts["motions"], "motion")
+    if counts["character_actions"]:
+        heading += f" and {pluralize(counts['character_actions'], 'Action')} of characters"
+    lines = [f"{heading}:", *(f"  {file}" for file in files)]
     if problems:
         lines.append("Takes that are not in it, or as they were before:")
     for name in sorted(problems):

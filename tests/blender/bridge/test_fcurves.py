@@ -13,7 +13,7 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from mathutils import Euler, Matrix, Vector
 
-CHANNELS = 7 + 4 * 6 + 3 * 6
+CHANNELS = 7 + 4 * 6 + 3 * 6 + 4 * 4
 """Pelvis: 3 + 4. Chest, head, 2 upper arms, 2 thighs are balls; 2 girdles, forearms, shins have angles."""
 
 
@@ -155,7 +155,7 @@ def test_curves_of_other_things_stay(actor: bpy.types.Object, wave_motion: Motio
 
 
 def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """Bones without degrees of freedom take their curves from the keyframe Action, and only those."""
+    """Hands and feet posed in the keyframe Action take their curves from there, and nothing else does."""
     hand = actor.pose.bones["hand.R"]
     hand.keyframe_insert("rotation_quaternion", frame=1)
     hand.rotation_quaternion = (0.6, 0.8, 0.0, 0.0)
@@ -168,7 +168,13 @@ def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_mot
     assert tuple(hand.rotation_quaternion) == pytest.approx((0.6, 0.8, 0.0, 0.0), abs=1e-6)
     assert not any("scale" in path for path, _ in curves(actor, action))
     write_motion(actor, wave_motion, action, posed)
-    assert len(curves(actor, action)) == CHANNELS + 4
+    found = curves(actor, action)
+    assert len(found) == CHANNELS
+    keys = found['pose.bones["hand.R"].rotation_quaternion', 1].keyframe_points
+    assert [key.co.x for key in keys] == [1.0, 13.0]
+    assert len(found['pose.bones["hand.L"].rotation_quaternion', 1].keyframe_points) == len(
+        wave_motion.time_s
+    )
 
 
 def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
@@ -176,6 +182,7 @@ def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
 ) -> None:
     """Of a hand's keys only the copies of the keyframes' are replaced."""
     hand = actor.pose.bones["hand.R"]
+    hand.rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     for frame in (1, 13):
         hand.keyframe_insert("rotation_quaternion", frame=frame)
     posed = actor.animation_data.action
@@ -186,7 +193,7 @@ def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
     write_motion(actor, wave_motion, action, posed)
     curve = curves(actor, action)['pose.bones["hand.R"].rotation_quaternion', 1]
     assert [key.co.x for key in curve.keyframe_points] == [1.0, 5.0, 13.0]
-    assert [key.co.y for key in curve.keyframe_points] == pytest.approx([0.0, 0.8, 0.8])
+    assert [key.co.y for key in curve.keyframe_points] == pytest.approx([0.6, 0.8, 0.8])
 
 
 def test_fractional_frames_of_an_uneven_clip_are_kept(actor: bpy.types.Object, wave_motion: Motion) -> None:

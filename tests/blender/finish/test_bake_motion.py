@@ -13,6 +13,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.extremity_curves import straighten_extremities
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.final_motion import motion_frames, read_values
 from keymark.operators.bridge.keyframes import store_pose
@@ -56,6 +57,7 @@ def take(
     result.keyframe_action = bpy.data.actions.new("Keyframes")
     for frame in POSED:
         scene.frame_set(frame)
+        straighten_extremities(actor, HUMAN, result.motion_action, None, frame)
         store_pose(actor, result.keyframe_action, HUMAN, frame)
     scene.frame_set(7)
     return result
@@ -190,14 +192,16 @@ def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup)
 
 def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) -> None:
     """Hands that the animator keyed keep their keys and handles."""
-    hand = take.armature.pose.bones["hand.L"]
-    hand.keyframe_insert("rotation_quaternion", frame=3)
-    assert take.armature.animation_data.action != take.finish.action
+    channelbag = existing_channelbag(take.motion_action, take.armature)
+    for curve in [curve for curve in channelbag.fcurves if '"hand.L"' in curve.data_path]:
+        channelbag.fcurves.remove(curve)
     assign_action(take.armature, take.motion_action)
-    hand.keyframe_insert("rotation_quaternion", frame=9)
+    hand = take.armature.pose.bones["hand.L"]
+    for frame in (3, 9):
+        hand.keyframe_insert("rotation_quaternion", frame=frame)
     bpy.ops.keymark.bake_motion()
     points = curves(take, take.finish.action)['pose.bones["hand.L"].rotation_quaternion', 0].keyframe_points
-    assert [point.co.x for point in points][-1] == 9.0
+    assert [point.co.x for point in points] == [3.0, 9.0]
 
 
 def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> None:

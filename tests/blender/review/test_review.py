@@ -11,6 +11,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import existing_channelbag
+from keymark.operators.bridge.extremity_curves import posed_extremities
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
@@ -162,6 +163,7 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
     assert take.armature.animation_data.action == take.keyframe_action
     assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == tuple(sorted({*before, 4.0}))
     assert shown_points(take.armature) == pytest.approx(wave_motion.points[3], abs=1e-4)
+    assert posed_extremities(take.armature, HUMAN, take.keyframe_action) == frozenset()
     assert [is_posed(take, weak.frame) for weak in take.review.weak_frames] == [True, True]
     assert len(curve(take, "Confidence").keyframe_points) == 13
 

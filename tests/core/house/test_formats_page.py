@@ -11,7 +11,7 @@ from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
-from keymark.core.retarget import character_map_file
+from keymark.core.retarget import character_map_file, retarget_record
 from keymark.core.shoot import shoot
 from keymark.core.shoot.discovery import take_list
 from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
@@ -21,8 +21,9 @@ LIMITS = {
     f"{json_file.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
     f"{take_list.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
     f"{motion_file.LARGEST_BYTES // MIB} MiB": "`motion.json`",
-    f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
-    f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`",
+    f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
+    f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
+    f"{retarget_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",

@@ -18,7 +18,10 @@ from keymark.core.files.json_file import DEEPEST, MOST_LISTS, parse_json, read_j
 from keymark.operators.cli.main import main
 
 FRAMES = 6
-NAMES = ("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "truth")
+NAMES = (
+    *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
+    "truth",
+)
 FAST = ("--method", "interpolation", "--no-report", "--quiet")
 
 

@@ -17,7 +17,10 @@ from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
 from referencing import Registry, Resource
 
-NAMES = ("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "truth")
+NAMES = (
+    *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
+    "truth",
+)
 
 
 @pytest.fixture(scope="module")
@@ -209,6 +212,12 @@ MISTAKES: list[tuple[str, Change]] = [
     ("conversion", at("files", "../up", to="ab" * 32)),
     ("conversion", at("files", "a", to="ab")),
     ("conversion", at("confidence", to=1.5)),
+    ("retarget", at("quality", "hands_mm", to="1")),
+    ("retarget", at("map", "origin", to="guessed")),
+    ("retarget", at("limbs", "arm.L", to="none")),
+    ("retarget", at("roles", "hips", "bones", to=[])),
+    ("retarget", at("files", "../up", to="ab" * 32)),
+    ("retarget", at("character", "sha256", to="x")),
     ("truth", at("points", "head", 0, to=[0, None, 1])),
 ]
 

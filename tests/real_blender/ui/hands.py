@@ -20,6 +20,8 @@ class Hands:
 
     def __init__(self) -> None:
         self.x = self.y = 0
+        self.clicks = 0
+        """Presses of the left mouse button so far."""
         self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
         """Where the mouse last saw what, by area, kind of text and text."""
 
@@ -52,6 +54,7 @@ class Hands:
 
     def press(self, key: str, text: str | None = None, **modifiers: bool) -> Steps[None]:
         """Press and release a key or a mouse button where the mouse is."""
+        self.clicks += key == "LEFTMOUSE"
         for value in ("PRESS", "RELEASE"):
             typed = {"unicode": text} if text is not None and value == "PRESS" else {}
             self.window.event_simulate(type=key, value=value, x=self.x, y=self.y, **typed, **modifiers)
@@ -157,14 +160,14 @@ class Hands:
         for shares in (ACROSS[:1], ACROSS[1:]):
             found = yield from self._search(kind, copy, wanted, shares)
             if found is None:
-                yield from self._scroll(kind, "WHEELUPMOUSE", 40)
+                yield from self.scroll(kind, "WHEELUPMOUSE", 40)
             for _ in range(PAGES):
                 if found is not None:
                     break
                 found = yield from self._search(kind, copy, wanted, shares)
                 seen = self._showing(kind)
                 if found is None:
-                    yield from self._scroll(kind, "WHEELDOWNMOUSE", 8)
+                    yield from self.scroll(kind, "WHEELDOWNMOUSE", 8)
                     if self._showing(kind) == seen:
                         break
             if found is not None:
@@ -202,7 +205,8 @@ class Hands:
                 operator()
         return str(manager.clipboard)
 
-    def _scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
+    def scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
+        """Turn the wheel over a sidebar."""
         region = self.region(kind, "UI")
         yield from self.move(region.x + 0.4 * region.width, region.y + 0.5 * region.height)
         for _ in range(notches):

@@ -15,6 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
+import steps_character  # noqa: E402
 import steps_finish  # noqa: E402
 import steps_prepare  # noqa: E402
 import steps_reconstruct  # noqa: E402
@@ -29,6 +30,7 @@ STEPS = (
     steps_reconstruct.reconstruct,
     steps_finish.review,
     steps_finish.finish,
+    steps_character.character,
 )
 
 

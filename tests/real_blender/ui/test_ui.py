@@ -15,7 +15,10 @@ pytestmark = pytest.mark.ui
 UNPOSED_MM = 200.0
 """Error with hips aligned beyond which a motion is no likeness of the performer's."""
 GEOMETRY = ("0", "0", "1600", "1000")
-STEPS = ("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish")
+STEPS = (
+    *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
+    *("character", "retargeted"),
+)
 """Each leaves at least one picture of this name."""
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""

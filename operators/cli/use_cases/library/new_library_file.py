@@ -1,23 +1,11 @@
 """The library file that `learn`, `merge`, `mirror` and `read` write, and what they say of it."""
 
 import argparse
-from pathlib import Path
 
 from .....core.library.library import Library
 from .....core.library.library_file import write_library
 from ...console import Console
-from ...usage import UsageError
 from .library_summary import library_lines, library_summary
-
-
-def refuse_existing(output: Path, replace: bool) -> None:
-    """Refuse to replace a file unless `--replace` is given.
-
-    Raises:
-        UsageError: Something is there.
-    """
-    if output.exists() and not replace:
-        raise UsageError(f"{output} is there already; name another file, or add --replace to replace it")
 
 
 def write_new_library(console: Console, arguments: argparse.Namespace, library: Library) -> None:

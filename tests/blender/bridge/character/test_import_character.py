@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 import pytest
 from _armatures import build_character
+from _character_glb import write_glb
 from _characters import plain_character
 from keymark.core.errors import InputError
 from keymark.core.take.character_settings import CharacterFile
@@ -156,3 +157,13 @@ def test_what_is_no_character_is_one_sentence(imported: Import, text: str, said:
         imported(text)
     sentence = str(caught.value)
     assert len(sentence.splitlines()) == 1 and text.partition(":")[0] in sentence and len(sentence) < 500
+
+
+def test_a_file_of_another_program_is_read(imported: Import, folder: Path) -> None:
+    """Joints without length, and no bone's tail where its child begins."""
+    write_glb(plain_character(scale=0.01), folder / "plain.glb")
+    character = imported("plain.glb")
+    armature = character.armature
+    for bone in plain_character().bones:
+        head = armature.matrix_world @ armature.data.bones[bone.name].head_local
+        assert tuple(head) == pytest.approx(tuple(bone.head), abs=1e-5)

@@ -1,0 +1,205 @@
+"""Figures of a retargeted motion, from the joints' paths as they are shown.
+
+All paths are in the world and in meters, by role: the joint that a role's first bone begins at, which of the
+performer is the beginning of the segment of that name. So what Blender shows of a character can be measured,
+whatever keys and controls made it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, BoolArray
+from ..body.skeleton import SIDES
+from .character_motion import CharacterMotion, FootRest
+
+
+def _both(*bones: tuple[str, str]) -> tuple[tuple[str, str], ...]:
+    return tuple((f"{start}.{side}", f"{end}.{side}") for side in SIDES for start, end in bones)
+
+
+ARM_BONES = _both(("upper_arm", "forearm"), ("forearm", "hand"))
+"""Joints at the ends of the long bones of arms."""
+LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))
+"""Joints at the ends of the long bones of legs."""
+FULL_SHARE = 0.95
+"""Share from which a hand's goal counts in full."""
+MILLIMETERS = 1000.0
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Figures of a motion on a character; None where there is nothing to measure."""
+
+    arms_deg: float | None = None
+    """Mean angle between the arms' bones and the performer's."""
+    arms_worst_deg: float | None = None
+    legs_deg: float | None = None
+    """Mean angle between the legs' bones and the performer's."""
+    legs_worst_deg: float | None = None
+    skate_mm: float | None = None
+    """Mean way of a resting foot from frame to frame."""
+    skate_worst_mm: float | None = None
+    penetration_mm: float | None = None
+    """Greatest depth of a sole below the ground."""
+    hands_mm: float | None = None
+    """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
+    hands_worst_mm: float | None = None
+    hands_floor_mm: float | None = None
+    """Greatest error of a wrist's height over the floor where the performer's hand is at the floor."""
+    ik_fk_mm: float | None = None
+    """Greatest distance of ankles and wrists between the limbs in FK and in IK."""
+    keys: int | None = None
+    """Keys of the motion."""
+    dense_keys: int | None = None
+    """Keys that one on every frame would be."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The figures as JSON has them, rounded; those that are not there are left out."""
+        return {
+            name: round(value, 3) if isinstance(value, float) else value
+            for name, value in asdict(self).items()
+            if value is not None
+        }
+
+
+def direction_errors_deg(
+    source: Mapping[str, Array], shown: Mapping[str, Array], bones: Sequence[tuple[str, str]]
+) -> Array:
+    """(F, B) angle between the directions of the bones whose two joints both bodies have.
+
+    Args:
+        source: (F, 3) joints of the performer by role, turned as the character faces.
+        shown: (F, 3) joints of the character by role.
+        bones: Roles whose joints are at a bone's two ends.
+    """
+    there = [bone for bone in bones if all(role in paths for role in bone for paths in (source, shown))]
+    if not there:
+        return np.empty((0, 0))
+    angles = []
+    for start, end in there:
+        first, second = source[end] - source[start], shown[end] - shown[start]
+        # The angle from both sine and cosine: the arc cosine alone is blind below a hundredth of a degree.
+        sine = np.linalg.norm(np.cross(first, second), axis=-1)
+        angles.append(np.degrees(np.arctan2(sine, np.sum(first * second, axis=-1))))
+    return np.stack(angles, axis=1)
+
+
+def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
+    """(N,) way of resting feet from each frame to the next, of all rests.
+
+    Args:
+        ankles: (F, 3) by limb, `leg.L` and `leg.R`.
+        rests: When which foot rests.
+    """
+    steps = [
+        np.linalg.norm(np.diff(ankles[rest.limb][rest.first : rest.last + 1], axis=0), axis=-1)
+        for rest in rests
+        if rest.limb in ankles
+    ]
+    return MILLIMETERS * np.concatenate(steps) if steps else np.empty(0)
+
+
+def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> float | None:
+    """Greatest depth of soles below the ground; 0 where none is.
+
+    Args:
+        heights_m: (F, N) height of the points of each sole, by role of foot and toe.
+        ground_m: (F,) height of the ground under each foot by limb, `leg.L` and `leg.R`.
+    """
+    depths = [
+        float((ground_m[limb][:, None] - heights).max())
+        for role, heights in heights_m.items()
+        if heights.size and (limb := f"leg.{role.rpartition('.')[2]}") in ground_m
+    ]
+    return MILLIMETERS * max(0.0, *depths) if depths else None
+
+
+def hand_distances_mm(
+    wrists: Mapping[str, Array], goals: Mapping[str, Array], counted: Mapping[str, BoolArray]
+) -> Array:
+    """(N,) distance of wrists from their goals where those count.
+
+    Args:
+        wrists: (F, 3) by side.
+        goals: (F, 3) by side.
+        counted: (F,) by side.
+    """
+    found = [
+        np.linalg.norm(wrists[side] - goals[side], axis=-1)[counted[side]] for side in goals if side in wrists
+    ]
+    return MILLIMETERS * np.concatenate(found) if found else np.empty(0)
+
+
+def farthest_mm(
+    first: Mapping[str, Array], second: Mapping[str, Array], roles: Sequence[str]
+) -> float | None:
+    """Greatest distance between two paths (F, 3) of the same joints, of the roles that both have."""
+    found = [
+        float(np.linalg.norm(first[role] - second[role], axis=-1).max())
+        for role in roles
+        if role in first and role in second
+    ]
+    return MILLIMETERS * max(found) if found else None
+
+
+def measured(
+    source: Mapping[str, Array],
+    motion: CharacterMotion,
+    shown: Mapping[str, Array],
+    soles: Mapping[str, Array],
+) -> Quality:
+    """The figures of what is shown of a solved motion, without those of controls and keys.
+
+    Args:
+        source: (F, 3) joints of the performer by role, in the world.
+        motion: What was solved.
+        shown: (F, 3) joints of the character by role, in the world, as they are shown.
+        soles: (F, N, 3) points of the soles by role of foot and toe, in the world, as they are shown.
+    """
+    space = motion.to_world
+    up, turn = space.rotation @ motion.stance.T, motion.facing
+    turned = {role: path @ turn.T for role, path in source.items()}
+    arms = direction_errors_deg(turned, shown, ARM_BONES)
+    legs = direction_errors_deg(turned, shown, LEG_BONES)
+
+    def canonical(points: Array) -> Array:
+        return np.asarray((points - space.location) @ up)
+
+    carried = {role: canonical(path) + motion.way_m for role, path in shown.items()}
+    skate = skate_mm(
+        {f"leg.{s}": carried[f"foot.{s}"] for s in SIDES if f"foot.{s}" in carried}, motion.rests
+    )
+    depth = penetration_mm(
+        {role: canonical(points)[..., 2] for role, points in soles.items()}, motion.ground_m
+    )
+    wrists = {side: carried[f"hand.{side}"] for side in SIDES if f"hand.{side}" in carried}
+    places = {side: goal.place_m for side, goal in motion.hands.items()}
+    full = {side: (goal.share >= FULL_SHARE) & goal.in_reach for side, goal in motion.hands.items()}
+    hands = hand_distances_mm(wrists, places, full)
+    heights = {side: path * [0.0, 0.0, 1.0] for side, path in wrists.items()}
+    floors = {side: place * [0.0, 0.0, 1.0] for side, place in places.items()}
+    at_floor = {side: full[side] & (goal.floor_share >= FULL_SHARE) for side, goal in motion.hands.items()}
+    floor = hand_distances_mm(heights, floors, at_floor)
+    return Quality(
+        arms_deg=_mean(arms),
+        arms_worst_deg=_most(arms),
+        legs_deg=_mean(legs),
+        legs_worst_deg=_most(legs),
+        skate_mm=_mean(skate),
+        skate_worst_mm=_most(skate),
+        penetration_mm=depth,
+        hands_mm=_mean(hands),
+        hands_worst_mm=_most(hands),
+        hands_floor_mm=_most(floor),
+    )
+
+
+def _mean(values: Array) -> float | None:
+    return float(values.mean()) if values.size else None
+
+
+def _most(values: Array) -> float | None:
+    return float(values.max()) if values.size else None

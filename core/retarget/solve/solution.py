@@ -1,0 +1,186 @@
+"""A character's motion on its stage while it is solved: directions, feet, hips, hands, one by one."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ...body.heading import UP
+from ...body.segment_motion import SegmentMotion
+from ...body.skeleton import SIDES
+from ..character_motion import FootRest, HandGoal
+from ..roles import LIMBS
+from .feet import FootPath, foot_turns, plan_foot, toe_bends
+from .foot_shape import FootShape
+from .ground import Ground
+from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
+from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
+from .rest_body import RestBody
+from .stage import Stage
+from .turns import bone_turns, joint_places
+from .two_bone import LimbPose, reach_for
+
+HINGES = {
+    "arm.L": (0.0, 0.0, -1.0),
+    "arm.R": (0.0, 0.0, 1.0),
+    "leg.L": (1.0, 0.0, 0.0),
+    "leg.R": (1.0, 0.0, 0.0),
+}
+"""Axis of elbow or knee by limb, of the performer at rest."""
+
+
+@dataclass(eq=False)
+class Solution:
+    """A motion of the character on its stage while it is solved."""
+
+    body: RestBody
+    alignment: Mapping[str, Array]
+    source: SegmentMotion
+    stage: Stage
+    ground: Ground
+    hips: Array
+    """(F, 3) the midpoint of the hip joints, canonical [m]."""
+    turns: list[Array]
+    """(F, 3, 3) a bone: its turn from rest, canonical."""
+
+    @classmethod
+    def by_directions(
+        cls,
+        body: RestBody,
+        alignment: Mapping[str, Array],
+        source: SegmentMotion,
+        stage: Stage,
+        ground: Ground,
+    ) -> "Solution":
+        """The motion by the performer's directions alone."""
+        turn = stage.turned(source.turn)
+        for side in SIDES:
+            turn[f"foot.{side}"] = foot_turns(source, stage, ground, side)
+        middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
+        if not body.is_moved("hips"):
+            middle = np.broadcast_to(body.hip_joints, middle.shape).copy()
+        return cls(body, alignment, source, stage, ground, middle, bone_turns(body, turn, alignment))
+
+    def places(self) -> list[Array]:
+        """(F, 3) the joint of each bone, canonical [m]."""
+        return [self.hips + place for place in joint_places(self.body, self.turns)]
+
+    def limb(self, limb: str) -> LimbPose | None:
+        """A limb as it is; None where its end is not there or one of its bones is left alone."""
+        roles = LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+        if not all(self.body.is_moved(role) for role in roles):
+            return None
+        places = self.places()
+        upper, lower, end = (self.body.first[role] for role in roles)
+        return LimbPose(
+            self.turns[upper] @ self.alignment[roles[0]].T,
+            self.turns[lower] @ self.alignment[roles[1]].T,
+            places[upper],
+            places[lower],
+            places[end],
+            self.turns[upper] @ (self.alignment[roles[0]].T @ np.array(HINGES[limb])),
+        )
+
+    def arms(self) -> dict[str, LimbPose]:
+        """The arms that can reach, by side."""
+        found = {side: self.limb(f"arm.{side}") for side in SIDES}
+        return {side: arm for side, arm in found.items() if arm is not None}
+
+    def plan_feet(self, shapes: Mapping[str, FootShape]) -> dict[str, FootPath]:
+        """Paths of the feet that can be planted, by side."""
+        if not self.body.is_moved("hips"):
+            return {}
+        return {
+            side: plan_foot(self.source, self.stage, self.ground, shapes[side], side, leg)
+            for side in SIDES
+            if (leg := self.limb(f"leg.{side}")) is not None
+        }
+
+    def move_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
+        """Move the hips with feet that stand, and lower them for these and for hands on the floor."""
+        legs = {side: leg for side in feet if (leg := self.limb(f"leg.{side}")) is not None}
+        if not legs:
+            return
+        time_s, leg_m = self.source.time_s, self.body.leg_m
+        ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
+        raised = raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
+        needed = []
+        for side, leg in legs.items():
+            moved = feet[side].ankle - raised[:, None] * UP
+            needed.append(needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
+        for side, arm in arms.items():
+            goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
+            moved = goal - raised[:, None] * UP
+            needed.append(share * needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
+        self.hips = self.hips + (raised - lowered_m(needed, time_s, leg_m))[:, None] * UP
+
+    def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
+        """Bring legs to where the feet belong."""
+        for side, foot in feet.items():
+            leg = self.limb(f"leg.{side}")
+            if leg is None:
+                continue
+            solved = reach_for(leg, leg.start, foot.ankle, LEG_SOFT)
+            self._turn(f"thigh.{side}", solved.upper_turn)
+            self._turn(f"shin.{side}", solved.lower_turn)
+            self._turn(f"foot.{side}", foot.turn)
+            toe = toe_bends(foot.turn, shapes[side], solved.end[:, 2] - foot.ground_m)
+            self._turn(f"toe.{side}", toe)
+
+    def reach_with_hands(self) -> dict[str, HandGoal]:
+        """Bring hands to where they belong, which is returned by side."""
+        arms = self.arms()
+        goals = hand_goals(
+            self.body, self.source, self.stage, self.ground, self.places(), self.turns, self.alignment, arms
+        )
+        for side, arm in arms.items():
+            solved = reach(arm, goals[side].place_m, goals[side].share)
+            self._turn(f"upper_arm.{side}", solved.upper_turn)
+            self._turn(f"forearm.{side}", solved.lower_turn)
+            self._keep_above_floor(side, solved.end)
+        return goals
+
+    def _keep_above_floor(self, side: str, wrist: Array) -> None:
+        role = f"hand.{side}"
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.height_m.min(axis=1))
+        if tip is not None:
+            aligned = self.alignment[role]
+            turn = self.turns[self.body.first[role]] @ aligned.T
+            along = aligned @ (tip - self.body.joint(role))
+            self._turn(role, above_floor(turn, wrist[:, 2] - floor_m, along))
+
+    def _turn(self, role: str, turn: Array) -> None:
+        if self.body.is_moved(role):
+            self.turns[self.body.first[role]] = np.asarray(turn @ self.alignment[role])
+
+    def poses(self, way: Array) -> dict[str, Array]:
+        """(F, 4, 4) by name of bone that is moved, in the armature's space, `way` (F, 3) taken off [m]."""
+        stance, character = self.body.stance, self.body.character
+        found = {}
+        for bone, turn, place in zip(self.body.bones, self.turns, self.places(), strict=True):
+            if not self.body.is_moved(bone.role):
+                continue
+            pose = np.broadcast_to(np.eye(4), (len(turn), 4, 4)).copy()
+            pose[:, :3, :3] = stance.T @ turn @ stance @ character.bone(bone.name).rest[:3, :3]
+            pose[:, :3, 3] = (place - way) @ stance / character.scale
+            found[bone.name] = pose
+        return found
+
+    def bends(self) -> dict[str, Array]:
+        """(F, 3) by limb: toward its elbow or knee, in the armature's axes."""
+        found = {}
+        for limb in LIMBS:
+            pose = self.limb(limb)
+            if pose is not None:
+                found[limb] = pose.bend @ self.body.stance
+        return found
+
+    def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
+        """Rests of the planted feet."""
+        levels = self.stage.heights(np.array(self.ground.levels_m))
+        return tuple(
+            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last, float(level))
+            for rest, level in zip(self.ground.rests, levels, strict=True)
+            if SIDES[rest.point] in feet
+        )

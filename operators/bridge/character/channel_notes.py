@@ -1,0 +1,99 @@
+"""What stands in the way of keys on a character's bones: drivers, constraints, locks, connected bones."""
+
+from collections.abc import Iterable, Sequence
+
+import bpy
+import numpy as np
+
+from ....core.arrays import Array
+from ....core.finish.hermite import Spline
+from ....core.retarget.control_channels import Control
+from ....core.retarget.control_motion import ControlMotion, KeyedControl
+from ..rotation_modes import bone_path, rotation_path
+from .dependencies import active_constraints, drivers
+
+MOST_NAMES = 3
+"""Bones that a sentence names; more are counted."""
+CARRYING = ("CHILD_OF", "ARMATURE")
+"""Constraints that carry a control as a parent does."""
+NOTICEABLE_M = 0.005
+
+
+def driven_channels(armature_object: bpy.types.Object) -> set[tuple[str, int]]:
+    """Data path and index of all channels that have a driver, which wins over keys."""
+    return {(driver.data_path, driver.array_index) for driver in drivers(armature_object)}
+
+
+def keyed_channels(keyed: KeyedControl) -> list[tuple[str, int]]:
+    """Data path and index of each channel of a control that is keyed."""
+    return [(path, index) for path, held in keyed_paths(keyed) for index in range(_width(held))]
+
+
+def keyed_paths(keyed: KeyedControl) -> list[tuple[str, Array | Spline]]:
+    """Data path of each property of a control that is keyed, and what it holds."""
+    name, rotation = keyed.control.name, rotation_path(keyed.control.mode)
+    both = ((bone_path(name, rotation), keyed.rotation), (bone_path(name, "location"), keyed.location))
+    return [(path, held) for path, held in both if held is not None]
+
+
+def _width(held: Array | Spline) -> int:
+    return int((held.values if isinstance(held, Spline) else held).shape[1])
+
+
+def channel_notes(
+    armature_object: bpy.types.Object, keyed: Sequence[KeyedControl], motion: ControlMotion
+) -> tuple[str, ...]:
+    """Sentences on what keeps the keyed controls from their poses."""
+    driven = driven_channels(armature_object)
+    bones = armature_object.pose.bones
+    notes = [
+        _sentence(
+            (one.control.name for one in keyed if driven & set(keyed_channels(one))),
+            "has a driver that wins over keys: mute it to let the motion through",
+            "have drivers that win over keys: mute them to let the motion through",
+        ),
+        _sentence(
+            (one.control.name for one in keyed if _is_constrained(bones[one.control.name], one.control)),
+            "has constraints that change its keyed pose: mute them where it goes astray",
+            "have constraints that change their keyed poses: mute them where they go astray",
+        ),
+        _sentence(
+            (one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
+            "is locked and keyed all the same: unlock it to change it by hand",
+            "are locked and keyed all the same: unlock them to change them by hand",
+        ),
+        _sentence(
+            _held_back(armature_object, motion),
+            "is connected to its parent or cannot be moved, and stays off its place: disconnect it",
+            "are connected to their parents or cannot be moved, and stay off their places: disconnect them",
+        ),
+    ]
+    return tuple(note for note in notes if note)
+
+
+def _sentence(names: Iterable[str], one: str, several: str) -> str:
+    found = list(names)
+    if not found:
+        return ""
+    listed = ", ".join(f"'{name}'" for name in found[:MOST_NAMES])
+    more = f" and {len(found) - MOST_NAMES} more" if len(found) > MOST_NAMES else ""
+    return f"Bone {listed} {one}" if len(found) == 1 else f"Bones {listed}{more} {several}"
+
+
+def _is_constrained(bone: bpy.types.PoseBone, control: Control) -> bool:
+    return any(constraint.type not in CARRYING for constraint in active_constraints(bone))
+
+
+def _is_locked(bone: bpy.types.PoseBone, keyed: KeyedControl) -> bool:
+    turned = keyed.rotation is not None and any(bone.lock_rotation)
+    return bool(turned or (keyed.location is not None and any(bone.lock_location)))
+
+
+def _held_back(armature_object: bpy.types.Object, motion: ControlMotion) -> list[str]:
+    """Controls that cannot be moved and are off their places."""
+    found = []
+    for control, channels in zip(motion.controls, motion.channels, strict=True):
+        off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
+        if not control.space.movable and motion.scale * off > NOTICEABLE_M:
+            found.append(control.name)
+    return found

@@ -1,0 +1,72 @@
+"""A character map made ready for its character: soles of the mesh, controls found, properties checked."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ....core.retarget.character import Character
+from ....core.retarget.character_map import CharacterMap, IkControls, Switch
+from .find_controls import find_controls
+from .mesh_soles import mesh_soles
+from .probe_controls import character_size
+
+
+@dataclass(frozen=True, eq=False)
+class CompletedMap:
+    """A completed map."""
+
+    character_map: CharacterMap
+    notes: tuple[str, ...]
+
+
+def complete_map(
+    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+) -> CompletedMap:
+    """Add to a map what only Blender knows; what it says stays.
+
+    Args:
+        armature_object: The character.
+        character: The same at rest.
+        character_map: Its map.
+    """
+    checked, missing = _with_properties(armature_object, character_map)
+    found = find_controls(armature_object, checked, character_size(armature_object, checked))
+    completed = found.character_map
+    if not completed.soles:
+        completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
+    return CompletedMap(completed, (*missing, *found.notes))
+
+
+def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:
+    """Controls of a limb without a switch that is not there."""
+    switch = controls.switch
+    return (
+        controls if switch is None or there(switch.bone, switch.property) else replace(controls, switch=None)
+    )
+
+
+def _lost_switches(before: Mapping[str, IkControls], after: Mapping[str, IkControls]) -> list[Switch]:
+    switches = ((before[limb].switch, after[limb].switch) for limb in before)
+    return [first for first, second in switches if first is not None and second is None]
+
+
+def _with_properties(
+    armature_object: bpy.types.Object, character_map: CharacterMap
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """The map without settings and switches that the armature lacks, and sentences on them."""
+    bones = armature_object.pose.bones
+
+    def there(bone: str, name: str) -> bool:
+        return isinstance(bones[bone].get(name), int | float)
+
+    settings = tuple(one for one in character_map.settings if there(one.bone, one.property))
+    ik = {limb: _switched(controls, there) for limb, controls in character_map.ik.items()}
+    lost = [(one.bone, one.property) for one in character_map.settings if one not in settings]
+    lost += [(one.bone, one.property) for one in _lost_switches(character_map.ik, ik)]
+    notes = tuple(
+        f"Bone '{bone}' has no property '{name}' that could be keyed; the rig may be of another version than "
+        f"the map '{character_map.title}'"
+        for bone, name in lost
+    )
+    return replace(character_map, settings=settings, ik=ik), notes

@@ -1,0 +1,189 @@
+"""Retarget a motion to a character: solved, brought onto its controls, reduced to few keys, measured."""
+
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ....core.arrays import Array
+from ....core.body.segment_motion import SegmentMotion
+from ....core.errors import InputError
+from ....core.progress import Job, Progress, stretch, within
+from ....core.retarget.character import Character
+from ....core.retarget.character_map import CharacterMap
+from ....core.retarget.character_motion import CharacterMotion, Similarity
+from ....core.retarget.control_channels import control_channels
+from ....core.retarget.control_motion import ControlMotion, KeyedControl, dense_controls
+from ....core.retarget.control_plan import ControlKind, limb_bones, planned_controls
+from ....core.retarget.control_reduction import reduce_controls
+from ....core.retarget.control_targets import control_targets
+from ....core.retarget.held_points import held_points
+from ....core.retarget.limb_paths import limb_paths
+from ....core.retarget.map_check import check_map
+from ....core.retarget.options import Placement, RetargetOptions
+from ....core.retarget.point_tolerances import ToleranceRules
+from ....core.retarget.quality import Quality
+from ....core.retarget.solve.solve_motion import solve_motion
+from ..object_space import object_space
+from ..rotation_modes import rotation_values
+from .channel_notes import channel_notes
+from .complete_map import complete_map
+from .measure import measure_keys
+from .object_placement import placement_keys, require_placeable
+from .probe_controls import ProbedControls, probe_controls
+from .read_character import read_character
+from .shown_properties import fk_properties, shown_properties
+from .write_retargeted import RetargetedKeys, write_retargeted
+
+SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
+"""Shares of the job at which the motion is solved, the controls are known, and the keys are found."""
+FEWEST_FRAMES = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Retargeted:
+    """A character's motion, not yet written."""
+
+    session_uid: int
+    """Blender's number of the armature object in this session."""
+    character: Character
+    character_map: CharacterMap
+    """The map, completed."""
+    options: RetargetOptions
+    motion: CharacterMotion
+    keys: RetargetedKeys
+    quality: Quality
+    """What was measured of the character as Blender shows it."""
+    notes: tuple[str, ...]
+    """What a person should know, in sentences without a full stop."""
+
+    @property
+    def size(self) -> float:
+        """The character's size: its legs' length over the performer's."""
+        return self.motion.size
+
+    def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
+        """Write the motion into an Action, and let it animate the character.
+
+        Args:
+            scene: The scene, which shows the character's new pose.
+            action: The name of a new Action; or an Action, in which what an earlier retargeting made for the
+                character is replaced.
+
+        Raises:
+            InputError: The character has been deleted meanwhile.
+        """
+        return write_retargeted(self.keys, self.session_uid, self.character.name, scene, action)
+
+
+def retarget(
+    armature_object: bpy.types.Object,
+    source: SegmentMotion,
+    scene_frames: Array,
+    character_map: CharacterMap,
+    options: RetargetOptions,
+) -> Job[Retargeted]:
+    """Retarget a motion to a character.
+
+    Args:
+        armature_object: The character's armature.
+        source: The performer's motion, F frames.
+        scene_frames: (F,) the scene frames that show it, rising.
+        character_map: Which bones and controls play which role.
+        options: What a person chose.
+
+    Yields:
+        Progress; nothing in Blender stays changed.
+
+    Raises:
+        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one frame.
+    """
+    yield Progress("Reading the character", 0.0)
+    if len(scene_frames) < FEWEST_FRAMES:
+        raise InputError("the motion has a single frame; choose one of two frames or more")
+    character = read_character(armature_object)
+    check_map(character_map, character)
+    here = object_space(armature_object)
+    placed = options.placement is Placement.PERFORMER
+    if placed:
+        require_placeable(armature_object)
+    completed = complete_map(armature_object, character, character_map)
+    character_map = completed.character_map
+    solving = solve_motion(
+        character, character_map, source, options, Similarity(here.rotation, here.location, here.scale)
+    )
+    motion = yield from stretch(solving, 0.0, SOLVED)
+    yield Progress("Finding how the controls act", SOLVED)
+    probed = probe_controls(
+        armature_object,
+        character_map,
+        tuple(
+            plan
+            for plan in planned_controls(character_map, options)
+            if plan.kind is not ControlKind.ROOT or motion.root is not None
+        ),
+    )
+    yield Progress("Bringing the motion onto the controls", PROBED)
+    controls = _on_controls(character, character_map, motion, probed)
+    keyed = yield from _keyed(controls, motion, source, scene_frames, options)
+    keys = RetargetedKeys(
+        scene_frames,
+        keyed,
+        shown_properties(character_map, options),
+        placement_keys(armature_object, motion.to_world) if placed else (),
+    )
+    in_fk = fk_properties(character_map, options)
+    measuring = measure_keys(armature_object, keys, source, motion, character, character_map, in_fk)
+    quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)
+    return Retargeted(
+        armature_object.session_uid,
+        character,
+        character_map,
+        options,
+        motion,
+        keys,
+        replace(quality, keys=keys.key_count, dense_keys=keys.dense_count),
+        (
+            *completed.notes,
+            *motion.notes,
+            *probed.notes,
+            *channel_notes(armature_object, keyed, controls),
+        ),
+    )
+
+
+def _keyed(
+    controls: ControlMotion,
+    motion: CharacterMotion,
+    source: SegmentMotion,
+    scene_frames: Array,
+    options: RetargetOptions,
+) -> Job[tuple[KeyedControl, ...]]:
+    """What is keyed on each control."""
+    if options.tolerance_m is None:
+        return dense_controls(controls, rotation_values)
+    rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
+    reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
+    return (yield from within("Finding the keys", reducing, PROBED, REDUCED))
+
+
+def _on_controls(
+    character: Character,
+    character_map: CharacterMap,
+    motion: CharacterMotion,
+    probed: ProbedControls,
+) -> ControlMotion:
+    """The motion on the controls, by channels for every frame."""
+    planned = [control.plan for control in probed.controls]
+    limbs = {limb: limb_bones(character_map, limb) for limb in {plan.limb for plan in planned} if limb}
+    wanted = control_targets(planned, motion, probed.offsets, probed.poles, limbs)
+    return ControlMotion(
+        controls=probed.controls,
+        channels=control_channels(probed.controls, wanted, probed.size),
+        wanted=wanted,
+        offsets=probed.offsets,
+        points=held_points(character, character_map, motion.soles),
+        bones=motion.poses,
+        limbs=limb_paths(character, character_map, motion, probed.controls, probed.offsets, probed.poles),
+        size=probed.size,
+        scale=character.scale,
+    )

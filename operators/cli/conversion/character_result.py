@@ -1,0 +1,187 @@
+"""A motion on a character as files in a staging folder: character.blend, retarget.json and exports."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from ....core.body.segment_motion import SegmentMotion, segment_motion
+from ....core.errors import InputError
+from ....core.files.digest import content_digest
+from ....core.finish.natural_extremities import natural_extremities
+from ....core.progress import Job, run
+from ....core.retarget.character import Character
+from ....core.retarget.character_map import CharacterMap
+from ....core.retarget.choose_map import ChosenMap, choose_map
+from ....core.retarget.option_words import retarget_options
+from ....core.retarget.retarget_record import RetargetRecord, write_retarget_record
+from ....core.retarget.roles import LIMBS
+from ....core.take.character_settings import CharacterFile, CharacterSettings
+from ....core.take.motion import Motion
+from ..blender_silence import blender_silence
+from ..console import Console
+from ..library_search_path import library_folders
+from ..version import version
+from .hidden_files import hidden_files
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ....core.arrays import Array
+    from ...bridge.character.import_character import ImportedCharacter
+
+CHARACTER_BLEND = "character.blend"
+EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
+EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
+"""By the word for it: the format of `bridge/export_formats`, and the file."""
+Result = TypeVar("Result")
+ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]
+"""Puts camera, clip, rate and range into a scene and returns the motion's scene frames (F,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedCharacter:
+    """A character in a scene of its own, with its map."""
+
+    imported: "ImportedCharacter"
+    character: Character
+    chosen: ChosenMap
+
+    def completed(self, debug: bool) -> tuple[CharacterMap, tuple[str, ...]]:
+        """The map with the controls and soles that only Blender finds, and notes on them."""
+        with blender_silence(debug):
+            from ...bridge.character.complete_map import complete_map
+
+            found = complete_map(self.imported.armature, self.character, self.chosen.character_map)
+        return found.character_map, found.notes
+
+
+@contextmanager
+def opened_character(
+    file: CharacterFile, wanted_map: str, debug: bool
+) -> Iterator[tuple["bpy.types.Scene", OpenedCharacter]]:
+    """Open a character and choose its map, in a scene that is removed again with all that is in it.
+
+    Raises:
+        InputError: The file cannot be read, holds no such armature, or one that is no character; or there is
+            no such map, or it is for another character. The sentence begins with the file or the map.
+    """
+    with blender_silence(debug):
+        from ...bridge.character.import_character import import_character
+        from ...bridge.character.read_character import read_character
+        from ...bridge.own_scene import own_scene, showing_scene
+
+    with own_scene("Character") as scene, showing_scene(scene):
+        with blender_silence(debug):
+            imported = import_character(file, scene)
+            try:
+                character = read_character(imported.armature)
+            except InputError as error:
+                raise InputError(f"{file.path}: {error}") from error
+        try:
+            chosen = choose_map(character, wanted_map, library_folders())
+        except InputError as error:
+            named = str(error).startswith(wanted_map) or str(file.path) in str(error)
+            raise InputError(str(error) if named else f"{file.path}: {error}") from error
+        yield scene, OpenedCharacter(imported, character, chosen)
+
+
+def write_character_result(
+    settings: CharacterSettings,
+    motion: Motion,
+    take: str,
+    show_footage: ShowFootage,
+    folders: tuple[Path, Path],
+    console: Console,
+    debug: bool,
+    formats: tuple[str, ...] = (),
+) -> RetargetRecord:
+    """Put a motion onto a character and write the files.
+
+    Args:
+        settings: The character, its map and the options.
+        motion: The motion.
+        take: Name of the take, after which the Action is named.
+        show_footage: Shows what was filmed.
+        folders: The staging folder, and the folder of the result as a real path.
+        console: Shows the progress.
+        debug: Whether to let Blender's messages through.
+        formats: Words of `EXPORTS`.
+
+    Raises:
+        InputError: The character or its map cannot be used.
+        ConversionError: A file cannot be written.
+    """
+    staging_folder, output = folders
+    console.stage("Opening the character")
+    with opened_character(settings.file, settings.map, debug) as (scene, opened):
+        from ...bridge.character.character_files import write_character_files
+        from ...bridge.character.retarget import retarget
+
+        with blender_silence(debug):
+            frames = show_footage(scene, motion)
+        character_map, options = opened.chosen.character_map, retarget_options(settings.options)
+        armature = opened.imported.armature
+        job = retarget(armature, motion_segments(motion), frames, character_map, options)
+        retargeted = run(_silenced(job, debug), console.progress)
+        console.stage("Writing the character")
+        exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
+        names = (CHARACTER_BLEND, *exports.values())
+        with blender_silence(debug), hidden_files(names, staging_folder, output) as hidden:
+            action = retargeted.write(scene, f"{take} {armature.name}")
+            paths = {name: hidden[file] for name, file in exports.items()}
+            curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
+            action_name, rate = action.name, scene.render.fps / scene.render.fps_base
+        record = RetargetRecord(
+            keymark=version(),
+            take=take,
+            character_file=settings.file.path.name,
+            character_object=opened.character.name,
+            character_sha256=content_digest(settings.file.path),
+            map_title=character_map.title,
+            map_origin=opened.chosen.origin,
+            preset=character_map.preset,
+            action=action_name,
+            frames=len(frames),
+            frame_start=motion.frame_start,
+            fps=rate,
+            size=retargeted.size,
+            options=settings.options,
+            roles=character_map.roles,
+            limbs=keyed_limbs(retargeted.character_map, settings),
+            quality=retargeted.quality.to_dict(),
+            doubts=opened.chosen.doubts,
+            notes=(*opened.imported.notes, *retargeted.notes),
+            files={CHARACTER_BLEND: curves},
+        )
+        write_retarget_record(staging_folder, record)
+        return record
+
+
+def motion_segments(motion: Motion) -> SegmentMotion:
+    """The segments of a motion, with natural feet and hands."""
+    extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
+    return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
+
+
+def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Mapping[str, str]:
+    """Which controls of each limb are keyed: FK alone where the character has no others."""
+    keyed = {}
+    for limb, roles in LIMBS.items():
+        if any(role in character_map.roles for role in roles):
+            wanted = settings.options.arms if limb.startswith("arm") else settings.options.legs
+            keyed[limb] = wanted if limb in character_map.ik else "fk"
+    return keyed
+
+
+def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
+    """A job whose steps let no message of Blender through, while its progress is shown."""
+    while True:
+        with blender_silence(debug):
+            try:
+                progress = next(job)
+            except StopIteration as stop:
+                result: Result = stop.value
+                return result
+        yield progress

@@ -1,0 +1,207 @@
+"""A character's map in properties: nothing is lost there, in the file, or by correcting one role."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import pytest
+from _character_maps import full_map
+from keymark.core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
+from keymark.core.retarget.character_map_file import read_character_map
+from keymark.core.retarget.options import RetargetOptions
+from keymark.core.retarget.presets import SHIPPED, read_preset
+from keymark.core.retarget.roles import LIMBS, ROLES
+from keymark.operators.character.map_conversion import map_of, show_found_controls, show_map
+from keymark.operators.character.options import options_of
+from keymark.operators.shell.takes import active_take
+
+RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+def role(character: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGroup:
+    """A role's properties."""
+    return character.character_map.roles[name]
+
+
+@pytest.mark.parametrize("character_map", [RIGIFY, full_map()], ids=["rigify", "full"])
+def test_a_map_goes_into_properties_and_comes_back(
+    character: bpy.types.PropertyGroup, character_map: CharacterMap
+) -> None:
+    """Shares, controls, switches, settings of every kind, soles, corrections: all of it."""
+    for _ in range(2):
+        show_map(character.character_map, character_map)
+        assert map_of(character.character_map) == character_map
+    assert [each.name for each in character.character_map.roles] == list(ROLES)
+    assert [each.name for each in character.character_map.limbs] == list(LIMBS)
+
+
+def test_the_map_is_in_the_file(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
+    """Saved and opened again, and appended with its scene to another file."""
+    show_map(character.character_map, full_map())
+    blend = tmp_path / "map.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert map_of(active_take(bpy.context.scene).characters[0].character_map) == full_map()
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(blend)) as (source, target):
+        target.scenes = source.scenes
+    appended = active_take(target.scenes[0]).characters[0]
+    assert map_of(appended.character_map) == full_map()
+    assert appended.armature.name == "Character"
+
+
+def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
+    """What the panel begins with is what a script begins with."""
+    shown, wanted = options_of(character.options), RetargetOptions()
+    assert shown.stray_m == pytest.approx(wanted.stray_m) and shown.tolerance_m == pytest.approx(
+        wanted.tolerance_m
+    )
+    for name in ("root_motion", "placement", "arms", "legs", "plant_feet", "reach_hands"):
+        assert getattr(shown, name) == getattr(wanted, name)
+    character.options.keys, character.options.arms = "EVERY_FRAME", "FK"
+    assert options_of(character.options).tolerance_m is None
+    assert options_of(character.options).arms.name == "FK"
+
+
+def test_a_corrected_role_is_the_persons(character: bpy.types.PropertyGroup) -> None:
+    """Its doubt is gone, and so is the control that was found for another bone; other roles keep theirs."""
+    show_map(character.character_map, RIGIFY, {"hand.L": "hand.L is doubtful: look at it"})
+    before = map_of(character.character_map)
+    shown = role(character, "hand.L")
+    assert shown.doubt and shown.source == before.roles["hand.L"].source
+    shown.bones[0].bone = "finger.L"
+    after = map_of(character.character_map)
+    assert after.roles["hand.L"] == RoleBones(("finger.L",), 1.0, "you") and shown.doubt == ""
+    assert "hand.L" not in after.fk and after.fk["hand.R"] == before.fk["hand.R"]
+    assert {name: bones for name, bones in after.roles.items() if name != "hand.L"} == {
+        name: bones for name, bones in before.roles.items() if name != "hand.L"
+    }
+
+
+def test_an_emptied_field_is_a_missing_role(character: bpy.types.PropertyGroup) -> None:
+    """The cross in a field takes the bone away; a chain goes on without it."""
+    role(character, "toe.L").bones[0].bone = ""
+    role(character, "spine").bones[0].bone = ""
+    found = map_of(character.character_map)
+    assert "toe.L" not in found.roles and found.bones("spine") == ("chest",)
+
+
+def test_the_active_bone_is_used(character: bpy.types.PropertyGroup) -> None:
+    """As clicked on in Pose Mode; without one the button says so."""
+    bones = character.armature.data.bones
+    bones.active = None
+    with pytest.raises(RuntimeError, match="Make a bone of the character active first"):
+        bpy.ops.keymark.use_active_bone(role="hand.L")
+    bones.active = bones["finger.L"]
+    assert bpy.ops.keymark.use_active_bone(role="hand.L") == {"FINISHED"}
+    assert (role(character, "hand.L").bones[0].bone, role(character, "hand.L").source) == ("finger.L", "you")
+    for words, said in (
+        ({"role": "tail"}, "no role 'tail'"),
+        ({"role": "hand.L", "index": 3}, "no number 3"),
+    ):
+        with pytest.raises(RuntimeError, match=said):
+            bpy.ops.keymark.use_active_bone(**words)
+    with pytest.raises(RuntimeError, match="has no bone 'nobody'"):
+        bpy.ops.keymark.pick_bone(role="hand.L", bone="nobody")
+    with pytest.raises(RuntimeError, match="no bone is chosen"):
+        bpy.ops.keymark.pick_bone(role="hand.L")
+    assert bpy.ops.keymark.pick_bone(role="hand.R", bone="finger.R") == {"FINISHED"}
+    assert role(character, "hand.R").bones[0].bone == "finger.R"
+
+
+def test_a_chain_grows_upward_and_shrinks(character: bpy.types.PropertyGroup) -> None:
+    """The bone that goes on from the last one is offered, unless it plays a role already."""
+    spine = role(character, "spine")
+    spine.bones[1].bone = ""
+    bpy.ops.keymark.remove_chain_bone(role="spine", index=1)
+    assert [entry.bone for entry in spine.bones] == ["spine"]
+    bpy.ops.keymark.add_chain_bone(role="spine")
+    assert [entry.bone for entry in spine.bones] == ["spine", "chest"] and spine.source == "you"
+    bpy.ops.keymark.add_chain_bone(role="spine")  # the neck has its role
+    assert [entry.bone for entry in spine.bones][:2] == ["spine", "chest"]
+    assert spine.bones[2].bone not in ("neck", "shoulder.L", "shoulder.R")
+    with pytest.raises(RuntimeError, match=r"'hand\.L' is no chain"):
+        bpy.ops.keymark.add_chain_bone(role="hand.L")
+    for _ in range(4):
+        bpy.ops.keymark.remove_chain_bone(role="spine")
+    assert [entry.bone for entry in spine.bones] == [""]
+
+
+def test_left_is_mirrored_to_right(character: bpy.types.PropertyGroup) -> None:
+    """What was corrected on the left; a side without partners is said and changes nothing."""
+    role(character, "hand.L").bones[0].bone = "finger.L"
+    assert bpy.ops.keymark.mirror_roles() == {"FINISHED"}
+    assert role(character, "hand.R").bones[0].bone == "finger.R"
+    role(character, "foot.R").bones[0].bone = "toe.R"
+    assert bpy.ops.keymark.mirror_roles(side="R") == {"FINISHED"}
+    assert role(character, "foot.L").bones[0].bone == "toe.L"
+    before = map_of(character.character_map)
+    assert bpy.ops.keymark.mirror_roles(side="R") == {"CANCELLED"}
+    assert map_of(character.character_map) == before
+
+
+def test_a_map_is_saved_and_loaded(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
+    """The file has the map of the panel; loading it gives that again."""
+    role(character, "hand.L").bones[0].bone = "finger.L"
+    saved = map_of(character.character_map)
+    assert bpy.ops.keymark.save_map(filepath=str(tmp_path / "mine")) == {"FINISHED"}
+    assert read_character_map(tmp_path / "mine.json").bones("hand.L") == ("finger.L",)
+    role(character, "hand.L").bones[0].bone = "hand.L"
+    assert bpy.ops.keymark.load_map(filepath=str(tmp_path / "mine.json")) == {"FINISHED"}
+    assert map_of(character.character_map).roles == saved.roles
+
+
+def test_a_map_for_other_bones_is_refused_and_changes_nothing(
+    character: bpy.types.PropertyGroup, tmp_path: Path
+) -> None:
+    """The sentence names file and bones."""
+    before = map_of(character.character_map)
+    bpy.ops.keymark.save_map(filepath=str(tmp_path / "plain.json"))
+    for bone in character.armature.data.bones:
+        bone.name = f"{bone.name}_of_another"
+    with pytest.raises(RuntimeError, match=r"plain\.json is for another character: 'Character' has no bone"):
+        bpy.ops.keymark.load_map(filepath=str(tmp_path / "plain.json"))
+    with pytest.raises(RuntimeError, match="no map is named to load"):
+        bpy.ops.keymark.load_map()
+    (tmp_path / "broken.json").write_text("{")
+    with pytest.raises(RuntimeError, match=r"broken\.json"):
+        bpy.ops.keymark.load_map(filepath=str(tmp_path / "broken.json"))
+    assert map_of(character.character_map) == before
+
+
+def test_a_map_in_the_library_folder_is_suggested(
+    character: bpy.types.PropertyGroup, rig: bpy.types.Object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where its bones are those of the armature; one click then uses it."""
+    monkeypatch.setattr("keymark.operators.library.user_folder.own_folder", lambda: tmp_path)
+    role(character, "hand.L").bones[0].bone = "finger.L"
+    character.character_map.title = "My Hero"
+    bpy.ops.keymark.save_map(filepath=str(tmp_path / "hero.json"))
+    bpy.ops.keymark.remove_character()
+    bpy.ops.keymark.add_character(armature=rig.name)
+    anew = active_take(bpy.context.scene).characters[0]
+    assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("My Hero", "hand.L")
+    assert bpy.ops.keymark.load_map(title=anew.suggested) == {"FINISHED"}
+    assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("", "finger.L")
+
+
+def test_controls_found_on_the_rig_are_shown(character: bpy.types.PropertyGroup) -> None:
+    """Beside what is shown already; not where the roles were corrected meanwhile."""
+    plain = map_of(character.character_map)
+    controls = IkControls("finger.L", None, None, Switch("hand.L", "IK_FK", 0.0, 1.0))
+    found = replace(
+        plain,
+        fk={"head": ("neck",), "neck": ("head",)},
+        ik={"arm.L": controls},
+        settings=(Setting("hips", "follow", 1.0),),
+    )
+    role(character, "neck").bones[0].control = "chest"
+    show_found_controls(character.character_map, found)
+    shown = map_of(character.character_map)
+    assert shown.fk == {"head": ("neck",), "neck": ("chest",)} and shown.ik == {"arm.L": controls}
+    assert shown.settings == found.settings and shown.roles == plain.roles
+    role(character, "hand.L").bones[0].bone = "finger.L"
+    show_found_controls(character.character_map, replace(found, root="hips"))
+    assert map_of(character.character_map).root is None

@@ -1,0 +1,245 @@
+"""Retargeting by its button: what becomes of earlier results, of a newer motion, and of Esc."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+import pytest
+from _armatures import build_character
+from _characters import plain_character
+from _scene_state import differences, scene_state
+from keymark.core.retarget.character import Character
+from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
+from keymark.operators.bridge.actor_bones import moves_an_actor
+from keymark.operators.character.source_motion import source_of
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+def shown(character: bpy.types.PropertyGroup) -> bpy.types.Action:
+    """The Action that animates a character."""
+    return character.armature.animation_data.action
+
+
+def test_the_motion_becomes_an_action_of_the_character(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """New, with its slot, named after motion and character; the motion and the frame stay."""
+    bpy.context.scene.frame_set(7)
+    before = curve_digest(take.armature)
+    assert bpy.ops.keymark.retarget() == {"FINISHED"}
+    action = shown(character)
+    assert action.name == "Walk Character" and action.use_fake_user
+    assert character.armature.animation_data.action_slot in list(action.slots)
+    assert [each.action for each in character.results] == [action]
+    assert character.results[0].source_action == take.motion_action
+    assert curve_digest(take.armature) == before and bpy.context.scene.frame_current == 7
+    bone = character.armature.pose.bones["thigh.L"]
+    rested = np.array(bone.matrix)
+    bpy.context.scene.frame_set(11)
+    assert np.abs(np.array(bone.matrix) - rested).max() > 1e-3
+
+
+def test_again_replaces_only_what_it_made(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """The same Action, the same number of Actions; with Keep Earlier another, and both can be shown."""
+    bpy.ops.keymark.retarget()
+    first, count = shown(character), len(bpy.data.actions)
+    bpy.ops.keymark.retarget()
+    assert shown(character) == first and len(bpy.data.actions) == count
+    character.keep_earlier = True
+    bpy.ops.keymark.retarget()
+    second = shown(character)
+    assert second != first and [each.action for each in character.results] == [first, second]
+    bpy.ops.keymark.show_result(index=0)
+    assert shown(character) == first and character.active_result == 0
+    character.keep_earlier = False
+    bpy.ops.keymark.retarget()  # the one that is chosen is replaced
+    assert shown(character) == first and len(character.results) == 2
+    with pytest.raises(RuntimeError, match="no result number 5"):
+        bpy.ops.keymark.show_result(index=5)
+    bpy.ops.keymark.remove_result(index=0)
+    assert [each.action for each in character.results] == [second] and first in list(bpy.data.actions)
+
+
+def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGroup) -> None:
+    """The entry without an Action goes."""
+    bpy.ops.keymark.retarget()
+    bpy.data.actions.remove(shown(character))
+    assert character.results[0].action is None
+    with pytest.raises(RuntimeError, match="Retarget the motion first"):
+        bpy.ops.keymark.show_result()
+    bpy.ops.keymark.retarget()
+    assert [each.action for each in character.results] == [shown(character)]
+
+
+def test_the_newest_motion_is_performed(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """The final Action, unless the reconstructed one is newer; or the one that is asked for."""
+    assert source_of(take, character).kind == "MOTION"
+    bpy.ops.keymark.bake_motion()
+    assert source_of(take, character).action == take.finish.action
+    take.finish.outdated = True
+    assert source_of(take, character).action == take.motion_action
+    character.source = "FINAL"
+    assert source_of(take, character).action == take.finish.action
+    take.finish.action = None
+    with pytest.raises(RuntimeError, match="Bake the final Action first"):
+        bpy.ops.keymark.retarget()
+
+
+def test_a_newer_motion_marks_the_result(opened: bpy.types.Scene) -> None:
+    """Reconstructing and baking do; retargeting again takes the mark away."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    bpy.ops.keymark.add_character(armature=build_character(plain_character()).name)
+    character = active_take(opened).characters[0]
+    for newer in (bpy.ops.keymark.reconstruct, bpy.ops.keymark.bake_motion):
+        bpy.ops.keymark.retarget()
+        assert not character.results[0].outdated
+        newer()
+        assert character.results[0].outdated
+    bpy.ops.keymark.retarget()
+    assert not character.results[0].outdated and len(character.results) == 1
+
+
+def test_any_action_of_an_actor_is_performed(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """With a result of its own, which a newer motion of the take does not make outdated."""
+    bpy.ops.keymark.retarget()
+    other = take.motion_action.copy()
+    other.name = "Jump"
+    assert moves_an_actor(other) and not moves_an_actor(shown(character))
+    character.source = "ACTION"
+    with pytest.raises(RuntimeError, match="Choose the Action that the character is to perform"):
+        bpy.ops.keymark.retarget()
+    character.source_action = other
+    bpy.ops.keymark.retarget()
+    assert [each.action.name for each in character.results] == ["Walk Character", "Jump Character"]
+    assert character.results[1].source_actor == take.armature
+    bpy.ops.keymark.bake_motion()
+    assert [each.outdated for each in character.results] == [True, False]
+    bpy.ops.keymark.retarget()
+    assert len(character.results) == 2
+    character.source_actor = character.armature
+    with pytest.raises(RuntimeError, match="'Character' is no actor of Keymark's"):
+        bpy.ops.keymark.retarget()
+
+
+def test_an_action_that_is_not_the_actors_changes_nothing(character: bpy.types.PropertyGroup) -> None:
+    """A script may choose what the field does not list."""
+    before = scene_state()
+    foreign = bpy.data.actions.new("Foreign")
+    character.source, character.source_action = "ACTION", foreign
+    with pytest.raises(RuntimeError, match="'Foreign' has no motion of 'Walk Actor'"):
+        bpy.ops.keymark.retarget()
+    character.property_unset("source")
+    character.source_action = None
+    bpy.data.actions.remove(foreign)
+    assert not differences(before, scene_state())
+
+
+def test_each_of_several_characters_has_results_of_its_own(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """The chosen one is retargeted, the other's Action stays."""
+    second = build_character(Character("Second", plain_character().bones))
+    bpy.ops.keymark.add_character(armature=second.name)
+    for number in (1, 0):
+        take.active_character = number
+        bpy.ops.keymark.retarget()
+    actions = [each.results[0].action for each in take.characters]
+    assert [action.name for action in actions] == ["Walk Character", "Walk Second"]
+    assert [shown(each) for each in take.characters] == actions
+    take.active_character = 1
+    bpy.ops.keymark.retarget()
+    assert [each.results[0].action for each in take.characters] == actions
+
+
+def test_what_was_measured_is_said_in_few_lines(character: bpy.types.PropertyGroup) -> None:
+    """Feet, floor, hands, keys."""
+    bpy.ops.keymark.retarget()
+    said = [line.text for line in character.results[0].lines if line.level == "INFO"]
+    assert 3 <= len(said) <= 4
+    assert any("keys" in line for line in said) and not any(line[0].islower() for line in said)
+
+
+def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> None:
+    """Closed in the middle as Esc does it, wherever that is."""
+    from keymark.operators.character.retarget import KEYMARK_OT_retarget
+
+    before = scene_state()
+    total = sum(1 for _ in KEYMARK_OT_retarget.start(None, bpy.context.scene))
+    for steps in (1, total // 3, 2 * total // 3, total - 1):
+        job = KEYMARK_OT_retarget.start(None, bpy.context.scene)
+        for _ in range(steps):
+            next(job)
+        job.close()
+        assert not differences(before, scene_state()), f"after {steps} of {total} steps"
+
+
+def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy.types.Object) -> None:
+    """Adding, correcting, mirroring, retargeting, showing, removing: one undo each."""
+    ops = bpy.ops.keymark
+    steps: list[tuple[str, Callable[[], object]]] = [
+        ("add", lambda: ops.add_character(armature="Character")),
+        ("pick", lambda: ops.pick_bone(role="hand.L", bone="finger.L")),
+        ("mirror", ops.mirror_roles),
+        ("recognize", ops.recognize_character),
+        ("retarget", ops.retarget),
+        ("keep", lambda: setattr(active_take(bpy.context.scene).characters[0], "keep_earlier", True)),
+        ("another", ops.retarget),
+        ("show", lambda: ops.show_result(index=0)),
+        ("remove result", lambda: ops.remove_result(index=1)),
+        ("remove", ops.remove_character),
+    ]
+    bpy.ops.ed.undo_push(message="Begin")
+    for name, do in steps:
+        before = scene_state()
+        do()
+        bpy.context.view_layer.update()
+        bpy.ops.ed.undo_push(message=name)
+        after = scene_state()
+        assert after != before, f"{name} changed nothing"
+        bpy.ops.ed.undo()
+        assert not differences(before, scene_state()), f"undoing {name}"
+        bpy.ops.ed.redo()
+        assert not differences(after, scene_state()), f"redoing {name}"
+
+
+def test_the_result_is_an_asset_like_the_actors(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """The same details and a picture; the actor's own Action is not marked by it."""
+    bpy.ops.keymark.retarget()
+    take.finish.catalog, take.finish.tags, take.finish.author = "", "walk, calm", "Ann"
+    assert bpy.ops.keymark.mark_result_asset() == {"FINISHED"}
+    data = shown(character).asset_data
+    assert sorted(tag.name for tag in data.tags) == ["calm", "walk"] and data.author == "Ann"
+    assert tuple(shown(character).preview.image_size) == (256, 256)
+    assert take.motion_action.asset_data is None
+
+
+def test_the_actor_is_still_animated_by_its_own(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """Retargeting while the actor shows its keyframes reads the motion all the same."""
+    keyframes = bpy.data.actions.new("Keyframes")
+    assign_action(take.armature, keyframes)
+    bpy.ops.keymark.retarget()
+    assert take.armature.animation_data.action == keyframes
+    assert existing_channelbag(shown(character), character.armature) is not None
+
+
+def test_removing_a_take_with_its_data_keeps_the_character(
+    character: bpy.types.PropertyGroup, rig: bpy.types.Object
+) -> None:
+    """The Actions that Keymark made go, the armature is the animator's."""
+    bpy.ops.keymark.retarget()
+    bpy.ops.keymark.remove_take(delete_data=True)
+    assert list(bpy.data.actions) == [] and rig in list(bpy.data.objects)

@@ -1,0 +1,237 @@
+"""`keymark retarget`: a folder with the character in front of the camera, a record of it, and exports."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from _command_line import one_line, tree
+from keymark.core.retarget.retarget_record import read_retarget_record
+from keymark.core.retarget.roles import REQUIRED
+from keymark.operators.bridge.actions import curve_digest
+from keymark.operators.bridge.export_formats import FORMATS
+from keymark.operators.cli.main import main
+
+FRAMES = 12
+Retarget = Callable[..., int]
+
+
+@pytest.fixture
+def output(tmp_path: Path) -> Path:
+    """The folder for the result."""
+    return tmp_path / "deep" / "out"
+
+
+@pytest.fixture
+def retarget(result: Path, cast: Path, output: Path) -> Retarget:
+    """A function that puts the motion onto the character."""
+
+    def run(*more: str, motion: Path = result, character: str = str(cast / "anna.blend")) -> int:
+        words = ["retarget", str(motion), "--character", character, "--output", str(output)]
+        return main([*words, "--quiet", *more])
+
+    return run
+
+
+def opened(file: Path) -> bpy.types.Scene:
+    """The scene of a .blend, opened as an animator opens it."""
+    bpy.ops.wm.open_mainfile(filepath=str(file))
+    return bpy.context.scene
+
+
+def test_the_character_performs_as_filmed(retarget: Retarget, result: Path, output: Path) -> None:
+    """With camera, clip, range and rate of the take, its skin, and the Action assigned with its slot."""
+    assert retarget() == 0
+    assert sorted(tree(output)) == [".as_made.json", "character.blend", "retarget.json"]
+    bpy.ops.wm.open_mainfile(filepath=str(result / "motion.blend"))
+    filmed = bpy.context.scene
+    camera = np.array(filmed.camera.matrix_world)
+    clip = Path(bpy.path.abspath(filmed.active_clip.filepath)).resolve()
+    scene = opened(output / "character.blend")
+    assert (scene.frame_start, scene.frame_end) == (1, FRAMES) and scene.render.fps == 30
+    np.testing.assert_allclose(np.array(scene.camera.matrix_world), camera, atol=1e-6)
+    assert Path(bpy.path.abspath(scene.active_clip.filepath)).resolve() == clip
+    assert scene.active_clip.filepath.startswith("//")
+    assert scene.camera.data.background_images[0].clip == scene.active_clip
+    anna = scene.objects["Anna"]
+    data = anna.animation_data
+    assert data.action.name == "small Anna" and data.action_slot is not None
+    assert [one.name for one in scene.objects if one.type == "MESH"] == ["Anna body"]
+    assert [one.name for one in bpy.data.objects if one.type == "ARMATURE"] == ["Anna"]
+    heads = []
+    for frame in (1, FRAMES // 2):
+        scene.frame_set(frame)
+        shown = anna.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        heads.append([tuple(shown.matrix_world @ bone.head) for bone in shown.pose.bones])
+    assert np.isfinite(heads).all() and np.abs(np.subtract(*heads)).max() > 0.02
+
+
+def test_the_record_says_what_was_recognized_and_how_good_it_is(
+    retarget: Retarget, output: Path, cast: Path
+) -> None:
+    """Roles with confidence and source, options, and the digest of the curves in character.blend."""
+    assert retarget("--legs", "fk", "--root-motion", "in-place", "--tolerance", "none") == 0
+    record = read_retarget_record(output)
+    assert record.take == "small" and record.character_file == "anna.blend"
+    assert record.character_object == "Anna" and record.map_origin == "recognized"
+    assert set(REQUIRED) <= set(record.roles) and (record.frames, record.fps) == (FRAMES, 30.0)
+    assert record.options.legs == "fk" and record.options.root_motion == "in-place"
+    assert record.options.tolerance_mm == 0.0 and record.limbs["leg.L"] == "fk"
+    assert str(cast) not in (output / "retarget.json").read_text(encoding="utf-8")
+    scene = opened(output / "character.blend")
+    assert record.files == {"character.blend": curve_digest(scene.objects[record.character_object])}
+    assert scene.objects["Anna"].animation_data.action.name == record.action
+
+
+def test_the_same_input_gives_the_same_result(retarget: Retarget, output: Path) -> None:
+    """A second run replaces the first; nothing in the record depends on time."""
+    assert retarget() == 0
+    first = (output / "retarget.json").read_bytes()
+    assert retarget() == 0
+    assert (output / "retarget.json").read_bytes() == first
+    assert sorted(tree(output)) == [".as_made.json", "character.blend", "retarget.json"]
+
+
+def test_what_a_person_has_changed_is_kept(
+    retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The animator's character.blend stays beside the new one, and a note says so."""
+    assert retarget() == 0
+    scene = opened(output / "character.blend")
+    scene.objects["Anna"].location.x += 1.0
+    bpy.ops.wm.save_mainfile()
+    mine = (output / "character.blend").read_bytes()
+    capfd.readouterr()
+    assert retarget("--json") == 0
+    assert (output / "character (changed).blend").read_bytes() == mine
+    assert (output / "character.blend").read_bytes() != mine
+
+
+def test_it_says_what_it_made(retarget: Retarget, output: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One object for programs."""
+    assert retarget("--json") == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["files"] == [str(output / name) for name in ("character.blend", "retarget.json")]
+    assert answer["roles"]["hips"]["bones"] == ["hips"] and answer["seconds"]["total"] > 0.0
+
+
+@pytest.mark.parametrize("word", ["bvh", "fbx", "glb", "usd"])
+def test_exports_hold_character_and_motion(retarget: Retarget, output: Path, word: str) -> None:
+    """Each can be imported again, with the bones and a motion; BVH has no mesh."""
+    kind = {"bvh": "BVH", "fbx": "FBX", "glb": "GLTF", "usd": "USD"}[word]
+    if FORMATS[kind].missing():
+        pytest.skip(FORMATS[kind].missing())
+    assert retarget("--format", word) == 0
+    file = output / f"character{FORMATS[kind].suffix}"
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    {
+        "bvh": bpy.ops.import_anim.bvh,
+        "fbx": bpy.ops.wm.fbx_import,
+        "glb": bpy.ops.import_scene.gltf,
+        "usd": bpy.ops.wm.usd_import,
+    }[word](filepath=str(file))
+    (armature,) = [one for one in bpy.data.objects if one.type == "ARMATURE"]
+    assert "forearm_L" in {bone.name.replace(".", "_") for bone in armature.data.bones}
+    assert len(bpy.data.actions) >= 1
+    skins = [one for one in bpy.data.objects if one.type == "MESH" and one.vertex_groups]
+    assert bool(skins) == (word != "bvh")
+
+
+def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Path, tmp_path: Path) -> None:
+    """A motion's file alone gives range and rate, and no camera."""
+    file = tmp_path / "lone" / "motion.json"
+    file.parent.mkdir()
+    shutil.copyfile(result / "motion.json", file)
+    for motion in (file, file.parent):
+        assert retarget(motion=motion) == 0
+        scene = opened(output / "character.blend")
+        assert scene.camera is None and scene.render.fps == 30
+        assert (scene.frame_start, scene.frame_end) == (1, FRAMES)
+        assert read_retarget_record(output).take == "lone"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--tolerance", "0"], "--tolerance is 0; millimeters above 0 and up to 1000 are valid, or none"),
+        (["--tolerance", "few"], "--tolerance is few"),
+        (["--tolerance", "nan"], "--tolerance is nan"),
+        (["--format", "obj"], "--format is obj; bvh, fbx, glb, usd are valid"),
+        (["--legs", "wheels"], "--legs"),
+        (["--root-motion", "backwards"], "--root-motion"),
+    ],
+)
+def test_unusable_options_are_refused(
+    retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    """Status 2, and nothing is written."""
+    assert retarget(*words) == 2
+    assert said in one_line(capfd.readouterr().err) and not output.parent.exists()
+
+
+def test_what_is_no_motion_is_refused(
+    retarget: Retarget,
+    result: Path,
+    output: Path,
+    cast: Path,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """A folder without one, a file of another kind, a motion that is not the actor's; nothing is written."""
+    (tmp_path / "empty").mkdir()
+    strange = json.loads((result / "motion.json").read_text(encoding="utf-8"))
+    strange["posture"]["tail.wag"] = strange["posture"].pop("knee.L.flexion")
+    (tmp_path / "strange.json").write_text(json.dumps(strange), encoding="utf-8")
+    for motion, said in (
+        (tmp_path / "empty", "holds no motion.json; it must be a folder that convert has written"),
+        (tmp_path / "missing.json", "no such file"),
+        (result / "conversion.json", "conversion.json"),
+        (cast / "anna.blend", "anna.blend"),
+        (tmp_path / "strange.json", "knee.L.flexion is missing"),
+    ):
+        assert retarget(motion=motion) == 2
+        assert said in one_line(capfd.readouterr().err)
+    assert not output.parent.exists()
+
+
+def test_results_of_a_take_are_no_place_for_it(
+    retarget: Retarget, result: Path, cast: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Where a conversion would remove it again."""
+    before = tree(result)
+    words = ["retarget", str(result), "--character", str(cast / "anna.blend"), "--output", str(result)]
+    assert main([*words, "--quiet"]) == 2
+    assert "holds the result of a conversion; name another folder" in one_line(capfd.readouterr().err)
+    assert tree(result) == before
+
+
+def test_a_failure_leaves_the_folder_as_it_was(
+    retarget: Retarget, output: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Half a file never replaces a whole one."""
+    from keymark.core.errors import ConversionError
+    from keymark.operators.bridge.character import character_files
+
+    assert retarget() == 0
+    before = tree(output.parent)
+
+    def fail(path: Path, _blocks: object, **_options: object) -> None:
+        path.write_bytes(b"half")
+        raise ConversionError("the disk is full")
+
+    monkeypatch.setattr(character_files, "write_blend", fail)
+    assert retarget() == 1
+    assert "the disk is full" in one_line(capfd.readouterr().err)
+    assert tree(output.parent) == before
+
+
+def test_nothing_stays_in_the_open_file(retarget: Retarget) -> None:
+    """A Blender that works on something else is as before."""
+    mine = bpy.data.objects.new("Mine", None)
+    bpy.context.scene.collection.objects.link(mine)
+    before, scene = set(bpy.data.user_map()), bpy.context.scene
+    assert retarget() == 0
+    assert set(bpy.data.user_map()) == before and bpy.context.scene == scene

@@ -1,0 +1,215 @@
+"""Feet of a motion: flat at rest on any ground, rolled over heel and toes, never below, never leaping."""
+
+import numpy as np
+import pytest
+from _scene import BODY
+from keymark.core.body.extremities import RIGID, Extremities
+from keymark.core.body.heading import turned_and_shifted
+from keymark.core.body.mirror import mirrored, mirrored_actor
+from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import logarithm
+from keymark.core.body.soles import sole_places
+from keymark.core.finish.foot_pitch import TOES_DOWN_RAD, TOES_UP_RAD
+from keymark.core.finish.foot_turns import HANGING_RAD
+from keymark.core.finish.natural_extremities import natural_extremities
+
+FPS = 30.0
+NAMES = BODY.skeleton.dof_names
+LENGTHS = BODY.actor.segments_m
+FLAT_M = 0.36 * LENGTHS["foot.L"]
+HIPS_M = FLAT_M + 0.92 * (LENGTHS["thigh.L"] + LENGTHS["shin.L"])
+STAND = (0.0, FLAT_M)
+
+
+def walking(
+    left: np.ndarray,
+    right: np.ndarray,
+    hips_y: np.ndarray | float = 0.0,
+    hips_m: np.ndarray | float = HIPS_M,
+) -> Posture:
+    """Postures whose ankles follow paths (F, 2) of y and height [m], upright, facing -Y."""
+    vector = np.zeros((len(left), len(NAMES)))
+    vector[:, 1], vector[:, 2] = hips_y, hips_m
+    for side, path in (("L", left), ("R", right)):
+        thigh, shin = LENGTHS[f"thigh.{side}"], LENGTHS[f"shin.{side}"]
+        ahead, down = vector[:, 1] - path[:, 0], vector[:, 2] - path[:, 1]
+        reach = np.minimum(np.hypot(ahead, down), 0.999 * (thigh + shin))
+        knee = np.arccos((reach**2 - thigh**2 - shin**2) / (2.0 * thigh * shin))
+        lift = np.arccos((thigh**2 + reach**2 - shin**2) / (2.0 * thigh * reach))
+        vector[:, NAMES.index(f"hip.{side}.rotation_x")] = -np.arctan2(ahead, down) - lift
+        vector[:, NAMES.index(f"knee.{side}.flexion")] = knee
+    return Posture.from_vector(BODY.skeleton, vector)
+
+
+def path(frames: int, *legs: tuple[int, int, tuple[float, float], float]) -> np.ndarray:
+    """A path (F, 2) from `STAND` on: first and last frame of each move, its end, and a height between."""
+    found = np.tile(np.array(STAND), (frames, 1))
+    for first, last, end, above in legs:
+        share = np.clip((np.arange(frames) - first) / (last - first), 0.0, 1.0)[:, None]
+        eased = share**2 * (3.0 - 2.0 * share)
+        found = found + eased * (np.array(end) - found[first])
+        found[:, 1] += above * np.sin(np.pi * share[:, 0]) ** 2
+    return found
+
+
+def still(frames: int) -> np.ndarray:
+    """The path of an ankle that rests at `STAND`."""
+    return np.tile(np.array(STAND), (frames, 1))
+
+
+def times(posture: Posture) -> np.ndarray:
+    """(F,) times."""
+    return np.arange(posture.batch[0]) / FPS
+
+
+def soles(posture: Posture, extremities: Extremities | None = None) -> np.ndarray:
+    """(F, 2, 2, 3) heel and tip of both feet."""
+    natural = natural_extremities(BODY, posture, times(posture)) if extremities is None else extremities
+    return sole_places(BODY, BODY.pose(posture), natural)
+
+
+def flexion(posture: Posture, side: str = "L") -> np.ndarray:
+    """(F,) by how much a foot's toes are down against its shin [rad]."""
+    return logarithm(natural_extremities(BODY, posture, times(posture)).turns[f"foot.{side}"])[:, 0]
+
+
+@pytest.fixture
+def step() -> Posture:
+    """Ninety frames: both feet stand, the left one steps ahead, and the hips follow."""
+    left = path(90, (30, 48, (-0.4, FLAT_M), 0.12))
+    share = np.clip((np.arange(90) - 25.0) / 40.0, 0.0, 1.0)
+    return walking(left, still(90), -0.15 * share)
+
+
+def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
+    """Heel and tip of resting feet are level with the ground, to which rigid ones point."""
+    shown, rigid = soles(step), soles(step, RIGID)
+    for frames, foot in ((slice(5, 25), 0), (slice(55, 85), 0), (slice(5, 85), 1)):
+        assert np.abs(shown[frames, foot, :, 2]).max() < 1e-3
+    assert rigid[..., 2].min() < -0.03
+
+
+def test_no_sole_passes_the_ground_between_rests(step: Posture) -> None:
+    """Through lift, swing and landing as well."""
+    assert soles(step)[..., 2].min() > -2e-3
+
+
+def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:
+    """A foot rolls off over its tip, which stays on the ground, and comes down on its heel."""
+    heel, tip = np.moveaxis(soles(step)[:, 0, :, 2], 1, 0)
+    rising = slice(31, 35)
+    assert (tip[rising] < 0.012).all() and heel[34] > tip[34] + 0.02
+    assert heel[46] < 0.01 < tip[46] - 0.01
+
+
+def test_a_step_has_a_height_of_its_own() -> None:
+    """Stepping onto something, the foot lies flat on top of it and does not pass it."""
+    height = 0.17
+    left = path(90, (30, 55, (-0.4, FLAT_M + height), 0.1))
+    shown = soles(walking(left, still(90), np.linspace(0.0, -0.15, 90)))
+    assert np.abs(shown[62:86, 0, :, 2] - height).max() < 2e-3
+    assert np.abs(shown[5:25, 0, :, 2]).max() < 1e-3
+    assert shown[55:, 0, :, 2].min() > height - 3e-3
+
+
+def test_who_rises_on_the_toes_keeps_them_on_the_ground() -> None:
+    """An ankle that rests higher than it did at the same place stands on its toes: there is no step."""
+    left = path(220, (40, 55, (0.0, FLAT_M + 0.07), 0.0), (170, 185, STAND, 0.0))
+    heel, tip = np.moveaxis(soles(walking(left, still(220)))[:, 0, :, 2], 1, 0)
+    held = slice(95, 130)
+    assert np.abs(tip[held]).max() < 5e-3
+    assert (heel[held] > 0.05).all()
+
+
+def test_a_foot_high_above_the_ground_hangs() -> None:
+    """Its toes are down against the shin, by the bend of a relaxed ankle."""
+    left = path(90, (20, 40, (-0.25, 0.65), 0.0))
+    np.testing.assert_allclose(flexion(walking(left, still(90)))[60:85], HANGING_RAD, atol=1e-4)
+
+
+def test_a_resting_foot_keeps_its_heading_while_the_shin_turns() -> None:
+    """The shin's turning above it, as estimates have it, does not turn the sole."""
+    posture = walking(still(60), still(60))
+    step = np.zeros((60, len(NAMES)))
+    step[:, NAMES.index("shin.L.axial")] = np.radians(12.0) * np.sin(np.linspace(0.0, 6.0, 60))
+    twisted = posture.plus(step)
+    shown, rigid = soles(twisted), soles(twisted, RIGID)
+    wander = [np.ptp(places[5:55, 0, 1, :2], axis=0).max() for places in (shown, rigid)]
+    assert wander[0] < 0.1 * wander[1]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
+    """Noise in the postures makes feet turn little faster than their shins do."""
+    noise = np.random.default_rng(seed).normal(0.0, 0.003, (90, len(NAMES)))
+    noisy = step.plus(noise)
+    for side in ("L", "R"):
+        turn = natural_extremities(BODY, noisy, times(noisy)).turns[f"foot.{side}"]
+        joint = next(s.joint for s in BODY.skeleton.segments if s.name == f"foot.{side}")
+        shin = BODY.pose(noisy).rotation[:, joint]
+        speed = [
+            np.linalg.norm(logarithm(np.swapaxes(r[:-1], -1, -2) @ r[1:]), axis=-1)
+            for r in (shin @ turn, shin)
+        ]
+        assert speed[0].mean() < 1.3 * speed[1].mean()
+        assert speed[0].max() < speed[1].max() + np.radians(12.0)
+
+
+def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture) -> None:
+    """Turned, shifted and raised with the ground, the feet are turned alike."""
+    elsewhere = turned_and_shifted(step, 2.5, np.array([1.0, -2.0, 0.7]))
+    for name, turn in natural_extremities(BODY, step, times(step)).turns.items():
+        np.testing.assert_allclose(
+            natural_extremities(BODY, elsewhere, times(step)).turns[name], turn, atol=1e-7
+        )
+
+
+def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
+    """Left and right exchange, and with them the signs of rolls and headings."""
+    lean = np.zeros((90, len(NAMES)))
+    lean[:, NAMES.index("hip.L.rotation_y")], lean[:, NAMES.index("hip.R.rotation_z")] = 0.15, 0.2
+    leaning = step.plus(lean)
+    opposite = type(BODY)(mirrored_actor(BODY.actor))
+    given = natural_extremities(BODY, leaning, times(step)).turns
+    flipped = natural_extremities(opposite, mirrored(leaning), times(step)).turns
+    signs = np.outer([-1.0, 1.0, 1.0], [-1.0, 1.0, 1.0])
+    for one, other in (("foot.L", "foot.R"), ("foot.R", "foot.L"), ("hand.L", "hand.R")):
+        np.testing.assert_allclose(flipped[other], given[one] * signs, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_any_motion_keeps_the_ankles_range(seed: int) -> None:
+    """Tumbling included, flexion stays within a joint's range, and every turn is a rotation."""
+    rng = np.random.default_rng(seed)
+    low, high = BODY.skeleton.limits.T
+    ends = [rng.uniform(np.maximum(low, -1.5), np.minimum(high, 1.5)) for _ in range(2)]
+    share = np.linspace(0.0, 1.0, 60)[:, None]
+    posture = Posture.from_vector(BODY.skeleton, (1.0 - share) * ends[0] + share * ends[1])
+    for side in ("L", "R"):
+        turn = natural_extremities(BODY, posture, times(posture)).turns[f"foot.{side}"]
+        np.testing.assert_allclose(
+            turn @ np.swapaxes(turn, -1, -2), np.broadcast_to(np.eye(3), turn.shape), atol=1e-9
+        )
+        angle = np.linalg.norm(logarithm(turn), axis=-1)
+        assert angle.max() < max(TOES_DOWN_RAD, TOES_UP_RAD) + np.radians(30.0)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_few_frames_are_enough(count: int) -> None:
+    """A single posture has feet too."""
+    posture = walking(still(count), still(count))
+    assert np.isfinite(soles(posture)).all()
+
+
+def test_every_stair_is_a_floor_of_its_own() -> None:
+    """Each foot lies flat on its own step while the other one passes it."""
+    rise, run = 0.17, 0.28
+    left = path(110, (10, 26, (-run, FLAT_M + rise), 0.08), (46, 62, (-3 * run, FLAT_M + 3 * rise), 0.08))
+    right = path(
+        110, (28, 44, (-2 * run, FLAT_M + 2 * rise), 0.08), (64, 80, (-3 * run, FLAT_M + 3 * rise), 0.05)
+    )
+    climbed = np.clip((np.arange(110) - 10.0) / 62.0, 0.0, 1.0)
+    hips = HIPS_M - 0.05 + 2.7 * rise * climbed
+    shown = soles(walking(left, right, -2.8 * run * climbed, hips))
+    for frames, foot, steps in ((slice(29, 43), 0, 1), (slice(47, 61), 1, 2), (slice(66, 105), 0, 3)):
+        assert np.abs(shown[frames, foot, :, 2] - steps * rise).max() < 3e-3

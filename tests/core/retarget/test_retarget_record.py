@@ -1,0 +1,64 @@
+"""retarget.json: what is written is read again; every mistake is one sentence."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _character_maps import full_record
+from keymark.core.errors import InputError
+from keymark.core.retarget.retarget_record import (
+    RECORD_FILE,
+    read_retarget_record,
+    record_to_json,
+    write_retarget_record,
+)
+
+
+def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
+    """Every field; the same record gives the same bytes."""
+    write_retarget_record(tmp_path, full_record())
+    assert read_retarget_record(tmp_path) == full_record()
+    first = (tmp_path / RECORD_FILE).read_bytes()
+    write_retarget_record(tmp_path, read_retarget_record(tmp_path))
+    assert (tmp_path / RECORD_FILE).read_bytes() == first
+
+
+def test_figures_have_five_digits(tmp_path: Path) -> None:
+    """More would differ between machines, and mean nothing."""
+    write_retarget_record(
+        tmp_path, replace(full_record(), quality={"a_mm": 1.23456789, "b": None, "keys": 1234567})
+    )
+    assert read_retarget_record(tmp_path).quality == {"a_mm": 1.2346, "b": None, "keys": 1234567}
+    assert '"keys": 1234567' in (tmp_path / RECORD_FILE).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("way", "value", "said"),
+    [
+        (("schema_version",), 2, "newer Keymark"),
+        (("character", "file"), "", "character: file is ''"),
+        (("character", "sha256"), None, "sha256 is None; it must be a SHA-256 of 64 digits"),
+        (("map", "origin"), "guessed", "one of given, saved, recognized"),
+        (("frames",), 0, "frames is 0"),
+        (("fps",), 0, "fps is 0"),
+        (("options", "legs"), "both feet", "one of fk, ik, both"),
+        (("limbs", "tail"), "fk", "unknown field 'tail'"),
+        (("quality", "skate_mm_per_frame"), "low", "skate_mm_per_frame is 'low'"),
+        (("quality",), {f"f{n}": 0 for n in range(201)}, "at most 200"),
+        (("doubts",), "none", "doubts is 'none'; it must be a list"),
+        (("files", "../x"), "ab" * 32, "a file of this folder"),
+    ],
+)
+def test_every_mistake_is_named(tmp_path: Path, way: tuple[Any, ...], value: Any, said: str) -> None:
+    """The sentence begins with the file."""
+    whole = json.loads(json.dumps(record_to_json(full_record())))
+    holder = whole
+    for key in way[:-1]:
+        holder = holder[key]
+    holder[way[-1]] = value
+    (tmp_path / RECORD_FILE).write_text(json.dumps(whole), encoding="utf-8")
+    with pytest.raises(InputError, match=said) as caught:
+        read_retarget_record(tmp_path)
+    assert str(caught.value).startswith(str(tmp_path / RECORD_FILE))
