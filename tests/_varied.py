@@ -103,10 +103,16 @@ def varied_plan(seed: int) -> Plan:
     plan.elbow_bend_deg = float(rng.choice([rng.uniform(0, 10), rng.uniform(10, 60)], p=[0.7, 0.3]))
     plan.knee_bend_deg = float(rng.uniform(0, 10))
     plan.legs_apart_deg = float(rng.choice([rng.uniform(0, 4), rng.uniform(4, 15)]))
-    plan.spines, plan.necks = int(rng.integers(1, 7)), int(rng.choice([0, 1, 2, 3], p=[0.07, 0.6, 0.25, 0.08]))
+    plan.spines, plan.necks = (
+        int(rng.integers(1, 7)),
+        int(rng.choice([0, 1, 2, 3], p=[0.07, 0.6, 0.25, 0.08])),
+    )
     plan.shoulders, plan.toes = bool(rng.random() < 0.8), bool(rng.random() < 0.75)
     plan.hands = bool(rng.random() < 0.95)
-    plan.fingers, plan.finger_bones = int(rng.choice([0, 2, 3, 5], p=[0.3, 0.1, 0.1, 0.5])), int(rng.integers(1, 5))
+    plan.fingers, plan.finger_bones = (
+        int(rng.choice([0, 2, 3, 5], p=[0.3, 0.1, 0.1, 0.5])),
+        int(rng.integers(1, 5)),
+    )
     plan.head_end, plan.toe_end = bool(rng.random() < 0.35), bool(rng.random() < 0.35)
     plan.root = rng.choice([None, "ground", "center"], p=[0.45, 0.4, 0.15])
     plan.twists = rng.choice([None, "beside", "inside"], p=[0.6, 0.25, 0.15])
@@ -115,7 +121,20 @@ def varied_plan(seed: int) -> Plan:
         plan.root = "ground"
     plan.clavicles_on_neck = bool(plan.shoulders and plan.necks and rng.random() < 0.07)
     plan.thigh_holders = bool(rng.random() < 0.1)
-    things = ("hair", "bun", "skirt", "long_skirt", "tail", "wings", "weapon", "breasts", "face", "cape", "pouch", "ears")
+    things = (
+        "hair",
+        "bun",
+        "skirt",
+        "long_skirt",
+        "tail",
+        "wings",
+        "weapon",
+        "breasts",
+        "face",
+        "cape",
+        "pouch",
+        "ears",
+    )
     plan.worn = tuple(str(t) for t in things if rng.random() < 0.18)
     plan.tails = str(rng.choice(["good", "aside", "far"], p=[0.65, 0.25, 0.1]))
     plan.noise = float(rng.choice([0.0, 0.002, 0.006]))
@@ -176,7 +195,9 @@ def _trunk(made: Builder, plan: Plan) -> dict[str, tuple[str, ...]]:
     if plan.root is not None:
         parent = made.add("root", None, np.zeros(3), np.array([0.0, 0.2 * H, 0.0]))
         if plan.root == "center":
-            parent = made.add("center", parent, np.array([0.0, 0.0, hip]), np.array([0.0, 0.0, hip + 0.1 * H]))
+            parent = made.add(
+                "center", parent, np.array([0.0, 0.0, hip]), np.array([0.0, 0.0, hip + 0.1 * H])
+            )
     waist = hip + 0.03 * H
     neck_base = shoulder + 0.025 * H
     skull = neck_base + plan.neck * H
@@ -185,7 +206,14 @@ def _trunk(made: Builder, plan: Plan) -> dict[str, tuple[str, ...]]:
     points = np.stack([np.zeros(plan.spines + 1), bend, levels], axis=1)
     made.add("hips", parent, np.array([0.0, 0.0, waist]), points[0])
     spine = made.chain("spine", "hips", points)
-    necks = np.stack([np.zeros(plan.necks + 1), -0.1 * np.linspace(0, plan.neck * H, plan.necks + 1), np.linspace(neck_base, skull, plan.necks + 1)], axis=1)
+    necks = np.stack(
+        [
+            np.zeros(plan.necks + 1),
+            -0.1 * np.linspace(0, plan.neck * H, plan.necks + 1),
+            np.linspace(neck_base, skull, plan.necks + 1),
+        ],
+        axis=1,
+    )
     top = np.array([0.0, -0.1 * plan.neck * H, skull + plan.head * H])
     last = spine[-1]
     neck = made.chain("neck", last, necks) if plan.necks else []
@@ -297,7 +325,9 @@ def _skirt(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng:
     _skirt_of(made, plan, rng, 0.4 * plan.leg * plan.height)
 
 
-def _long_skirt(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator) -> None:
+def _long_skirt(
+    made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator
+) -> None:
     _skirt_of(made, plan, rng, 0.95 * plan.leg * plan.height)
 
 
@@ -321,18 +351,26 @@ def _wings(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng:
             made.add(f"feather{feather}.{side}", bones[-1], points[-2] * [sign, 1.0, 1.0], tip)
 
 
-def _weapon(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator) -> None:
+def _weapon(
+    made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator
+) -> None:
     H = plan.height
     hand = truth.get("hand.R", truth["forearm.R"])[0]
     start = made.tails[made.names.index(hand)]
     made.chain("sword", hand, start + np.linspace(0, 1, 3)[:, None] * np.array([0.0, -0.5, 0.1]) * H)
 
 
-def _breasts(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator) -> None:
+def _breasts(
+    made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator
+) -> None:
     H = plan.height
     for side, sign in SIDES.items():
         start = np.array([sign * 0.03, -0.03, plan.leg + 0.75 * plan.trunk]) * H
-        made.chain(f"breast.{side}", truth["spine"][-1], start + np.linspace(0, 1, 3)[:, None] * np.array([sign * 0.02, -0.05, 0.0]) * H)
+        made.chain(
+            f"breast.{side}",
+            truth["spine"][-1],
+            start + np.linspace(0, 1, 3)[:, None] * np.array([sign * 0.02, -0.05, 0.0]) * H,
+        )
 
 
 def _face(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator) -> None:
@@ -364,16 +402,32 @@ def _ears(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: 
     H = plan.height
     for side, sign in SIDES.items():
         start = made.heads[made.names.index("head")] + [sign * 0.03 * H, 0.0, 0.9 * plan.head * H]
-        made.chain(f"ear.{side}", "head", start + np.linspace(0, 1, 4)[:, None] * np.array([sign * 0.04, 0.02, 0.15]) * H)
+        made.chain(
+            f"ear.{side}",
+            "head",
+            start + np.linspace(0, 1, 4)[:, None] * np.array([sign * 0.04, 0.02, 0.15]) * H,
+        )
 
 
 WORN = {
-    "hair": _hair, "bun": _bun, "skirt": _skirt, "long_skirt": _long_skirt, "tail": _tail, "wings": _wings,
-    "weapon": _weapon, "breasts": _breasts, "face": _face, "cape": _cape, "pouch": _pouch, "ears": _ears,
+    "hair": _hair,
+    "bun": _bun,
+    "skirt": _skirt,
+    "long_skirt": _long_skirt,
+    "tail": _tail,
+    "wings": _wings,
+    "weapon": _weapon,
+    "breasts": _breasts,
+    "face": _face,
+    "cape": _cape,
+    "pouch": _pouch,
+    "ears": _ears,
 }
 
 
-def _finished(made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator) -> Varied:
+def _finished(
+    made: Builder, plan: Plan, truth: Mapping[str, tuple[str, ...]], rng: np.random.Generator
+) -> Varied:
     heads, tails = np.array(made.heads), np.array(made.tails)
     heads = heads + rng.normal(0.0, plan.noise, heads.shape)
     if plan.tails == "aside":

@@ -94,7 +94,7 @@ class ControlMotion:
 
     def shows_ik(self, limb: str | None) -> bool:
         """Whether a limb shows what its inverse kinematics does."""
-        return limb in self.limbs and self.limbs[limb].in_ik
+        return limb is not None and limb in self.limbs and self.limbs[limb].in_ik
 
     def joints_m(self, limb: str) -> tuple[Array, Array, Array]:
         """(F, 3) a limb's root, its elbow or knee, and its end [m]."""

@@ -5,7 +5,7 @@ become. Goals of limbs that have both are fitted to the very places that the FK 
 switching between them moves nothing.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from .control_channels import Control
@@ -38,7 +38,7 @@ class ControlStages:
 
 
 def control_stages(
-    controls: Sequence[Control], legs: dict[str, tuple[int, Collection[int]]]
+    controls: Sequence[Control], legs: Mapping[str, tuple[int, Collection[int]]]
 ) -> ControlStages:
     """The controls in the order of their fitting.
 

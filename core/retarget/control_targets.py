@@ -58,6 +58,9 @@ def control_targets(
 def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Array:
     """(F, 4, 4) places of a pole, as matrices.
 
+    A pole without an offset lies beyond elbow or knee; others are as far from the line between the limb's
+    root and its end.
+
     Args:
         joints: (F, 3) the limb's root, its elbow or knee, and its end.
         bend: (F, 3) unit vector from the line between root and end toward elbow or knee.
@@ -66,9 +69,11 @@ def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Ar
     root, middle, end = joints
     axis = end - root
     axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
+    foot = root + np.sum((middle - root) * axis, axis=-1, keepdims=True) * axis
+    out = np.linalg.norm(middle - foot, axis=-1, keepdims=True)
     turn = rotations.exponential(-setting.offset_rad * axis)
     poses = np.tile(np.eye(4), (len(bend), 1, 1))
-    poses[:, :3, 3] = middle + setting.distance * (turn @ bend[..., None])[..., 0]
+    poses[:, :3, 3] = foot + (out + setting.distance) * (turn @ bend[..., None])[..., 0]
     return poses
 
 

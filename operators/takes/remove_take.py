@@ -27,8 +27,8 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
 
     delete_data: bpy.props.BoolProperty(
         name="Delete Its Data",
-        description="Delete its actor, camera, clip and Actions too, those of its characters included, except "
-        "what another take uses; the characters stay",
+        description="Delete its actor, camera, clip and Actions too, its characters' included, except what "
+        "another take uses; the characters stay",
         default=False,
         options={"SKIP_SAVE"},
     )

@@ -128,7 +128,8 @@ def _score(points: Array, tree: cKDTree, normal: Array, offset: float, size: flo
 
 def _fitted(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> tuple[Array, float]:
     """The plane between the heads that a plane nearly mirrors onto others."""
-    apart, other = tree.query(_mirrored(bones.head, normal, offset), distance_upper_bound=2 * SAME * bones.size)
+    images = _mirrored(bones.head, normal, offset)
+    apart, other = tree.query(images, distance_upper_bound=2 * SAME * bones.size)
     paired = np.flatnonzero(np.isfinite(apart) & (other != np.arange(len(other))))
     return _between(bones.head[paired], bones.head[other[paired]], normal, offset, bones.size)
 

@@ -77,7 +77,8 @@ def constrained_bones(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint
     """The bones that a constraint of a bone moves: with inverse kinematics a chain of parents."""
     if constraint.type not in ("IK", "SPLINE_IK"):
         return [bone]
-    chain, above = [], bone if getattr(constraint, "use_tail", True) else bone.parent
+    chain: list[bpy.types.PoseBone] = []
+    above = bone if getattr(constraint, "use_tail", True) else bone.parent
     while above is not None and (constraint.chain_count == 0 or len(chain) < constraint.chain_count):
         chain.append(above)
         above = above.parent

@@ -60,14 +60,12 @@ def find_controls(
     bones = [bone for role in moved for bone in character_map.bones(role)]
     switches = {limb: _limb_switches(armature_object, graph, character_map, limb, moved) for limb in LIMBS}
     targets = {
-        limb: found
+        limb: target
         for limb in LIMBS
         if set(joint_roles(limb)) <= set(character_map.roles)
-        and (found := ik_targets(armature_object, graph, character_map, limb)) is not None
+        and (target := ik_targets(armature_object, graph, character_map, limb)) is not None
     }
-    looked_at = [
-        name for target in targets.values() for name in (target.goal, target.pole) if name is not None
-    ]
+    looked_at = [name for each in targets.values() for name in (each.goal, each.pole) if name is not None]
     candidates = _candidates(armature_object, graph, held, [*bones, *looked_at])
     tried = _try_switches(armature_object, candidates, [*bones, *looked_at], switches, size)
     for name in looked_at:  # what several controls move together follows none of them while all are posed

@@ -48,8 +48,8 @@ class _Limb:
     bones: tuple[str, str, str]
     rest: Array
     """(3, 4, 4) the poses of the bones."""
-    rest_pole: Array | None
-    """(3,)."""
+    rest_pole: Array
+    """(3,) the place of the pole; the joint's own where there is none."""
 
 
 def try_inverse_kinematics(
@@ -98,7 +98,7 @@ def try_inverse_kinematics(
             carrier = controls[limb.toe.space.carrier].name
             origins[limb.toe.name] = rigid_offset(poses[carrier], poses[limb.toe.name])[0][:3, 3]
         if limb.pole is not None:
-            poles[limb.pole.name] = _pole_setting(limb, poses, notes)
+            poles[limb.pole.name] = _pole_setting(limb, limb.pole.name, poses, notes)
     return TriedInverseKinematics(offsets, poles, origins, tuple(notes))
 
 
@@ -117,7 +117,7 @@ def _limbs(
         pole, toe = own.get(ControlKind.POLE), own.get(ControlKind.TOE)
         bones = limb_bones(character_map, limb)
         _, rest = read_poses(armature_object, bones)
-        rest_pole = None if pole is None else at_rest[pole.name][:3, 3]
+        rest_pole = rest[1, :3, 3] if pole is None else at_rest[pole.name][:3, 3]
         found.append(_Limb(limb, goal, pole, toe, bones, rest, rest_pole))
     return found
 
@@ -181,16 +181,14 @@ def _tried_pole(limb: _Limb, turn_rad: float) -> Array:
     return root + along + Rotation.from_rotvec(turn_rad * axis).as_matrix() @ across
 
 
-def _pole_setting(limb: _Limb, poses: Mapping[str, Array], notes: list[str]) -> PoleSetting:
+def _pole_setting(limb: _Limb, name: str, poses: Mapping[str, Array], notes: list[str]) -> PoleSetting:
     """Where the pole belongs; a sentence is added where it steers nothing."""
-    root, middle, end = (poses[name][:, :3, 3] for name in limb.bones)
-    pole = poses[limb.pole.name][:, :3, 3]
+    root, middle, end = (poses[bone][:, :3, 3] for bone in limb.bones)
+    pole = poses[name][:, :3, 3]
     offsets = np.array([pole_offset(*points) for points in zip(root, middle, end, pole, strict=True)])
     mean = float(np.angle(np.exp(1j * offsets).mean()))
     if np.abs(np.angle(np.exp(1j * (offsets - mean)))).max() > AGREE_RAD:
-        notes.append(
-            f"Pole '{limb.pole.name}' does not steer bone '{limb.bones[1]}'; in IK it may point elsewhere"
-        )
+        notes.append(f"Pole '{name}' does not steer bone '{limb.bones[1]}'; in IK it may point elsewhere")
     rest = limb.rest[:, :3, 3]
     length = float(np.linalg.norm(rest[1] - rest[0]) + np.linalg.norm(rest[2] - rest[1]))
     distance = float(np.linalg.norm(limb.rest_pole - rest[1]))

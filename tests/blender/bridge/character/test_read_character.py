@@ -1,0 +1,145 @@
+"""Characters are read as they rest, and what cannot be retargeted is refused with a sentence."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from _armatures import build_character
+from _characters import plain_character
+from _rigify import add_rig
+from keymark.core.errors import InputError
+from keymark.operators.bridge.character.cycles import dependency_cycle
+from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
+
+
+@pytest.fixture
+def character() -> bpy.types.Object:
+    """A deform skeleton."""
+    return build_character(plain_character(scale=0.01, roll_rad=0.7))
+
+
+def test_bones_are_read_as_they_were_built(character: bpy.types.Object) -> None:
+    """Rest matrices, tails, parents and scale, parents before their children."""
+    built, read = plain_character(scale=0.01, roll_rad=0.7), read_character(character)
+    assert read.scale == pytest.approx(0.01)
+    assert set(read.index) == set(built.index)
+    for number, bone in enumerate(read.bones):
+        other = built.bone(bone.name)
+        assert bone.parent < number
+        assert bone.rest == pytest.approx(other.rest, abs=1e-3)
+        assert bone.tail == pytest.approx(other.tail, abs=1e-3)
+        parents = [
+            r.bones[b.parent].name if b.parent >= 0 else None for r, b in ((read, bone), (built, other))
+        ]
+        assert parents[0] == parents[1]
+
+
+def no_armature() -> bpy.types.Object:
+    """An empty."""
+    return bpy.data.objects.new("Thing", None)
+
+
+def changed(change: Callable[[bpy.types.Object], object]) -> Callable[[], bpy.types.Object]:
+    """A character that something was done to."""
+
+    def make() -> bpy.types.Object:
+        made = build_character(plain_character())
+        change(made)
+        bpy.context.view_layer.update()
+        return made
+
+    return make
+
+
+def without_bones(made: bpy.types.Object) -> None:
+    """Other armature data."""
+    made.data = bpy.data.armatures.new("Bare")
+
+
+def edited(made: bpy.types.Object) -> None:
+    """Left in Edit Mode."""
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def tweaked(made: bpy.types.Object) -> None:
+    """An NLA strip that is tweaked."""
+    action = bpy.data.actions.new("Strip")
+    slot = action.slots.new(id_type="OBJECT", name=made.name)
+    data = made.animation_data_create()
+    strip = data.nla_tracks.new().strips.new("Strip", 1, action)
+    strip.action_slot = slot
+    data.nla_tracks[0].select = strip.select = True
+    data.nla_tracks.active = data.nla_tracks[0]
+    data.use_tweak_mode = True
+
+
+def driven_in_a_circle(made: bpy.types.Object) -> None:
+    """A thigh that turns with its shin, which turns with it."""
+    curve = made.pose.bones["thigh.L"].driver_add("location", 0)
+    variable = curve.driver.variables.new()
+    variable.type = "TRANSFORMS"
+    variable.targets[0].id, variable.targets[0].bone_target = made, "shin.L"
+    curve.driver.expression = variable.name
+
+
+def constrained_in_a_circle(made: bpy.types.Object) -> None:
+    """Hips that copy a foot."""
+    constraint = made.pose.bones["hips"].constraints.new("COPY_ROTATION")
+    constraint.target, constraint.subtarget = made, "foot.R"
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (no_armature, "'Thing' is not an armature"),
+        (lambda: None, "nothing is not an armature"),
+        (changed(without_bones), "has no bones"),
+        (changed(edited), "Edit Mode"),
+        (changed(lambda made: setattr(made, "scale", (1.0, 2.0, 1.0))), "scaled by"),
+        (changed(lambda made: setattr(made, "scale", (-1.0, 1.0, 1.0))), "mirrored"),
+        (changed(lambda made: setattr(made, "scale", (0.0, 0.0, 0.0))), "scale of zero"),
+        (changed(lambda made: setattr(made, "location", (np.nan, 0.0, 0.0))), "not a number"),
+        (changed(lambda made: setattr(made.data, "pose_position", "REST")), "rest position"),
+        (changed(lambda made: made.hide_set(True)), "is hidden"),
+        (changed(lambda made: bpy.context.scene.collection.objects.unlink(made)), "in no scene"),
+        (changed(tweaked), "tweak mode"),
+        (changed(driven_in_a_circle), "dependency cycle"),
+        (changed(constrained_in_a_circle), "dependency cycle"),
+    ],
+)
+def test_what_cannot_be_retargeted_is_refused(make: Callable[[], bpy.types.Object], words: str) -> None:
+    """One sentence says what is wrong, and what to do."""
+    with pytest.raises(InputError, match=words):
+        read_character(make())
+
+
+def test_the_drivers_of_a_real_rig_are_no_cycle(rigify: bpy.types.Object) -> None:
+    """Rigify's drivers and constraints wait for each other nowhere."""
+    assert len(rigify.animation_data.drivers) > 50
+    assert dependency_cycle(rigify) == ()
+
+
+def test_a_driver_by_a_bones_own_property_is_no_cycle() -> None:
+    """A custom property that moves its own bone depends on nothing."""
+    made = build_character(plain_character())
+    made.pose.bones["hips"]["lift"] = 0.5
+    curve = made.pose.bones["hips"].driver_add("location", 1)
+    variable = curve.driver.variables.new()
+    variable.targets[0].id, variable.targets[0].data_path = made, 'pose.bones["hips"]["lift"]'
+    curve.driver.expression = variable.name
+    assert dependency_cycle(made) == ()
+    variable.targets[0].data_path = 'pose.bones["hips"].location[1]'
+    assert dependency_cycle(made) != ()
+
+
+def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path) -> None:
+    """Keys on a linked armature are lost; on its override they stay."""
+    linked = add_rig(rigify_blend, link=True)
+    assert needs_override(linked)
+    with pytest.raises(InputError, match="library override"):
+        read_character(linked)
+    made = make_override(bpy.context, linked)
+    assert not needs_override(made)
+    assert len(read_character(made).bones) == len(linked.data.bones)
