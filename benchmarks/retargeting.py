@@ -15,7 +15,6 @@ from typing import Any
 
 import bpy
 import numpy as np
-from clock import processor_time
 from keyframing import exact_postures, hand_posed, keyed
 from takes import chosen_takes, load_project, write_results
 from trials import read_trial
@@ -29,13 +28,12 @@ from _varied import varied  # noqa: E402
 from keymark.core.body.segment_motion import SegmentMotion, segment_motion  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.finish.natural_extremities import natural_extremities  # noqa: E402
-from keymark.core.progress import run  # noqa: E402
+from keymark.core.progress import Progress, run  # noqa: E402
 from keymark.core.retarget.options import RetargetOptions  # noqa: E402
 from keymark.core.retarget.quality import Quality  # noqa: E402
 from keymark.core.retarget.recognition.recognize import recognize  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.operators.bridge.armature import build_armature  # noqa: E402
-from keymark.operators.bridge.character.find_controls import find_controls  # noqa: E402
 from keymark.operators.bridge.character.measure import measure  # noqa: E402
 from keymark.operators.bridge.character.read_character import read_character  # noqa: E402
 from keymark.operators.bridge.character.retarget import Retargeted, retarget  # noqa: E402
@@ -56,6 +54,8 @@ COLUMNS = {
     "keys_share": ("keys", 0),
     "ms_a_frame": ("ms a frame", 1),
 }
+MEASURING = "Measuring the character"
+"""The last stage of retargeting, which the peer has none of: its time is left out."""
 WORST = ("penetration_mm", "hands_floor_mm", "ik_fk_mm")
 """Columns of which the worst take counts, not the mean."""
 Row = dict[str, float]
@@ -111,14 +111,18 @@ def _retargeted(make: Maker, source: SegmentMotion, frames: np.ndarray) -> tuple
     scene = _scene(frames)
     armature = make()
     character = read_character(armature)
-    character_map = find_controls(armature, recognize(character).character_map)
-    done: list[Retargeted] = []
-    seconds = processor_time(
-        lambda: done.append(run(retarget(armature, source, frames, character_map, RetargetOptions())))
-    )
-    result = done[0]
+    character_map = recognize(character).character_map
+    started, seconds = time.process_time(), 0.0
+
+    def report(progress: Progress) -> None:
+        nonlocal seconds
+        if progress.stage != MEASURING:
+            seconds = time.process_time() - started
+
+    job = retarget(armature, source, frames, character_map, RetargetOptions())
+    result = run(job, report)
     result.write(scene, "Motion")
-    return _row(run(result.measure()), seconds, len(frames)), result
+    return _row(result.quality, seconds, len(frames)), result
 
 
 def _copied(make: Maker, motion: Motion, source: SegmentMotion, frames: np.ndarray, own: Retargeted) -> Row:

@@ -4,7 +4,8 @@ Usage: blender --background --addons bl_ext.user_default.keymark --python docs/s
 
 Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
 that of the demonstration take, whose shipped poses replace an animator's. With a LIBRARY, as in `aerobic`,
-nothing is posed: its postures are matched with the footage.
+nothing is posed: its postures are matched with the footage. At the end another character performs the
+motion: a skeleton that stands in for a rig of yours.
 """
 
 import sys
@@ -39,6 +40,22 @@ LENGTHS_M = {
     "neck_head": 0.238,
 }
 """Lengths of the left side and the middle; the right side's follow the left's."""
+SKELETON = {
+    "Hips": (None, (0.0, 0.02, 0.62), (0.0, 0.02, 0.7)),
+    "Spine": ("Hips", (0.0, 0.02, 0.7), (0.0, 0.02, 0.84)),
+    "Chest": ("Spine", (0.0, 0.02, 0.84), (0.0, 0.02, 0.98)),
+    "Neck": ("Chest", (0.0, 0.02, 0.98), (0.0, 0.01, 1.05)),
+    "Head": ("Neck", (0.0, 0.01, 1.05), (0.0, 0.0, 1.25)),
+    "Clavicle.L": ("Chest", (0.02, 0.02, 0.95), (0.12, 0.03, 0.95)),
+    "UpperArm.L": ("Clavicle.L", (0.12, 0.03, 0.95), (0.27, 0.04, 0.8)),
+    "Forearm.L": ("UpperArm.L", (0.27, 0.04, 0.8), (0.4, 0.02, 0.67)),
+    "Hand.L": ("Forearm.L", (0.4, 0.02, 0.67), (0.48, 0.0, 0.59)),
+    "Thigh.L": ("Hips", (0.08, 0.02, 0.6), (0.09, 0.01, 0.33)),
+    "Shin.L": ("Thigh.L", (0.09, 0.01, 0.33), (0.1, 0.03, 0.07)),
+    "Foot.L": ("Shin.L", (0.1, 0.03, 0.07), (0.1, -0.07, 0.02)),
+    "Toe.L": ("Foot.L", (0.1, -0.07, 0.02), (0.1, -0.13, 0.02)),
+}
+"""Parent, head and tail of the bones of a child's skeleton with its arms half down, left side and middle."""
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
@@ -106,8 +123,36 @@ def match_keyframes(scene: bpy.types.Scene, library: str) -> None:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
 
 
+def build_child(scene: bpy.types.Scene) -> bpy.types.Object:
+    """The stand-in for your own character; a rig with controls, linked or appended, does as well."""
+    armature = bpy.data.armatures.new("Child")
+    child = bpy.data.objects.new("Child", armature)
+    scene.collection.objects.link(child)
+    bpy.context.view_layer.objects.active = child
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name, (parent, head, tail) in SKELETON.items():
+        for side, sign in (("L", 1.0), ("R", -1.0)) if name.endswith(".L") else ((None, 1.0),):
+            bone = armature.edit_bones.new(name if side is None else f"{name[:-1]}{side}")
+            bone.head, bone.tail = ((sign * end[0], *end[1:]) for end in (head, tail))
+            above = f"{parent[:-1]}{side}" if parent and parent.endswith(".L") else parent
+            bone.parent = armature.edit_bones[above] if above else None
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return child
+
+
+def let_perform(character: bpy.types.Object) -> None:
+    """Step 8, character: recognize its bones, and give it the newest motion as an Action of its own."""
+    bpy.ops.keymark.add_character(armature=character.name)
+    added = active_take(bpy.context.scene).characters[0]
+    for role in added.character_map.roles:
+        print(f"{role.name}: {', '.join(entry.bone for entry in role.bones)} {role.doubt}")
+    bpy.ops.keymark.retarget()
+    for line in added.results[0].lines:
+        print(line.text)
+
+
 def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.types.PropertyGroup:
-    """All seven steps; returns the take."""
+    """All eight steps; returns the take."""
     load_footage(scene)
     pick_markers(active_take(scene))
     build_actor(active_take(scene))
@@ -123,9 +168,11 @@ def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.type
     bpy.ops.keymark.bake_motion()  # step 7, finish: few keys, resting feet stand still
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "session.blend"))  # catalogs lie beside the file
     bpy.ops.keymark.mark_asset()
-    bpy.ops.wm.save_mainfile()
     bpy.ops.keymark.export_motion(format="BVH", filepath=str(folder / "motion.bvh"))
-    return take
+    let_perform(build_child(scene))
+    bpy.ops.keymark.mark_result_asset()
+    bpy.ops.wm.save_mainfile()
+    return active_take(scene)
 
 
 if __name__ == "__main__":

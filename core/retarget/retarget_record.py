@@ -162,12 +162,11 @@ def _quality(fields: Fields) -> Mapping[str, float | None]:
             f"{child.where} has {len(child.values)} figures; at most {MOST_FIGURES} with names of "
             f"{LONGEST_FIGURE} characters are read"
         )
-    return {
-        name: child.number(name, -LARGEST_FIGURE, LARGEST_FIGURE) if child.has(name) else None
-        for name in child.values
-    }
+    for name in filter(child.has, child.values):
+        child.number(name, -LARGEST_FIGURE, LARGEST_FIGURE)
+    return dict(child.values)
 
 
 def _significant(value: float | None) -> float | None:
-    """A figure with five digits."""
-    return None if value is None else float(f"{value:.5g}") + 0.0
+    """A figure with five digits; a number of things stays whole."""
+    return value if value is None or isinstance(value, int) else float(f"{value:.5g}") + 0.0

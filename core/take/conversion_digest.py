@@ -8,6 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files.digest import content_digest, digest
+from ..files.json_file import read_json
 from ..footage.clips.image_sequence import find_images
 from .character_settings import CharacterSettings
 from .conversion_settings import ConversionSettings
@@ -66,11 +67,25 @@ def conversion_digest(
     )
 
 
-def _character(character: CharacterSettings) -> tuple[str, str | None, str, str]:
-    """The character file's name and content, the armature, and the options."""
+def _character(character: CharacterSettings) -> tuple[object, ...]:
+    """The character's files by name and content, its armature, and the options."""
     file = character.file
     options = json.dumps(character.options.to_json(), sort_keys=True)
-    return (file.path.name, file.object, content_digest(file.path), options)
+    contents = tuple((one.name, content_digest(one)) for one in (file.path, *_buffers(file.path)))
+    return (contents, file.object, options)
+
+
+def _buffers(path: Path) -> list[Path]:
+    """Files beside a .gltf that hold its numbers, where it has any."""
+    if path.suffix.lower() != ".gltf":
+        return []
+    try:
+        buffers = read_json(path).get("buffers")
+    except InputError:  # Blender has its own word on it
+        return []
+    names = [one.get("uri") for one in buffers if isinstance(one, dict)] if isinstance(buffers, list) else []
+    beside = [path.parent / name for name in names if isinstance(name, str) and Path(name).name == name]
+    return [file for file in beside if file.is_file()]
 
 
 def _take_fields(fields: Mapping[str, Any]) -> str:

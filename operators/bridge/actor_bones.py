@@ -20,6 +20,12 @@ def is_actor(candidate: bpy.types.Object | None) -> bool:
     return ACTOR_BONES <= set(candidate.data.bones.keys())
 
 
+def missing_bones(armature_object: bpy.types.Object) -> list[str]:
+    """Bones of Keymark's skeleton that an armature lacks, in the skeleton's order."""
+    there = armature_object.data.bones
+    return [segment.name for segment in HUMAN.segments if segment.name not in there]
+
+
 def moves_an_actor(action: bpy.types.Action) -> bool:
     """Whether an Action turns the bones of a Keymark actor."""
     bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]

@@ -91,6 +91,8 @@ def _draw_role(
         name = split.row()
         name.alignment = "RIGHT"
         name.label(text=role_title(role.name) if index == 0 else "")
+        if is_chain(role.name) and index == len(role.bones) - 1:
+            name.operator("keymark.add_chain_bone", text="", icon="ADD", emboss=False).role = role.name
         row = split.row(align=True)
         field = row.row(align=True)
         field.alert = bool(entry.bone) and entry.bone not in bones
@@ -103,16 +105,12 @@ def _draw_role(
 
 
 def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:
-    """Draw the eyedropper, and what lengthens a chain or takes an empty field out of it."""
+    """Draw the eyedropper, and what takes an empty field out of a chain."""
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
-    if not is_chain(role.name):
-        return
-    if not role.bones[index].bone and len(role.bones) > 1:
+    if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
         remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
         remove.role, remove.index = role.name, index
-    elif index == len(role.bones) - 1:
-        row.operator("keymark.add_chain_bone", text="", icon="ADD").role = role.name
 
 
 def _draw_controls(
@@ -134,8 +132,7 @@ def _draw_controls(
         return
     column, armature = body.column(align=True), character.armature.data
     for role, entry in keyed:
-        text = label("{role} FK", role=label(role_title(role.name)))
-        _draw_control(column, armature, entry, "control", text)
+        _draw_control(column, armature, entry, "control", label(role_title(role.name)))
     for name in controls:
         _draw_control(column, armature, limb, name, label(limb.bl_rna.properties[name].name))
     if limb is not None and limb.switch_bone:

@@ -8,6 +8,7 @@ from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .characters import active_character, find_character, missing_roles, shown_result
 from .map_rows import draw_map
+from .requirements import recognized
 from .results import is_shown
 
 MOST_LINES = 6
@@ -51,6 +52,8 @@ class KEYMARK_PT_character(TakePanel, bpy.types.Panel):
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
         elif character.problem:
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES)
+        elif (unmet := recognized(context)) is not None:
+            draw_sentence(column, context, unmet, "ERROR", MOST_LINES)
         _draw_source(column, take, character)
         row = column.row()
         row.scale_y = 1.4

@@ -13,7 +13,7 @@ from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
 from .characters import active_character
 from .figures import figures
-from .map_conversion import map_of
+from .map_conversion import map_of, show_found_controls
 from .options import options_of
 from .requirements import editable, recognized, source
 from .results import add_result, result_to_replace, show_lines
@@ -84,8 +84,8 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         action = result.retargeted.write(scene, into)
         source = SourceMotion(result.kind, source_action, actor, result.title)
         listed = add_result(character, source, action)
-        quality = result.retargeted.quality
-        show_lines(listed, figures(quality), result.retargeted.notes)
+        show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
+        show_found_controls(character.character_map, result.retargeted.character_map)
         for note in result.retargeted.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
         say(

@@ -4,11 +4,14 @@ from collections.abc import Callable
 
 import bpy
 
-from ..bridge.actor_bones import is_actor
+from ..bridge.actor_bones import is_actor, missing_bones
 from .job_progress import job_is_running
 from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .messages import label
 from .takes import find_take
+
+MOST_NAMED = 3
+"""Missing bones that a sentence names."""
 
 Requirement = Callable[[bpy.types.Context], str | None]
 
@@ -33,8 +36,10 @@ def actor(context: bpy.types.Context) -> str | None:
         return "Build the actor first, or choose its armature"
     if not is_actor(armature_object):
         return label(
-            "'{name}' is no actor of Keymark's; build the actor, and choose '{name}' in the step Character",
+            "'{name}' is no actor of Keymark's, as it lacks {bones}; build an actor, and choose '{name}' in "
+            "the step Character",
             name=armature_object.name,
+            bones=", ".join(missing_bones(armature_object)[:MOST_NAMED]),
         )
     if armature_object.library is not None:
         return "The actor is linked; make a library override of it first (Object > Library Override)"

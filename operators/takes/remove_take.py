@@ -27,7 +27,8 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
 
     delete_data: bpy.props.BoolProperty(
         name="Delete Its Data",
-        description="Delete its actor, Actions, camera and clip too, except those that another take uses",
+        description="Delete its actor, camera, clip and Actions too, its characters' included, except what "
+        "another take uses; the characters stay",
         default=False,
         options={"SKIP_SAVE"},
     )
@@ -37,15 +38,22 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
         settings = context.scene.keymark
         active = active_take(context.scene)
         index = next(i for i, each in enumerate(settings.takes) if each == active)
-        own = set(_data_of(active))
+        own = set(_all_data_of(active))
         settings.takes.remove(index)
         settings.active_take = max(0, index - 1)
         if self.delete_data:
             others = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
-            deleted = own.difference(*(_data_of(other) for other in others))
+            deleted = own.difference(*(_all_data_of(other) for other in others))
             inner = [block.data for block in deleted if isinstance(block, bpy.types.Object)]
             alone = [block for block in inner if block is not None and block.users == 1]
             bpy.data.batch_remove([*deleted, *alone])
+
+
+def _all_data_of(take: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+    """Yield a take's data-blocks, and the Actions that its characters got; not the characters themselves."""
+    yield from _data_of(take)
+    for character in take.characters:
+        yield from (result.action for result in character.results if result.action is not None)
 
 
 def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:

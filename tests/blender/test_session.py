@@ -51,6 +51,10 @@ def test_the_documented_session_leads_to_an_asset_and_a_file(
     assert take.armature.animation_data.action == final
     assert final.asset_data is not None and len(final.slots) == 1
     assert take.finish.keys_after < 0.5 * take.finish.keys_before
+    result = take.characters[0].results[0]
+    child = take.characters[0].armature
+    assert child.animation_data.action == result.action and result.action.asset_data is not None
+    assert result.action.name == "aerobic Child" and not result.outdated
     assert (tmp_path / "session.blend").is_file()
     assert (tmp_path / "motion.bvh").read_text().startswith("HIERARCHY")
 

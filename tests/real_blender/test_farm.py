@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from _character_glb import write_glb
+from _characters import plain_character
 from _shoot import write_shoot
 from installed_blender import Blender
 
@@ -18,17 +20,24 @@ NODE = shutil.which("node")
 
 @pytest.fixture(scope="module")
 def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two tiny takes."""
-    return write_shoot(tmp_path_factory.mktemp("shoots") / "walk", 2)
+    """Two tiny takes, whose motions a character gets too."""
+    folder = write_shoot(tmp_path_factory.mktemp("shoots") / "walk", 2)
+    write_glb(plain_character(root="root"), folder / "anna.glb")
+    said = json.loads((folder / "shoot.json").read_text(encoding="utf-8"))
+    said["character"] = {"file": "anna.glb", "tolerance_mm": 2}
+    (folder / "shoot.json").write_text(json.dumps(said), encoding="utf-8")
+    return folder
 
 
 def whole(output: Path, library: str) -> bool:
-    """Whether both takes are converted and merged."""
+    """Whether both takes are converted, with their character, and merged."""
     lines = (output / "summary.jsonl").read_text(encoding="utf-8").splitlines()
     status = {line["take"]: line["status"] for line in map(json.loads, lines)}
     blend = output / "asset_library" / f"{library}.blend"
+    characters = [output / take / "character.blend" for take in status]
     return (
-        status.keys() == {"day1/take01", "day1/take02"}
+        all(file.is_file() for file in characters)
+        and status.keys() == {"day1/take01", "day1/take02"}
         and set(status.values())
         <= {
             "converted",

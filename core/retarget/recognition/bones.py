@@ -1,6 +1,6 @@
 """The bones that may play a role, in a tree of anatomy: joined where parents run through helper bones."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -88,17 +88,16 @@ class Bones:
         return found
 
 
-def candidate_bones(character: Character) -> list[Bones]:
-    """Tables of bones to look for roles in, the most likely first.
+def candidate_bones(character: Character) -> Iterator[Bones]:
+    """Yield tables of bones to look for roles in, the most likely first.
 
     Where some bones move a mesh and others do not, those that do come first; all bones come after them.
     """
     everything = np.arange(len(character.bones))
     deforming = _deforming(character)
-    tables = [everything]
     if 0 < len(deforming) < len(everything):
-        tables.insert(0, deforming)
-    return [anatomy(character, table) for table in tables]
+        yield anatomy(character, deforming)
+    yield anatomy(character, everything)
 
 
 def anatomy(character: Character, number: IndexArray) -> Bones:
@@ -244,7 +243,7 @@ def _joined_ends(
         reach = float(np.max(np.linalg.norm(head[own] - head[bone], axis=1)))
         if (
             reach < LARGEST_END * size
-            and _is_hub(above, parent)
+            and _is_hub(above, head, parent, size)
             and not _meets(tail, head, above, bone, size)
         ):
             onto = _limb_ending_at(bone, own, head, tail, parent, readings, size)
@@ -253,15 +252,19 @@ def _joined_ends(
     return parent
 
 
-def _is_hub(bone: int, parent: IndexArray) -> bool:
-    """Whether a bone carries half of all, or stands near a root."""
-    near_root = parent[bone] < 0 or parent[parent[bone]] < 0
-    return bool(near_root or 2 * _below(parent, bone).sum() >= len(parent))
+def _is_hub(bone: int, head: Array, parent: IndexArray, size: float) -> bool:
+    """Whether a bone is a root, stands where its root does, or carries half of all bones."""
+    top = bone
+    while parent[top] >= 0:
+        top = int(parent[top])
+    at_root = np.linalg.norm(head[bone] - head[top]) < NEAR_PLACE * size
+    return bool(at_root or 2 * _below(parent, bone).sum() >= len(parent))
 
 
 def _meets(tail: Array, head: Array, first: int, second: int, size: float) -> bool:
-    """Whether a bone ends where another begins."""
-    return bool(np.linalg.norm(tail[first] - head[second]) < NEAR_PLACE * size)
+    """Whether a bone begins or ends where another begins."""
+    ends = np.linalg.norm(np.stack([head[first], tail[first]]) - head[second], axis=1)
+    return bool((ends < NEAR_PLACE * size).any())
 
 
 def _limb_ending_at(
@@ -275,7 +278,8 @@ def _limb_ending_at(
 ) -> int | None:
     """The last bone of a limb that a bone continues; None where there is none, or another continues it."""
     above = parent[bone]
-    has_child = np.bincount(parent[parent >= 0], minlength=len(parent)) > 0
+    other = np.array([reading.other for reading in readings])
+    has_child = np.bincount(parent[(parent >= 0) & ~other], minlength=len(parent)) > 0
     way = np.linalg.norm(head - head[bone], axis=1)
     side = readings[bone].side
     limb = ~own & (parent >= 0)
@@ -289,6 +293,7 @@ def _limb_ending_at(
         continues = readings[bone].clear_part is not None or readings[end].other or own.sum() > 1
         if parent[end] != above and not plays and continues:
             return int(parent[end])
+    limb &= ~other
     taken = limb & (way < SAME_PLACE * size)
     if taken.any():
         return None

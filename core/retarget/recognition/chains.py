@@ -44,7 +44,8 @@ def find_chains(frame: Frame) -> Chains:
             for upper in above[second + 1 :]:
                 found.append((upper, middle, int(end)))
                 attached.append(hangs_on)
-        reach = float(np.max(_length(frame.branch[int(end)] - frame.place[int(end)])))
+        both = int(end), int(frame.symmetry.partner[end])
+        reach = min(float(np.max(_length(frame.branch[each] - frame.place[each]))) for each in both)
         for upper in above:  # a limb may lack its hand
             if reach < SHORT_END * float(_length(frame.place[int(end)] - frame.place[upper])):
                 found.append((upper, int(end), -1))
@@ -53,8 +54,8 @@ def find_chains(frame: Frame) -> Chains:
     chains = Chains(table, np.array(attached, dtype=np.intp))
     places = frame.place
     ends = np.where(table[:, 2] >= 0, table[:, 2], table[:, 1])
-    reach = _length(places[table[:, 1]] - places[table[:, 0]]) + _length(places[ends] - places[table[:, 1]])
-    return chains.taken(np.flatnonzero(reach > SHORTEST_LIMB))
+    length = _length(places[table[:, 1]] - places[table[:, 0]]) + _length(places[ends] - places[table[:, 1]])
+    return chains.taken(np.flatnonzero(length > SHORTEST_LIMB))
 
 
 def _line(bones: Bones, frame: Frame, end: int) -> tuple[list[int], int]:

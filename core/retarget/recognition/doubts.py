@@ -9,7 +9,7 @@ from .facing import SURE as SURE_SIDES
 from .facing import Facing
 from .figure import Figure
 
-SURE = 0.8
+SURE = 0.75
 """Confidence from which a role is not doubted."""
 
 
@@ -62,7 +62,30 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
                 why = f"{other} fits almost as well" if other else "the limb may lack it"
                 found.append(_sentence(role, roles[role], why))
             elif other:
-                found.append(f"{role} was not found, but {other} may be it")
+                found.append(f"{role} not found, but {other} may be it")
+    return found
+
+
+def name_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
+    """Roles of sides that a bone plays although another has the name for it."""
+    readings = dict(zip(figure.frame.bones.names, figure.frame.bones.readings, strict=True))
+    found = []
+    for part in (*ARM, *LEG):
+        for side in "LR":
+            role = f"{part}.{side}"
+            bone = roles[role].bones[0] if role in roles else None
+            named = [
+                name
+                for name, reading in readings.items()
+                if (reading.clear_part, reading.side) == (part, side)
+            ]
+            if not named or (bone is not None and readings[bone].clear_part == part):
+                continue
+            if bone is None:
+                found.append(f"{role} not found, but {shown(named[0])} has the name for it")
+            else:
+                why = f"{shown(named[0])} has the name for it"
+                found.append(f"{role} is doubtful: {shown(bone)} was chosen by its place, and {why}")
     return found
 
 
@@ -70,9 +93,10 @@ def missing_doubts(character_map: CharacterMap) -> list[str]:
     """Roles that most characters have and this one lacks."""
     found = []
     if "head" not in character_map.roles:
-        found.append("head was not found: no bone of the middle lies where a head begins")
-    if "hand.L" not in character_map.roles:
-        found.append("hand.L and hand.R were not found: the forearms are the last bones of the arms")
+        found.append("head not found: no bone of the middle lies where a head begins")
+    hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
+    if hands:
+        found.append(f"{' and '.join(hands)} not found: the forearm is the last bone of the arm")
     return found
 
 

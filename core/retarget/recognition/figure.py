@@ -7,12 +7,14 @@ import numpy as np
 
 from ...arrays import Array, IndexArray
 from ..roles import ARM, LEG
-from .chains import find_chains
+from .chains import Chains, find_chains
 from .frame import Frame
 from .likelihood import at_least, near
-from .limbs import TEMPERATURE, Limbs, find_arms, find_legs, part_scores
+from .limbs import TEMPERATURE, Limbs, find_arms, find_legs, part_scores, quick_fit
 from .trunk import Girdles, Trunk, find_trunk, fork_of
 
+CLOSE = 12.0
+"""Frames whose limbs fit worse than the best frame's by more than this are passed over."""
 BEST_PAIRS = 12
 """Pairs of leg and arm for which a trunk is sought."""
 
@@ -48,11 +50,22 @@ class Figure:
         return self.limbs[part].bone
 
 
-def find_figure(frame: Frame) -> Figure | None:
+def find_figures(tried: list[Frame]) -> list[Figure]:
+    """The likeliest figures of frames of the same bones, the best first.
+
+    Frames in which no leg and no arm fits nearly as well as in the best are passed over.
+    """
+    chains = find_chains(tried[0]) if tried else None
+    if chains is None or not len(chains):
+        return []
+    fits = [quick_fit(frame, chains) for frame in tried]
+    close = [frame for frame, fit in zip(tried, fits, strict=True) if fit > max(fits) - CLOSE]
+    figures = [figure for frame in close if (figure := find_figure(frame, chains)) is not None]
+    return sorted(figures, key=lambda figure: -figure.score)
+
+
+def find_figure(frame: Frame, chains: Chains) -> Figure | None:
     """The likeliest figure; None where there are no two pairs of limbs on one trunk."""
-    chains = find_chains(frame)
-    if not len(chains):
-        return None
     legs, arms = find_legs(frame, chains), find_arms(frame, chains)
     if not len(legs.chains) or not len(arms.chains):
         return None

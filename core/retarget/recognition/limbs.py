@@ -18,7 +18,7 @@ NO_TOE, NO_SHOULDER = -4.0, -4.0
 """Scores of a foot without a toe and an upper arm without a collar bone, though bones are there."""
 SHORT_LEG = 0.4
 """Length of a leg, in sizes, below which feet do not become smaller with it."""
-TEMPERATURE = 1.5
+TEMPERATURE = 1.0
 """Log-likelihoods are divided by this before they are turned into probabilities: measures hang together."""
 MANY = 150
 """Best limbs of a kind by what is quickly measured; only these are looked at closely."""
@@ -56,24 +56,18 @@ def part_scores(frame: Frame, part: str) -> Array:
     return np.asarray(NAMES_WEIGHT * 0.5 * (own + other))
 
 
+def quick_fit(frame: Frame, chains: Chains) -> float:
+    """How well the best leg and the best arm fit by what is quickly measured."""
+    return float(np.max(_leg_scores(frame, chains)) + np.max(_arm_scores(frame, chains)))
+
+
 def find_legs(frame: Frame, chains: Chains) -> Limbs:
     """The likeliest legs."""
-    chains = chains.taken(np.flatnonzero(chains.bones[:, 2] >= 0))
-    hip, knee, ankle = (frame.place[chains.bones[:, part]] for part in range(3))
-    upper, lower = _length(knee - hip), _length(ankle - knee)
-    length = np.maximum(upper + lower, 1e-9)
-    score = near(upper / length, 0.5, 0.06)
-    score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
-    unit = np.maximum(length, SHORT_LEG)
-    score += near((ankle[:, 2] - frame.floor) / unit, 0.1, 0.1, 5.0)
-    score += near(hip[:, 0] / length, 0.13, 0.07, 4.0)
-    score += near(length, 0.45, 0.15, 3.0)
-    for column, part in enumerate(LEG[:3]):
-        score += part_scores(frame, part)[chains.bones[:, column]]
-    score += np.where(chains.attached >= 0, 0.0, -2.0)
+    score = _leg_scores(frame, chains)
     many = _best(score, MANY)
-    chains, ankle, unit = chains.taken(many), ankle[many], unit[many]
-    score = score[many] + _foot_scores(frame, chains, ankle, unit) + _line_scores(frame, chains)
+    chains = chains.taken(many)
+    unit = np.array([foot_unit(_reach(frame, bones)) for bones in chains.bones])
+    score = score[many] + _foot_scores(frame, chains, unit) + _line_scores(frame, chains)
     score += _below_hip_scores(frame, chains) + _strand_scores(frame, chains)
     best = _best(score, FEW)
     return _with_toes(frame, Limbs(chains.taken(best), score[best]))
@@ -81,15 +75,40 @@ def find_legs(frame: Frame, chains: Chains) -> Limbs:
 
 def find_arms(frame: Frame, chains: Chains) -> Limbs:
     """The likeliest arms."""
+    score = _arm_scores(frame, chains)
+    many = _best(score, MANY)
+    chains = chains.taken(many)
+    score = score[many] + _hand_scores(frame, chains) + _line_scores(frame, chains)
+    score += _strand_scores(frame, chains)
+    best = _best(score, FEW)
+    return _with_shoulders(frame, Limbs(chains.taken(best), score[best]))
+
+
+def _leg_scores(frame: Frame, chains: Chains) -> Array:
+    """(C,) how well chains fit a leg by the places and names of their three bones."""
+    hip, knee, ankle = (frame.place[chains.bones[:, part]] for part in range(3))
+    upper, lower = _length(knee - hip), _length(ankle - knee)
+    length = np.maximum(upper + lower, 1e-9)
+    unit = np.maximum(length, SHORT_LEG)
+    score = near(upper / length, 0.5, 0.06)
+    score += at_least((hip[:, 2] - ankle[:, 2]) / length, 0.95, 0.12, 12.0)
+    score += near((ankle[:, 2] - frame.floor) / unit, 0.1, 0.1, 5.0)
+    score += at_least((knee[:, 2] - ankle[:, 2]) / np.maximum(lower, 1e-9), 0.93, 0.15, 4.0)
+    score += near(hip[:, 0] / unit, 0.13, 0.07, 4.0)
+    score += near(length, 0.45, 0.15, 3.0)
+    for column, part in enumerate(LEG[:3]):
+        score += part_scores(frame, part)[chains.bones[:, column]]
+    score += np.where(chains.attached >= 0, 0.0, -2.0)
+    return np.where(chains.bones[:, 2] >= 0, score, -np.inf)
+
+
+def _arm_scores(frame: Frame, chains: Chains) -> Array:
+    """(C,) how well chains fit an arm by the places and names of their bones."""
     shoulder, elbow = (frame.place[chains.bones[:, part]] for part in range(2))
     has_hand = chains.bones[:, 2] >= 0
     tips = frame.ends[chains.bones[:, 1]]
-    guess = 2.0 * elbow - shoulder
-    wrist = np.where(
-        has_hand[:, None],
-        frame.place[chains.bones[:, 2]],
-        np.where(np.isfinite(tips), tips, guess),
-    )
+    guess = np.where(np.isfinite(tips), tips, 2.0 * elbow - shoulder)
+    wrist = np.where(has_hand[:, None], frame.place[chains.bones[:, 2]], guess)
     upper, lower = _length(elbow - shoulder), _length(wrist - elbow)
     length = np.maximum(upper + lower, 1e-9)
     score = near(upper / length, 0.52, 0.06)
@@ -97,33 +116,25 @@ def find_arms(frame: Frame, chains: Chains) -> Limbs:
     score += at_most((wrist[:, 2] - shoulder[:, 2]) / length, 0.2, 0.3)
     score += near(shoulder[:, 0] / length, 0.33, 0.13, 4.0)
     score += near(length, 0.3, 0.12, 3.0)
-    score += np.where(has_hand, 0.0, NO_END)
     for column, part in enumerate(ARM[1:3]):
         score += part_scores(frame, part)[chains.bones[:, column]]
-    hand = part_scores(frame, ARM[3])
-    score += np.where(has_hand, hand[chains.bones[:, 2]], 0.0)
-    score += np.where(chains.attached >= 0, 0.0, -2.0)
-    many = _best(score, MANY)
-    chains, length = chains.taken(many), length[many]
-    score = score[many] + _hand_scores(frame, chains, length) + _line_scores(frame, chains)
-    score += _strand_scores(frame, chains)
-    best = _best(score, FEW)
-    return _with_shoulders(frame, Limbs(chains.taken(best), score[best]))
+    score += np.where(has_hand, part_scores(frame, ARM[3])[chains.bones[:, 2]], NO_END)
+    return score + np.where(chains.attached >= 0, 0.0, -2.0)
 
 
-def _foot_scores(frame: Frame, chains: Chains, ankle: Array, unit: Array) -> Array:
+def _foot_scores(frame: Frame, chains: Chains, unit: Array) -> Array:
     """(C,) whether what hangs on each ankle lies ahead of it, as a foot does, and not far below."""
     found = np.zeros(len(chains))
     for row, end in enumerate(chains.bones[:, 2]):
-        points = frame.branch[int(end)] - ankle[row]
+        points = frame.branch[int(end)] - frame.place[int(end)]
         ahead = np.max(np.abs(points[:, 1])) / unit[row]
         below = -np.min(points[:, 2]) / unit[row]
         bare = len(points) < 2
-        found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.1, 3.0) + at_most(below, 0.2, 0.08, 5.0))
+        found[row] = -1.0 if bare else float(near(ahead, 0.25, 0.13, 2.0) + at_most(below, 0.2, 0.08, 5.0))
     return found
 
 
-def _hand_scores(frame: Frame, chains: Chains, length: Array) -> Array:
+def _hand_scores(frame: Frame, chains: Chains) -> Array:
     """(C,) whether fingers fan out where each hand begins."""
     bones = frame.bones
     leaves = [sum(not bones.children[each] for each in below) for below in bones.subtree]
@@ -133,7 +144,9 @@ def _hand_scores(frame: Frame, chains: Chains, length: Array) -> Array:
             continue
         points = frame.branch[int(end)] - frame.place[int(end)]
         if len(points) > 1:
-            found[row] += float(near(np.max(_length(points)) / length[row], 0.33, 0.2, 4.0))
+            found[row] += float(
+                near(float(np.max(_length(points))) / _reach(frame, chains.bones[row]), 0.33, 0.2, 4.0)
+            )
         found[row] += 2.0 if leaves[end] >= 3 else (0.3 if leaves[end] == 2 else 0.0)
         above = int(bones.parent[end])
         own = len(bones.subtree[end])
@@ -227,7 +240,7 @@ def _toe(frame: Frame, foot: int, unit: float, names: Array) -> tuple[OptionalPa
     for bone in frame.bones.subtree[foot][1:]:
         x, y, z = (frame.place[bone] - ankle) / unit
         depth = len([each for each in frame.bones.ancestors(bone) if each in frame.bones.subtree[foot]])
-        score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.08, 0.08, 4.0)) + names[bone]
+        score = float(near(ahead * y, 0.2, 0.12, 6.0) + near(z, -0.09, 0.1, 3.0)) + names[bone]
         options[bone] = score - 0.7 * (depth - 1) - abs(x) - 2.0 * frame.place[bone, 0] / unit
     return _optional(options, NO_TOE)
 

@@ -6,9 +6,9 @@ from ..character import Character
 from ..character_map import CharacterMap
 from ..presets import Preset, find_preset
 from .bones import candidate_bones
-from .doubts import limb_doubts, missing_doubts, side_doubts, trunk_doubts
+from .doubts import limb_doubts, missing_doubts, name_doubts, side_doubts, trunk_doubts
 from .facing import find_facing
-from .figure import Figure, find_figure
+from .figure import Figure, find_figures
 from .frame import Frame, frames
 from .preset_check import merged_with_preset, swapped_sides
 from .recognition import Recognition
@@ -40,6 +40,7 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     if preset is None:
         character_map = CharacterMap(character.name, roles)
         doubts += trunk_doubts(figure) + limb_doubts(figure, facing, roles)
+        doubts += name_doubts(figure, roles)
     else:
         if facing.by_names < 0.0:
             preset = swapped_sides(preset)
@@ -61,8 +62,7 @@ def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str
             continue
         tried = frames(bones, symmetry)
         frame = frame or next(iter(tried), None)
-        figures = [figure for each in tried if (figure := find_figure(each)) is not None]
-        for figure in sorted(figures, key=lambda each: -each.score):
+        for figure in find_figures(tried):
             why = why_no_figure(figure)
             if not why:
                 return figure, frame, ""

@@ -22,6 +22,8 @@ LEAST_FIT = -14.0
 """Least log-likelihood of a figure's places alone ..."""
 LEAST_FIT_NAMED = -26.0
 """... and where names speak for its arms and legs."""
+LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
+"""Parts of limbs that a character must have, in words."""
 VALID = "a character stands on two legs and has two arms"
 
 
@@ -59,9 +61,9 @@ def why_no_figure(figure: Figure) -> str:
     leg = max(float(np.linalg.norm(ankle - hip)), 1e-9)
     wrist = places[figure.bone("hand") if figure.bone("hand") >= 0 else figure.bone("forearm")]
     if figure.uprightness < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < LEAST_LEG_DOWN:
-        return "its trunk does not stand upright on its legs, as an animal's does not"
+        return "its trunk does not stand upright on its legs, like an animal's"
     if (wrist[2] - ankle[2]) / leg < HANDS_ABOVE:
-        return "its hands are as low as its feet, as an animal's are"
+        return "its hands are as low as its feet, like an animal's"
     least = LEAST_FIT_NAMED if _is_named(figure) else LEAST_FIT
     if figure.score - figure.names_score < least:
         return "its bones do not have the proportions of a body with two legs and two arms"
@@ -84,22 +86,33 @@ def refusal(character: Character, frame: Frame | None, reason: str) -> InputErro
         reason: Why its best figure is refused; empty where there is none.
     """
     name = f"armature {shown(character.name)}"
-    if reason:
-        return InputError(f"{name} is not recognized as a character: {reason}; {VALID}")
     if frame is None:
         return InputError(f"{name} has no bones that mirror each other; {VALID}")
-    missing = _lonely(frame)
+    missing = _one_sided(frame) or _footless(frame)
     if missing:
         return InputError(f"{name} has {missing}; {VALID}, so complete the rig or choose another")
-    return InputError(f"{name} has no two pairs of limbs on one trunk, as props and unfinished rigs; {VALID}")
+    if reason:
+        return InputError(f"{name} is not recognized as a character: {reason}; {VALID}")
+    return InputError(f"{name} has no pair of legs and pair of arms on one trunk; {VALID}")
 
 
-def _lonely(frame: Frame) -> str:
-    """A limb that names know on one side only, in words; empty where there is none."""
-    bones = frame.bones
-    for part, word in (("upper_arm", "arm"), ("thigh", "leg")):
-        sides = {reading.side for reading in bones.readings if reading.side and reading.clear_part == part}
+def _one_sided(frame: Frame) -> str:
+    """A part of a limb that names know on one side only, in words; empty where there is none."""
+    for part, word in LIMB_WORDS.items():
+        sides = _named_sides(frame, part)
         if len(sides) == 1:
             side, other = ("left", "right") if "L" in sides else ("right", "left")
             return f"a {side} {word} but no {other} one"
     return ""
+
+
+def _footless(frame: Frame) -> str:
+    """Says that feet are missing where names know the other parts of limbs."""
+    known = [part for part in LIMB_WORDS if _named_sides(frame, part)]
+    return "legs without feet" if known == [part for part in LIMB_WORDS if part != "foot"] else ""
+
+
+def _named_sides(frame: Frame, part: str) -> set[str]:
+    """Sides on which a bone's name speaks for a part."""
+    readings = frame.bones.readings
+    return {reading.side for reading in readings if reading.side and reading.clear_part == part}

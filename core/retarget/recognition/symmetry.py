@@ -51,6 +51,7 @@ def find_symmetry(bones: Bones) -> Symmetry | None:
     every = max(1, len(bones.names) // MOST_POINTS)
     sample = bones.head[::every]
     tree = cKDTree(bones.head)
+    planes += [_fitted(bones, tree, *plane) for plane in planes]
     scores = [_score(sample, tree, normal, offset, bones.size) for normal, offset in planes]
     normal, offset = planes[int(np.argmax(scores))]
     for _ in range(2):
@@ -123,6 +124,14 @@ def _score(points: Array, tree: cKDTree, normal: Array, offset: float, size: flo
     apart, _ = tree.query(images, distance_upper_bound=SAME * size)
     near = np.where(np.isfinite(apart), 1.0 - 0.5 * apart / (SAME * size), -0.5)
     return float(near.sum())
+
+
+def _fitted(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> tuple[Array, float]:
+    """The plane between the heads that a plane nearly mirrors onto others."""
+    images = _mirrored(bones.head, normal, offset)
+    apart, other = tree.query(images, distance_upper_bound=2 * SAME * bones.size)
+    paired = np.flatnonzero(np.isfinite(apart) & (other != np.arange(len(other))))
+    return _between(bones.head[paired], bones.head[other[paired]], normal, offset, bones.size)
 
 
 def _partners(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> IndexArray:
@@ -214,14 +223,16 @@ def _apart(points: Array, others: Array) -> float:
 def _refined(bones: Bones, partner: IndexArray, normal: Array, offset: float) -> tuple[Array, float]:
     """The plane between all pairs, as they are."""
     pairs = np.flatnonzero(partner > np.arange(len(partner)))
-    if not len(pairs):
-        return normal, offset
-    a, b = bones.head[pairs], bones.head[partner[pairs]]
+    return _between(bones.head[pairs], bones.head[partner[pairs]], normal, offset, bones.size)
+
+
+def _between(a: Array, b: Array, normal: Array, offset: float, size: float) -> tuple[Array, float]:
+    """The plane between pairs of points (K, 3), near a given one; that itself where they do not tell."""
     apart = a - b
     apart *= np.where(apart @ normal < 0.0, -1.0, 1.0)[:, None]
     direction = apart.sum(axis=0)
     length = float(np.linalg.norm(direction))
-    if length < 1e-6 * bones.size:
+    if length < 1e-6 * size:
         return normal, offset
     unit = direction / length
     axis = np.round(unit)

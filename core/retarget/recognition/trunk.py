@@ -5,18 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, IndexArray
 from ..roles import MIDDLE
 from .frame import Frame
 from .likelihood import at_least, at_most, near
 from .limbs import TEMPERATURE, part_scores
+from .trunk_sequence import HEAD, STATES, likeliest_states, state_probabilities
 
-STATES = ("below", "hips", "spine", "neck", "head", "end")
-"""What a bone of the path from the root to the top of the head may be, in this order."""
 UNLIKELY = -6.0
-NO_HEAD = -5.0
-"""Score of a trunk without a head."""
-SURE = 0.8
+SURE = 0.75
 """Probability from which a bone's part is not doubted."""
 SAME_JOINT = 0.02
 """A bone this near above another, in heights of the trunk, begins where it does."""
@@ -70,12 +67,39 @@ def fork_of(frame: Frame, first: int, second: int) -> int:
 def find_trunk(frame: Frame, girdles: Girdles) -> Trunk | None:
     """The likeliest trunk; None where no path leads from the legs up past the arms."""
     names = np.array([part_scores(frame, part) for part in MIDDLE])
-    best: Trunk | None = None
+    best: tuple[float, list[int], Array, Array, IndexArray] | None = None
     for top in _tops(frame, girdles):
-        found = _along(frame, girdles, top, names)
-        if found is not None and (best is None or found.score > best.score):
-            best = found
-    return best
+        path = [top, *frame.bones.ancestors(top)][::-1]
+        scores = _emissions(frame, girdles, path, names)
+        tops = _top_scores(frame, girdles, path)
+        states, total = likeliest_states(scores, tops)
+        total += _way_up(
+            frame, girdles, [bone for bone, own in zip(path, states, strict=True) if own == HEAD]
+        )
+        if np.isfinite(total) and (best is None or total > best[0]):
+            best = total, path, scores, tops, states
+    return None if best is None else _trunk(frame, *best)
+
+
+def _trunk(
+    frame: Frame, total: float, path: list[int], scores: Array, tops: Array, states: IndexArray
+) -> Trunk:
+    """The trunk of a sequence of states, and how sure they are."""
+    shares = state_probabilities(scores / TEMPERATURE, tops / TEMPERATURE)
+    own = shares[np.arange(len(path)), states]
+    parts: dict[str, list[int]] = {state: [] for state in STATES}
+    sure: dict[str, float] = {}
+    doubtful = []
+    for row, bone in enumerate(path):
+        state = STATES[states[row]]
+        parts[state].append(bone)
+        sure[state] = min(float(own[row]), sure.get(state, 1.0))
+        if own[row] < SURE:
+            others = np.where(np.arange(len(STATES)) == states[row], 0.0, shares[row])
+            doubtful.append((bone, state, STATES[int(np.argmax(others))]))
+    head = parts["head"][0] if parts["head"] else None
+    spine = tuple(bone for bone in parts["spine"] if not frame.bones.readings[bone].mechanism)
+    return Trunk(parts["hips"][0], spine, tuple(parts["neck"]), head, total, sure, tuple(doubtful))
 
 
 def _tops(frame: Frame, girdles: Girdles) -> list[int]:
@@ -91,29 +115,6 @@ def _tops(frame: Frame, girdles: Girdles) -> list[int]:
     ]
     ends.sort(key=lambda bone: -frame.place[bone, 2])
     return [*dict.fromkeys([*ends[:20], girdles.arms_on])]
-
-
-def _along(frame: Frame, girdles: Girdles, top: int, names: Array) -> Trunk | None:
-    """The best trunk along the path from the root to a bone."""
-    path = [top, *frame.bones.ancestors(top)][::-1]
-    scores = _emissions(frame, girdles, path, names)
-    tops = _top_scores(frame, girdles, path)
-    states, total = _best_states(scores, tops)
-    if states is None:
-        return None
-    parts = {
-        state: [bone for bone, own in zip(path, states, strict=True) if own == state] for state in STATES
-    }
-    shares = _shares(scores, tops)
-    sure = {
-        state: min(shares[row, STATES.index(state)] for row, own in enumerate(states) if own == state)
-        for state in dict.fromkeys(states)
-    }
-    doubtful = _doubtful(path, states, shares)
-    total += _way_up(frame, girdles, parts["head"])
-    head = parts["head"][0] if parts["head"] else None
-    spine = tuple(bone for bone in parts["spine"] if not frame.bones.readings[bone].mechanism)
-    return Trunk(parts["hips"][0], spine, tuple(parts["neck"]), head, total, sure, doubtful)
 
 
 def _way_up(frame: Frame, girdles: Girdles, head: list[int]) -> float:
@@ -149,12 +150,12 @@ def _emissions(frame: Frame, girdles: Girdles, path: list[int], names: Array) ->
             spine + float(at_most(level, 0.98, 0.05, 5.0)) + (0.5 if carries else -1.5),
             neck
             + float(at_least(over, 0.0, 0.08, 5.0) + at_most(over, 0.35, 0.15))
-            - (2.0 if carries else 0.0),
+            - (1.0 if carries else 0.0),
             head + float(near(over, 0.33, 0.2, 5.0)) + min(faces, 2) * 0.8 - (4.0 if carries else 0.0),
             (0.0 if row > rank else UNLIKELY) + min(-0.5 * max(neck, head), 0.0),
         )
         if row and float(np.linalg.norm(place[bone] - place[path[row - 1]])) < SAME_JOINT * girdles.height:
-            scores[row, 3:5] -= 2.0  # the bone that carries it plays the part
+            scores[row, 3:5] -= 4.0  # the bone that carries it plays the part
         if next_level is not None:  # a head is longer than a neck bone
             scores[row, 3] += float(at_most(next_level - level, 0.3, 0.1, 3.0))
     return scores
@@ -173,82 +174,3 @@ def _top_scores(frame: Frame, girdles: Girdles, path: list[int]) -> Array:
             -0.3 if siblings >= 2 or frame.bones.readings[bone].other else -2.0,
         )
     return found
-
-
-def _best_states(scores: Array, tops: Array) -> tuple[list[str] | None, float]:
-    """The likeliest states that never fall back, with one hips and at most one head.
-
-    Returns:
-        The states by bone, None where there is no way; their log-likelihood.
-    """
-    count = len(STATES)
-    best = np.full(count, -np.inf)
-    best[0], best[1] = scores[0, 0], scores[0, 1]
-    back: list[list[int]] = []
-    for row in range(1, len(scores)):
-        step = np.full(count, -np.inf)
-        came = [0] * count
-        for state in range(count):
-            for before in _before(state):
-                gain = best[before] + scores[row, state] + _step(before, state, tops[row])
-                if gain > step[state]:
-                    step[state], came[state] = gain, before
-        best = step
-        back.append(came)
-    best[0] = -np.inf
-    best[1:4] += NO_HEAD
-    state = int(np.argmax(best))
-    total = float(best[state])
-    if not np.isfinite(total):
-        return None, total
-    states = [state]
-    for came in reversed(back):
-        states.append(came[states[-1]])
-    return [STATES[each] for each in reversed(states)], total
-
-
-def _before(state: int) -> tuple[int, ...]:
-    """States that may come before one."""
-    return {0: (0,), 1: (0,), 2: (1, 2), 3: (1, 2, 3), 4: (1, 2, 3), 5: (4, 5)}[state]
-
-
-def _shares(scores: Array, tops: Array) -> Array:
-    """(K, 6) probability of each state of each bone, over all ways."""
-    heat = 1.0 / TEMPERATURE
-    forward = np.full(scores.shape, -np.inf)
-    forward[0, :2] = heat * scores[0, :2]
-    backward = np.full(scores.shape, -np.inf)
-    backward[-1] = heat * np.array([-np.inf, NO_HEAD, NO_HEAD, NO_HEAD, 0.0, 0.0])
-    for row in range(1, len(scores)):
-        for state in range(len(STATES)):
-            ways = [
-                forward[row - 1, before] + heat * _step(before, state, tops[row]) for before in _before(state)
-            ]
-            forward[row, state] = heat * scores[row, state] + np.logaddexp.reduce(ways)
-    for row in range(len(scores) - 2, -1, -1):
-        for before in range(len(STATES)):
-            ways = [
-                backward[row + 1, state]
-                + heat * (scores[row + 1, state] + _step(before, state, tops[row + 1]))
-                for state in range(len(STATES))
-                if before in _before(state)
-            ]
-            backward[row, before] = np.logaddexp.reduce(ways)
-    both = forward + backward
-    shares = np.exp(both - np.logaddexp.reduce(both, axis=1, keepdims=True))
-    return np.asarray(shares)
-
-
-def _step(before: int, state: int, top: float) -> float:
-    return top if (before, state) == (4, 5) else 0.0
-
-
-def _doubtful(path: list[int], states: list[str], shares: Array) -> tuple[tuple[int, str, str], ...]:
-    """Bones of the path that may well play another part."""
-    found = []
-    for row, (bone, state) in enumerate(zip(path, states, strict=True)):
-        others = shares[row].copy()
-        others[STATES.index(state)] = 0.0
-        if shares[row, STATES.index(state)] < SURE:
-            found.append((bone, state, STATES[int(np.argmax(others))]))
-    return tuple(found)

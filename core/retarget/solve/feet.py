@@ -165,8 +165,13 @@ def _rolled(
     change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
     in_front = [point for point in shape.foot if point[1] < 0.0]
     behind = [point for point in shape.foot if point[1] >= 0.0]
-    most = np.minimum.reduce([_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front])
-    least = np.maximum.reduce([_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind])
+    free = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
+    most = np.minimum.reduce(
+        [free, *(_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front)]
+    )
+    least = np.maximum.reduce(
+        [-free, *(_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind)]
+    )
     change = np.clip(change, np.minimum(least, most), most)
     return np.asarray(turn @ _about_x(np.clip(change, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)))
 
@@ -209,10 +214,7 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     ball = ankle + BALL_AHEAD * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
-    slow = [
-        speeds(path, source.time_s) < RELEASE_SPEED_M_S
-        for path in (heel, tip, ball)
-    ]
+    slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
     on_front = (slow[1] | slow[2]) & (tip[:, 2] - ground_m < TOUCHING_M[1]) & (pitch >= 0.0)
     return on_heel, on_front

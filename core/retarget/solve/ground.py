@@ -13,6 +13,7 @@ from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...body.soles import sole_offsets
 from ...finish.contacts import Contact, find_contacts
+from .smoothing import smooth_above
 
 SAME_LEVEL_M = 0.03
 """Rests whose heights follow each other within this are on one level: the noise of an estimate ..."""
@@ -65,6 +66,12 @@ def find_ground(source: SegmentMotion, stray_m: float) -> Ground:
         if rest.place[2] - height < 1.2 * flat
     ]
     under = np.stack([_under(number, rests, levels, source.time_s) for number in range(2)], axis=1)
+    for number in range(2):
+        # Where a sole is clearly lower than where it rests, the ground is no higher than it: a step down
+        # without a rest. Not so under the scene's own ground.
+        lowest = -smooth_above(depth[:, number] - ankles[:, number, 2], source.time_s, CHANGE_S)
+        lowered = np.minimum(under[:, number], lowest + SAME_LEVEL_M)
+        under[:, number] = np.where(under[:, number] > 0.0, np.maximum(lowered, 0.0), under[:, number])
     return Ground(rests, tuple(levels), under, float(np.median(standing)) if standing else flat)
 
 

@@ -23,7 +23,7 @@ from .smoothing import ease, smoothed, speeds
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
-NEAR_M = (0.03, 0.12)
+NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
 like the others for a performer of `OF_STATURE_M`."""
 TOGETHER_M = (0.15, 0.40)
@@ -82,7 +82,7 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
     distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
     inside = in_segment(source, segment, hand[0])
     speed = speeds(inside, source.time_s)
-    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S), *PASSING_M_S)
+    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S, ends_kept=False), *PASSING_M_S)
     return _near(source, distance_m, NEAR_M) * touching
 
 
@@ -95,7 +95,7 @@ def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
 def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float]) -> Array:
     unit_m = source.body.actor.stature_m / OF_STATURE_M
     share = 1.0 - ease(distance_m / unit_m, *bounds)
-    return np.clip(smoothed(share, source.time_s, CHANGE_S), 0.0, 1.0)
+    return np.clip(smoothed(share, source.time_s, CHANGE_S, ends_kept=False), 0.0, 1.0)
 
 
 def hand_goals(

@@ -41,7 +41,7 @@ def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, t
     """
     own = np.minimum(limb.extension_m / limb.length_m, 1.0)
     # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
-    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S)))
+    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
     way = goal - limb.start
     aside = np.sum(way[:, :2] ** 2, axis=-1)
     below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))
@@ -71,7 +71,7 @@ def raised_m(
         total += weight * (ankle - leg.end)[:, 2]
         weights += weight
     limit = DEEPEST_SHARE * leg_m
-    return np.clip(smoothed(total / weights, time_s, CARRY_S), -limit, limit)
+    return np.clip(smoothed(total / weights, time_s, CARRY_S, ends_kept=False), -limit, limit)
 
 
 def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:

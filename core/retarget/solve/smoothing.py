@@ -19,23 +19,26 @@ def speeds(path: Array, time_s: Array) -> Array:
     return np.asarray(np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1))
 
 
-def smoothed(values: Array, time_s: Array, deviation_s: float) -> Array:
-    """Values (F, ...) smoothed by a Gaussian in time; the ends keep their values and slopes.
+def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool = True) -> Array:
+    """Values (F, ...) smoothed by a Gaussian in time.
 
     Args:
         values: (F, ...).
         time_s: (F,) time of each frame [s].
         deviation_s: Standard deviation of the Gaussian [s].
+        ends_kept: Whether the first and last values stay and slopes go on beyond them, as a way's do; else
+            they are as smooth as all others.
     """
     if len(values) < 3:
         return np.array(values)
     even, step = _evenly(time_s)
     columns = values.reshape(len(values), -1)
     sampled = np.stack([np.interp(even, time_s, column) for column in columns.T], axis=1)
-    # Odd extension: mirrored in time and in value about either end, so that the ends do not lag behind.
     reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
-    before = 2.0 * sampled[0] - sampled[reach:0:-1]
-    after = 2.0 * sampled[-1] - sampled[-2 : -reach - 2 : -1]
+    before, after = sampled[reach:0:-1], sampled[-2 : -reach - 2 : -1]
+    if ends_kept:
+        # Mirrored in value, too, about either end, so that the ends do not lag behind.
+        before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
     extended = np.concatenate([before, sampled, after])
     filtered = gaussian_filter1d(extended, deviation_s / step, axis=0, mode="nearest")
     filtered = filtered[reach : reach + len(even)]

@@ -124,7 +124,8 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves"
+            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves, "
+            "and one that is linked from another file is named by that file"
         )
     if file.object is not None:
         if file.object not in armatures:

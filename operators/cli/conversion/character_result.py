@@ -6,11 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from ....core.body.segment_motion import SegmentMotion, segment_motion
 from ....core.errors import InputError
 from ....core.files.digest import content_digest
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.progress import Job, run
+from ....core.report.canvas import write_png
+from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import Character
 from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.choose_map import ChosenMap, choose_map
@@ -30,8 +34,10 @@ if TYPE_CHECKING:
 
     from ....core.arrays import Array
     from ...bridge.character.import_character import ImportedCharacter
+    from ...bridge.character.retarget import Retargeted
 
 CHARACTER_BLEND = "character.blend"
+CHARACTER_PICTURE = f"report/{PICTURE}"
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
@@ -47,6 +53,14 @@ class OpenedCharacter:
     imported: "ImportedCharacter"
     character: Character
     chosen: ChosenMap
+
+    def completed(self, debug: bool) -> tuple[CharacterMap, tuple[str, ...]]:
+        """The map with the controls and soles that only Blender finds, and notes on them."""
+        with blender_silence(debug):
+            from ...bridge.character.complete_map import complete_map
+
+            found = complete_map(self.imported.armature, self.character, self.chosen.character_map)
+        return found.character_map, found.notes
 
 
 @contextmanager
@@ -88,6 +102,7 @@ def write_character_result(
     console: Console,
     debug: bool,
     formats: tuple[str, ...] = (),
+    picture: bool = True,
 ) -> RetargetRecord:
     """Put a motion onto a character and write the files.
 
@@ -100,6 +115,7 @@ def write_character_result(
         console: Shows the progress.
         debug: Whether to let Blender's messages through.
         formats: Words of `EXPORTS`.
+        picture: Whether to draw the character beside the footage, where the scene shows some.
 
     Raises:
         InputError: The character or its map cannot be used.
@@ -125,6 +141,8 @@ def write_character_result(
             paths = {name: hidden[file] for name, file in exports.items()}
             curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
+        if picture:
+            _draw(scene, armature, retargeted, staging_folder / CHARACTER_PICTURE)
         record = RetargetRecord(
             keymark=version(),
             take=take,
@@ -138,11 +156,11 @@ def write_character_result(
             frames=len(frames),
             frame_start=motion.frame_start,
             fps=rate,
-            size=retargeted.motion.size,
+            size=retargeted.size,
             options=settings.options,
             roles=character_map.roles,
-            limbs=keyed_limbs(character_map, settings),
-            quality=_quality(retargeted),
+            limbs=keyed_limbs(retargeted.character_map, settings),
+            quality=retargeted.quality.to_dict(),
             doubts=opened.chosen.doubts,
             notes=(*opened.imported.notes, *retargeted.notes),
             files={CHARACTER_BLEND: curves},
@@ -151,16 +169,23 @@ def write_character_result(
         return record
 
 
+def _draw(
+    scene: "bpy.types.Scene", armature: "bpy.types.Object", retargeted: "Retargeted", file: Path
+) -> None:
+    from ...bridge.character.picture import character_picture
+
+    motion = retargeted.motion
+    floor_m = float(motion.to_world.location[2] + min(float(np.median(g)) for g in motion.ground_m.values()))
+    image = character_picture(scene, armature, retargeted.character_map, retargeted.keys.frames, floor_m)
+    if image is not None:
+        file.parent.mkdir(exist_ok=True)
+        write_png(str(file), image)
+
+
 def motion_segments(motion: Motion) -> SegmentMotion:
     """The segments of a motion, with natural feet and hands."""
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
-
-
-def _quality(retargeted: object) -> Mapping[str, float | None]:
-    """The figures of a retargeted motion."""
-    quality = getattr(retargeted, "quality", None)
-    return {} if quality is None else quality.to_dict()
 
 
 def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Mapping[str, str]:

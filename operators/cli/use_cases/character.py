@@ -32,18 +32,21 @@ def character_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Opening the character")
         with opened_character(file, arguments.map, arguments.debug) as (_, opened):
-            name, chosen, notes = opened.character.name, opened.chosen, opened.imported.notes
+            name, chosen = opened.character.name, opened.chosen
+            console.stage("Finding how the controls act")
+            character_map, found = opened.completed(arguments.debug)
+            notes = (*opened.imported.notes, *found)
         result = {
             "file": str(file.path),
             "object": name,
             "origin": chosen.origin,
             "map_file": None if chosen.path is None else str(chosen.path),
-            "map": map_to_json(chosen.character_map),
+            "map": map_to_json(character_map),
             "doubts": list(chosen.doubts),
             "notes": list(notes),
             "files": [],
         }
-        lines = [*_heading(str(file.path), name, chosen), *map_lines(chosen.character_map)]
+        lines = [*_heading(str(file.path), name, chosen), *map_lines(character_map)]
         columns = terminal_columns()
         for title, sentences in (("Doubtful:", chosen.doubts), ("Notes:", notes)):
             if sentences:
@@ -52,7 +55,7 @@ def character_command(arguments: argparse.Namespace) -> None:
                     line for sentence in sentences for line in wrapped(f"{sentence.rstrip('.')}.", 2, columns)
                 ]
         if arguments.output is not None:
-            write_character_map(arguments.output, chosen.character_map)
+            write_character_map(arguments.output, character_map)
             result["files"] = [str(arguments.output)]
             lines.append(f"Written: {arguments.output}")
         console.finish(result, "\n".join(lines))

@@ -90,7 +90,9 @@ def test_a_script_that_gives_a_take_another_armature_is_told(
     """One sentence from every step that needs the actor, with what to do."""
     take.armature = rig
     for operator in (bpy.ops.keymark.bake_motion, bpy.ops.keymark.show_action):
-        with pytest.raises(RuntimeError, match=r"'Character' is no actor of Keymark's; build the actor"):
+        with pytest.raises(
+            RuntimeError, match=r"'Character' is no actor of Keymark's, as it lacks pelvis, girdle\.L"
+        ):
             operator()
 
 

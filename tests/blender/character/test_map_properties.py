@@ -1,18 +1,21 @@
 """A character's map in properties: nothing is lost there, in the file, or by correcting one role."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
 import pytest
 from _character_maps import full_map
-from _rigify import rigify_map
-from keymark.core.retarget.character_map import CharacterMap, RoleBones
+from keymark.core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.character_map_file import read_character_map
 from keymark.core.retarget.options import RetargetOptions
+from keymark.core.retarget.presets import SHIPPED, read_preset
 from keymark.core.retarget.roles import LIMBS, ROLES
-from keymark.operators.character.map_conversion import map_of, show_map
+from keymark.operators.character.map_conversion import map_of, show_found_controls, show_map
 from keymark.operators.character.options import options_of
 from keymark.operators.shell.takes import active_take
+
+RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -22,7 +25,7 @@ def role(character: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGro
     return character.character_map.roles[name]
 
 
-@pytest.mark.parametrize("character_map", [rigify_map(), full_map()], ids=["rigify", "full"])
+@pytest.mark.parametrize("character_map", [RIGIFY, full_map()], ids=["rigify", "full"])
 def test_a_map_goes_into_properties_and_comes_back(
     character: bpy.types.PropertyGroup, character_map: CharacterMap
 ) -> None:
@@ -64,7 +67,7 @@ def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
 
 def test_a_corrected_role_is_the_persons(character: bpy.types.PropertyGroup) -> None:
     """Its doubt is gone, and so is the control that was found for another bone; other roles keep theirs."""
-    show_map(character.character_map, rigify_map(), {"hand.L": "hand.L is doubtful: look at it"})
+    show_map(character.character_map, RIGIFY, {"hand.L": "hand.L is doubtful: look at it"})
     before = map_of(character.character_map)
     shown = role(character, "hand.L")
     assert shown.doubt and shown.source == before.roles["hand.L"].source
@@ -182,3 +185,23 @@ def test_a_map_in_the_library_folder_is_suggested(
     assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("My Hero", "hand.L")
     assert bpy.ops.keymark.load_map(title=anew.suggested) == {"FINISHED"}
     assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("", "finger.L")
+
+
+def test_controls_found_on_the_rig_are_shown(character: bpy.types.PropertyGroup) -> None:
+    """Beside what is shown already; not where the roles were corrected meanwhile."""
+    plain = map_of(character.character_map)
+    controls = IkControls("finger.L", None, None, Switch("hand.L", "IK_FK", 0.0, 1.0))
+    found = replace(
+        plain,
+        fk={"head": ("neck",), "neck": ("head",)},
+        ik={"arm.L": controls},
+        settings=(Setting("hips", "follow", 1.0),),
+    )
+    role(character, "neck").bones[0].control = "chest"
+    show_found_controls(character.character_map, found)
+    shown = map_of(character.character_map)
+    assert shown.fk == {"head": ("neck",), "neck": ("chest",)} and shown.ik == {"arm.L": controls}
+    assert shown.settings == found.settings and shown.roles == plain.roles
+    role(character, "hand.L").bones[0].bone = "finger.L"
+    show_found_controls(character.character_map, replace(found, root="hips"))
+    assert map_of(character.character_map).root is None

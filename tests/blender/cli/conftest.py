@@ -1,5 +1,6 @@
 """Character files of many kinds, good and bad, and a finished motion, for the commands on characters."""
 
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +28,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def cast(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cast(tmp_path_factory: pytest.TempPathFactory, result: Path) -> Path:
     """A folder of character files: good ones, and one for each way of being none."""
     folder = tmp_path_factory.mktemp("cast")
     plain = plain_character(root="root")
@@ -40,6 +41,7 @@ def cast(tmp_path_factory: pytest.TempPathFactory) -> Path:
     _save(folder / "flat.blend", lambda: _scaled(build_character(plain), (1.0, 0.0, 1.0)))
     _save(folder / "nan.blend", lambda: _scaled(build_character(plain), (float("nan"),) * 3))
     _save(folder / "cycle.blend", lambda: _with_cycle(build_character(plain)))
+    shutil.copyfile(result / "motion.blend", folder / "motion.blend")
     (folder / "damaged.blend").write_bytes((folder / "anna.blend").read_bytes()[:3000])
     (folder / "damaged.glb").write_bytes(b"no model")
     return folder

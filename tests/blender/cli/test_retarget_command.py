@@ -124,6 +124,8 @@ def test_exports_hold_character_and_motion(retarget: Retarget, output: Path, wor
     kind = {"bvh": "BVH", "fbx": "FBX", "glb": "GLTF", "usd": "USD"}[word]
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
+    if word == "glb" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
+        pytest.skip("Blender 4.5 as a Python module may wait for ever at its exit after a glTF export")
     assert retarget("--format", word) == 0
     file = output / f"character{FORMATS[kind].suffix}"
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

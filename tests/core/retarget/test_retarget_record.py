@@ -27,8 +27,11 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
 
 def test_figures_have_five_digits(tmp_path: Path) -> None:
     """More would differ between machines, and mean nothing."""
-    write_retarget_record(tmp_path, replace(full_record(), quality={"a_mm": 1.23456789, "b": None}))
-    assert read_retarget_record(tmp_path).quality == {"a_mm": 1.2346, "b": None}
+    write_retarget_record(
+        tmp_path, replace(full_record(), quality={"a_mm": 1.23456789, "b": None, "keys": 1234567})
+    )
+    assert read_retarget_record(tmp_path).quality == {"a_mm": 1.2346, "b": None, "keys": 1234567}
+    assert '"keys": 1234567' in (tmp_path / RECORD_FILE).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -136,3 +136,15 @@ def test_a_character_counts_by_content_map_and_options(shoot: Path) -> None:
     assert len(set(digests)) == len(digests)
     edit("shoot.json", character={"file": "anna.blend", "legs": "both", "map": None, "//": "x"})(shoot)
     assert digest(shoot) == digests[-1]
+
+
+def test_the_buffers_of_a_gltf_count(shoot: Path) -> None:
+    """They lie in files beside it; what it names elsewhere, or embeds, is no file of its own."""
+    uris = ["anna.bin", "data:application/octet-stream;base64,AAAA", "../out.bin", 3]
+    gltf = {"asset": {"version": "2.0"}, "buffers": [{"uri": uri} for uri in uris]}
+    (shoot / "anna.gltf").write_text(json.dumps(gltf), encoding="utf-8")
+    (shoot / "anna.bin").write_bytes(b"1")
+    edit("shoot.json", character={"file": "anna.gltf"})(shoot)
+    before = digest(shoot)
+    (shoot / "anna.bin").write_bytes(b"2")
+    assert digest(shoot) != before

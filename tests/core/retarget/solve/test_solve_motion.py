@@ -17,9 +17,12 @@ from _performances import (
     steps_elsewhere,
 )
 from keymark.core.arrays import Array
+from keymark.core.body.extremities import RIGID
 from keymark.core.body.heading import yaw_rotation
 from keymark.core.body.posture import Posture
+from keymark.core.body.segment_motion import segment_motion
 from keymark.core.errors import InputError
+from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.character_motion import Similarity
@@ -320,3 +323,43 @@ def test_short_motions(frames: int) -> None:
     for options in (RetargetOptions(), RetargetOptions(root_motion=RootMotion.IN_PLACE)):
         motion = solved(character, character_map, performance(body, posture[:frames]), options)
         assert all(np.isfinite(pose).all() for pose in motion.poses.values())
+
+
+def test_hips_left_alone_stay() -> None:
+    """Then nothing carries the body anywhere, and no foot is planted."""
+    character = plain_character()
+    motion = solved(character, replace(plain_map(character), left_alone=("hips",)), steps())
+    assert "hips" not in motion.poses and motion.rests == ()
+    thigh = motion.poses["thigh.L"][:, :3, 3]
+    np.testing.assert_allclose(thigh, thigh[:1].repeat(len(thigh), 0), atol=1e-9)
+    assert thigh[0] @ [0.0, 0.0, 1.0] == pytest.approx(0.9)
+
+
+def test_uneven_frames() -> None:
+    """A clip of variable frame rate keeps to the figures as well."""
+    body, posture = stepping()
+    rng = np.random.default_rng(7)
+    kept = np.sort(rng.choice(posture.batch[0], 90, replace=False))
+    time_s = kept / 30.0
+    few = posture[kept]
+    source = segment_motion(body, few, time_s, natural_extremities(body, few, time_s))
+    character = plain_character()
+    character_map = plain_map(character)
+    figures = quality(character, character_map, source, solved(character, character_map, source))
+    assert figures.skate_worst_mm is not None and figures.skate_worst_mm < 0.01
+    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
+
+
+def test_feet_that_are_rigid_with_the_shins_lie_flat_at_rest() -> None:
+    """A performer without feet of its own still gets flat ones that roll."""
+    body, posture = stepping()
+    source = segment_motion(body, posture, np.arange(posture.batch[0]) / 30.0, RIGID)
+    character = plain_character()
+    character_map = plain_map(character)
+    motion = solved(character, character_map, source)
+    figures = quality(character, character_map, source, motion)
+    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
+    rest = motion.rests[0]
+    foot = motion.poses[f"foot.{rest.limb[-1]}"][rest.first : rest.last + 1, :3, :3]
+    sole = foot @ character.bone("foot.L").rest[:3, :3].T @ [0.0, 0.0, 1.0]
+    np.testing.assert_allclose(sole, [[0.0, 0.0, 1.0]] * len(sole), atol=0.02)

@@ -1,0 +1,84 @@
+"""The shape of feet: from the bones, from the map, and the ground under a resting character."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _characters import plain_character, plain_map
+from _performances import shaped, solved, steps
+from keymark.core.retarget.solve.foot_shape import foot_shape, rest_floor_m, sole_points
+from keymark.core.retarget.solve.rest_body import RestBody
+
+
+def test_a_character_on_its_origin_stands_on_it() -> None:
+    """Joints of the toes lie a little over the sole: the origin is the ground."""
+    character = plain_character()
+    assert rest_floor_m(RestBody.of(character, plain_map(character))) == 0.0
+
+
+@pytest.mark.parametrize("height", [-0.82, 3.0])
+def test_a_character_off_its_origin_stands_under_its_toes(height: float) -> None:
+    """The ground is a little below the lowest joint."""
+    character, character_map = shaped(lambda _, place: place + [0.0, 0.0, height])
+    floor_m = rest_floor_m(RestBody.of(character, character_map))
+    assert height - 0.02 < floor_m < height + 0.015
+
+
+@pytest.mark.parametrize("without", [(), ("toe",)])
+def test_a_foot_of_bones_lies_flat_from_heel_to_tip(without: tuple[str, ...]) -> None:
+    """All points of the sole are on the ground, behind and ahead of the ankle, inside and outside."""
+    character = plain_character(without=without, scale=0.01)
+    body = RestBody.of(character, plain_map(character))
+    shape = foot_shape(body, "L", 0.0)
+    points = (
+        shape.foot if shape.toe_joint is None else np.concatenate([shape.foot, shape.toe + shape.toe_joint])
+    )
+    np.testing.assert_allclose(points[:, 2], -0.08, atol=1e-9)
+    assert abs(shape.ankle_m - 0.08) < 1e-9
+    assert points[:, 1].max() > 0.04 and points[:, 1].min() < -0.1
+    assert points[:, 0].max() > 0.02 and points[:, 0].min() < -0.02
+    assert (shape.toe_joint is None) == bool(without)
+    given = sole_points(body, {"L": shape})
+    np.testing.assert_allclose(given["foot.L"][:, 2], 0.0, atol=1e-9)
+    assert np.abs(given["foot.L"]).max() > 10.0
+
+
+def test_the_maps_soles_are_the_soles() -> None:
+    """They come back as they were given, and the ground is under them."""
+    character = plain_character()
+    sole = ((0.1, 0.09, -0.03), (0.07, -0.1, -0.03), (0.14, -0.1, -0.03))
+    tip = ((0.1, -0.2, -0.03),)
+    soles = {f"{part}.{side}": points for side in "LR" for part, points in (("foot", sole), ("toe", tip))}
+    body = RestBody.of(character, replace(plain_map(character), soles=soles))
+    floor_m = rest_floor_m(body)
+    assert floor_m == -0.03
+    shape = foot_shape(body, "L", floor_m)
+    np.testing.assert_allclose(sole_points(body, {"L": shape})["foot.L"], sole, atol=1e-12)
+    np.testing.assert_allclose(sole_points(body, {"L": shape})["toe.L"], tip, atol=1e-12)
+    assert abs(shape.ankle_m - 0.11) < 1e-9
+    assert abs(shape.heel[1] - 0.07) < 0.02
+    assert abs(shape.front[1] + 0.13) < 0.01
+
+
+def test_tails_are_believed_where_they_meet_heads() -> None:
+    """In a character whose tails lie anywhere, toes end where the foot says."""
+    character, character_map = shaped(lambda _, place: place)
+    astray = replace(
+        character, bones=tuple(replace(b, tail=b.head + [28.0, 0.0, 0.0]) for b in character.bones)
+    )
+    meant, anywhere = RestBody.of(character, character_map), RestBody.of(astray, character_map)
+    assert meant.tails_are_meant and not anywhere.tails_are_meant
+    assert anywhere.tip("toe.L") is None
+    lengths = [np.ptp(foot_shape(body, "L", 0.0).toe[:, 1]) for body in (meant, anywhere)]
+    tips = [foot_shape(body, "L", 0.0).toe[:, 1].min() for body in (meant, anywhere)]
+    assert len(lengths) == 2
+    np.testing.assert_allclose(tips, [-0.08, -0.052], atol=0.01)
+
+
+@pytest.mark.parametrize("points", [((0.1, -0.05, 0.0),), ((0.1, 0.09, 0.0),)], ids=["no heel", "no ball"])
+def test_a_sole_on_one_side_of_the_ankle_is_enough(points: tuple[tuple[float, float, float], ...]) -> None:
+    """As of a mesh whose heel hangs on the shin, or of a map with a single point: the motion is whole."""
+    character = plain_character()
+    soles = {f"foot.{side}": points for side in "LR"}
+    motion = solved(character, replace(plain_map(character), soles=soles), steps())
+    assert all(np.isfinite(pose).all() for pose in motion.poses.values())
