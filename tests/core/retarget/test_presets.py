@@ -36,7 +36,7 @@ def named(*names: str) -> Character:
 
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.identifier)
 def test_a_shipped_preset_is_found_by_its_own_bones(preset: Any) -> None:
-    """And by those alone that it requires; what it gives beside them are roles, and controls that are named."""
+    """And by those alone that it requires; beside them it gives all roles that a character must have."""
     whole = find_preset(named(*preset.character_map.named_bones, *preset.requires))
     assert whole is not None and whole.preset == preset.identifier
     assert whole.roles.keys() == preset.character_map.roles.keys() and whole.ik == preset.character_map.ik
