@@ -50,10 +50,12 @@ def planned_controls(character_map: CharacterMap, options: RetargetOptions) -> t
 
 
 def limb_keys(character_map: CharacterMap, options: RetargetOptions, limb: str) -> LimbKeys:
-    """How a limb is keyed: in FK where the rig, or the parts that may be moved, allow nothing else."""
+    """How a limb is keyed: as chosen, where the rig and the parts that may be moved allow it."""
     missing = set(joint_roles(limb)) - set(character_map.roles) | set(character_map.left_alone)
     if limb not in character_map.ik or missing & set(joint_roles(limb)):
         return LimbKeys.FK
+    if all(control is None for role in joint_roles(limb)[:2] for control in character_map.keyed_bones(role)):
+        return LimbKeys.IK
     return options.arms if limb.startswith("arm") else options.legs
 
 

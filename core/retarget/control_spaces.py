@@ -5,7 +5,8 @@ and constraints lie between, or nothing at all. Of random poses only the carrier
 space as one that does not change. What turns a control may be another one than what carries it.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,7 +43,15 @@ class ControlSpace:
 
     def is_rigid(self, size: float) -> bool:
         """Whether the channels act as said; `size` is the character's, in the armature's units."""
-        return self.residual_rad < RIGID and self.residual < RIGID * size
+        return self.residual_rad < RIGID and self.is_placed(size)
+
+    def is_placed(self, size: float) -> bool:
+        """Whether its carrier places it as said."""
+        return self.residual < RIGID * size
+
+    def placed_by_turner(self, origin: Array) -> "ControlSpace":
+        """The space where the turner carries it at a place (3,) in its axes, and locations do nothing."""
+        return replace(self, carrier=self.turner, origin=origin, axes=np.zeros((3, 3)), residual=0.0)
 
     @property
     def movable(self) -> bool:
@@ -60,6 +69,12 @@ class PosedControls:
     """(S, C, 4, 4) its pose in the armature's space; scale is ignored."""
     still: int
     """Number of samples without location channels, at least two; four more have some."""
+
+
+def chosen(posed: PosedControls, indices: Sequence[int]) -> PosedControls:
+    """Some of the controls."""
+    rows = list(indices)
+    return replace(posed, channels=posed.channels[:, rows], poses=posed.poses[:, rows])
 
 
 def find_spaces(posed: PosedControls) -> tuple[ControlSpace, ...]:
