@@ -1,7 +1,8 @@
 """Check the output of `make demo` against its promises. Usage: check_demo.py OUTPUT TAKE.
 
 OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures that are not
-blank, and a motion near the take's truth. The exit status is 1 on errors, with one line for each.
+blank, a motion near the take's truth, and a character whose feet stand still on the floor. The exit status is
+1 on errors, with one line for each.
 """
 
 import json
@@ -12,7 +13,11 @@ import cv2
 import numpy as np
 
 LARGEST_MEAN_ERROR_M = 0.035
-PICTURES_AT_LEAST = 4
+PICTURES_AT_LEAST = 5
+LARGEST_MM = {"skate_mm": 0.05, "penetration_mm": 2.0, "ik_fk_mm": 1.0}
+"""Of the figures of the character's motion."""
+BLEND_STARTS = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
+"""A plain .blend, and one compressed by Zstandard or gzip."""
 
 
 def check_motion(motion: dict, take: dict, truth: dict) -> list[str]:
@@ -40,13 +45,25 @@ def check_files(folder: Path, frame_count: int) -> list[str]:
     """Errors of the .blend and the .bvh beside a motion.json."""
     wrong = []
     blend = folder / "motion.blend"
-    starts = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, Zstandard, gzip
-    if not blend.is_file() or not blend.read_bytes().startswith(starts):
+    if not blend.is_file() or not blend.read_bytes().startswith(BLEND_STARTS):
         wrong.append(f"{blend} is no Blender file")
     bvh = folder / "motion.bvh"
     if not bvh.is_file() or f"Frames: {frame_count}" not in " ".join(bvh.read_text().split()):
         wrong.append(f"{bvh} does not have {frame_count} frames")
     return wrong
+
+
+def check_character(folder: Path) -> list[str]:
+    """Errors of the character beside a motion.json: no file, or a motion that slides or sinks."""
+    blend = folder / "character.blend"
+    if not blend.is_file() or not blend.read_bytes().startswith(BLEND_STARTS):
+        return [f"{blend} is no Blender file"]
+    quality = json.loads((folder / "retarget.json").read_text(encoding="utf-8"))["quality"]
+    return [
+        f"{folder / 'retarget.json'}: {name} is {quality.get(name)}, not within {largest}"
+        for name, largest in LARGEST_MM.items()
+        if not quality.get(name, np.inf) <= largest
+    ]
 
 
 def check_pictures(folder: Path) -> list[str]:
@@ -71,6 +88,7 @@ def main(arguments: list[str]) -> int:
         found = check_motion(json.loads(motion.read_text(encoding="utf-8")), take, truth)
         wrong += [f"{motion}: {sentence}" for sentence in found]
         wrong += check_files(motion.parent, take["frame_count"])
+        wrong += check_character(motion.parent)
     wrong += check_pictures(output)
     for sentence in wrong:
         print(sentence, file=sys.stderr)

@@ -12,6 +12,8 @@ from .contact_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .square_crop import square_of, squares_around
 from .view_directions import view_directions
 
+PICTURE = "character.png"
+"""Name of the picture."""
 SIDE = 220
 """Side of a picture [px]."""
 PAPER = (250, 249, 248)

@@ -6,11 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from ....core.body.segment_motion import SegmentMotion, segment_motion
 from ....core.errors import InputError
 from ....core.files.digest import content_digest
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.progress import Job, run
+from ....core.report.canvas import write_png
+from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import Character
 from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.choose_map import ChosenMap, choose_map
@@ -30,8 +34,10 @@ if TYPE_CHECKING:
 
     from ....core.arrays import Array
     from ...bridge.character.import_character import ImportedCharacter
+    from ...bridge.character.retarget import Retargeted
 
 CHARACTER_BLEND = "character.blend"
+CHARACTER_PICTURE = f"report/{PICTURE}"
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
@@ -96,6 +102,7 @@ def write_character_result(
     console: Console,
     debug: bool,
     formats: tuple[str, ...] = (),
+    picture: bool = True,
 ) -> RetargetRecord:
     """Put a motion onto a character and write the files.
 
@@ -108,6 +115,7 @@ def write_character_result(
         console: Shows the progress.
         debug: Whether to let Blender's messages through.
         formats: Words of `EXPORTS`.
+        picture: Whether to draw the character beside the footage, where the scene shows some.
 
     Raises:
         InputError: The character or its map cannot be used.
@@ -124,7 +132,10 @@ def write_character_result(
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
-        retargeted = run(_silenced(job, debug), console.progress)
+        try:
+            retargeted = run(_silenced(job, debug), console.progress)
+        except InputError as error:
+            raise InputError(f"{settings.file.path}: {error}") from error
         console.stage("Writing the character")
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())
@@ -133,6 +144,8 @@ def write_character_result(
             paths = {name: hidden[file] for name, file in exports.items()}
             curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
+        if picture:
+            _draw(scene, armature, retargeted, staging_folder / CHARACTER_PICTURE)
         record = RetargetRecord(
             keymark=version(),
             take=take,
@@ -157,6 +170,19 @@ def write_character_result(
         )
         write_retarget_record(staging_folder, record)
         return record
+
+
+def _draw(
+    scene: "bpy.types.Scene", armature: "bpy.types.Object", retargeted: "Retargeted", file: Path
+) -> None:
+    from ...bridge.character.picture import character_picture
+
+    motion = retargeted.motion
+    floor_m = float(motion.to_world.location[2] + min(float(np.median(g)) for g in motion.ground_m.values()))
+    image = character_picture(scene, armature, retargeted.character_map, retargeted.keys.frames, floor_m)
+    if image is not None:
+        file.parent.mkdir(exist_ok=True)
+        write_png(str(file), image)
 
 
 def motion_segments(motion: Motion) -> SegmentMotion:

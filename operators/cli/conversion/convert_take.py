@@ -34,7 +34,7 @@ from ..require_blender import require_blender
 from ..version import version
 from .blender_files import BLEND, BVH, write_blender_files
 from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
-from .character_result import CHARACTER_BLEND, opened_character, write_character_result
+from .character_result import CHARACTER_BLEND, CHARACTER_PICTURE, opened_character, write_character_result
 from .matched_keyframes import reconstruct_or_match
 from .result import Conversion, conversion_record
 from .unsupported_paths import refuse_unsupported_paths
@@ -47,6 +47,7 @@ RESULT_FILES = (
     BVH,
     CHARACTER_BLEND,
     RETARGET,
+    CHARACTER_PICTURE,
     *(f"{REPORT}/{name}" for name in PICTURES),
     f"{REPORT}/{MATCHES}",
 )
@@ -181,6 +182,7 @@ def _write_character(
         (prepared.staging_folder, real_path(prepared.output)),
         console,
         debug,
+        picture=prepared.settings.pictures is not False,
     )
 
 

@@ -1,38 +1,47 @@
-"""`keymark demo`: convert the demonstration take, whose true motion is known, and score the result."""
+"""`keymark demo`: convert the demonstration take, put it on a character, and score it against the truth."""
 
 import argparse
+import tempfile
 from collections.abc import Mapping
+from pathlib import Path
 
-from ....core.errors import InputError
+from ....core.errors import ConversionError, InputError
 from ....core.estimate.reconstruct import reconstruct
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
+from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
 from ..conversion.blender_files import BLEND
+from ..conversion.character_result import CHARACTER_BLEND
 from ..conversion.convert_take import REPORT, convert_take
+from ..require_blender import require_blender
 from ..version import ROOT
 from .convert import conversion_summary
+from .demo_character import write_demo_character
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 KEYFRAMES = DEMO / "keyframes_noisy.json"
 """Keyframes with the errors that a person makes when posing."""
+CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
 def demo_command(arguments: argparse.Namespace) -> None:
-    """Convert the demonstration take and print the error of each method."""
+    """Convert the demonstration take, give it to a character, and print the error of each method."""
     if not DEMO.is_dir():
         raise InputError(
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
         )
-    with arguments_console(arguments) as console:
-        done = convert_take(
-            describe(DEMO), arguments.output, console, ConversionSettings(KEYFRAMES), arguments.debug
-        )
+    require_blender("the demonstration needs")
+    with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
+        console.stage("Generating a character")
+        character, missing = _character(Path(folder))
+        settings = ConversionSettings(KEYFRAMES, character=character)
+        done = convert_take(describe(DEMO), arguments.output, console, settings, arguments.debug)
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
         scores = {
@@ -50,9 +59,19 @@ def demo_command(arguments: argparse.Namespace) -> None:
             f"{scores['map'].keyframes} of them, in millimeters:",
             *_table(scores),
             f"Open in Blender: {output / BLEND}",
+            missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
             f"Pictures:        {output / REPORT}",
         ]
         console.finish(result, "\n".join(lines))
+
+
+def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
+    """Rigify's basic human in a file of the folder; or None, and why there is none."""
+    try:
+        write_demo_character(folder / CHARACTER_FILE)
+    except ConversionError as error:
+        return None, f"Without a character: {error}"
+    return CharacterSettings(CharacterFile(folder / CHARACTER_FILE)), ""
 
 
 def _score(take: Take, motion: Motion) -> Score:

@@ -24,13 +24,13 @@ from ....core.take.motion_file import read_motion
 from ..console import Console, arguments_console
 from ..conversion.blender_files import BLEND
 from ..conversion.changed_files import AS_MADE, changed_files, kept_note, write_made_digests
-from ..conversion.character_result import CHARACTER_BLEND, EXPORTS, write_character_result
+from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
 from ..conversion.convert_take import MOTION
 from ..conversion.unsupported_paths import refuse_unsupported_output
 from ..require_blender import require_blender
 from ..usage import UsageError
 
-RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, *(file for _, file in EXPORTS.values()))
+RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 """Every file that the command may make."""
 FIGURES = {
     "arms_deg": "arms are {:.1f} degrees from the performer's on average",
