@@ -5,7 +5,7 @@ import numpy as np
 from _armatures import build_character
 from _characters import plain_character, plain_map
 from keymark.core.retarget.character import Character, CharacterBone
-from keymark.core.retarget.character_map import CharacterMap
+from keymark.core.retarget.maps.character_map import CharacterMap
 
 LIMBS = {"arm": ("upper_arm", "forearm", "hand"), "leg": ("thigh", "shin", "foot")}
 FREE = ("spine", "chest", "neck", "head", "shoulder", "finger")

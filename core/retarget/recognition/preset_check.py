@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...files.json_file import shown
 from ..character import Character
-from ..character_map import CharacterMap, IkControls, RoleBones
+from ..maps.character_map import CharacterMap, IkControls, RoleBones
 from ..roles import CHAINS, REQUIRED, ROLES
 from .figure import Figure
 from .refusals import HANDS_ABOVE, LEAST_UPRIGHT

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from ..character import Character
-from ..character_map import CharacterMap
-from ..presets import Preset, find_preset
+from ..maps.character_map import CharacterMap
+from ..maps.presets import Preset, find_preset
 from ..stance import find_stance
 from .bones import candidate_bones
 from .doubts import limb_doubts, missing_doubts, name_doubts, side_doubts, trunk_doubts

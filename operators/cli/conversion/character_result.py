@@ -16,8 +16,8 @@ from ....core.progress import Job, run
 from ....core.report.canvas import write_png
 from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import Character
-from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.choose_map import ChosenMap, choose_map
+from ....core.retarget.maps.character_map import CharacterMap
+from ....core.retarget.maps.choose_map import ChosenMap, choose_map
 from ....core.retarget.option_words import retarget_options
 from ....core.retarget.retarget_record import RetargetRecord, write_retarget_record
 from ....core.retarget.roles import LIMBS

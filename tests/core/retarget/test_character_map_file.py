@@ -12,8 +12,8 @@ from _characters import plain_character, plain_map
 from _fuzz import FUZZ, changed
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
-from keymark.core.retarget.character_map import RoleBones
-from keymark.core.retarget.character_map_file import (
+from keymark.core.retarget.maps.character_map import RoleBones
+from keymark.core.retarget.maps.character_map_file import (
     LARGEST_BYTES,
     map_digest,
     map_from_json,
@@ -21,7 +21,7 @@ from keymark.core.retarget.character_map_file import (
     read_character_map,
     write_character_map,
 )
-from keymark.core.retarget.map_check import check_map, missing_bones
+from keymark.core.retarget.maps.map_check import check_map, missing_bones
 
 MAP = full_map()
 VALID = map_to_json(MAP)

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 from keymark.core.library.texts import LONGEST_NAME
-from keymark.core.retarget import character_map_fields, character_map_file
-from keymark.core.retarget.character_map_file import read_character_map, write_character_map
+from keymark.core.retarget.maps import character_map_fields, character_map_file
+from keymark.core.retarget.maps.character_map_file import read_character_map, write_character_map
 from keymark.core.retarget.roles import LIMBS, ROLES, SOURCES
 
 

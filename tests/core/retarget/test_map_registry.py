@@ -10,8 +10,8 @@ from _libraries import small_library
 from keymark.core.errors import InputError
 from keymark.core.library.library_file import write_library
 from keymark.core.library.registry import registered_libraries
-from keymark.core.retarget.character_map_file import write_character_map
-from keymark.core.retarget.map_registry import find_map, map_for, map_path, registered_maps
+from keymark.core.retarget.maps.character_map_file import write_character_map
+from keymark.core.retarget.maps.map_registry import find_map, map_for, map_path, registered_maps
 
 PLAIN = plain_map(plain_character())
 UPPER = {key: key.upper() for key in plain_character().index}

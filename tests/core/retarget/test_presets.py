@@ -11,7 +11,7 @@ from _characters import plain_character
 from _conventions import convention_names
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.presets import SHIPPED, find_preset, preset_from_json, shipped_presets
+from keymark.core.retarget.maps.presets import SHIPPED, find_preset, preset_from_json, shipped_presets
 from keymark.core.retarget.roles import REQUIRED
 
 PRESETS = shipped_presets()

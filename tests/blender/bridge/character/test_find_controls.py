@@ -10,7 +10,7 @@ from _characters import plain_character, plain_map
 from _control_rigs import control_rig, simple_ik_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
-from keymark.core.retarget.character_map import IkControls, Setting, Switch
+from keymark.core.retarget.maps.character_map import IkControls, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.complete_map import complete_map
 from keymark.operators.bridge.character.find_controls import find_controls

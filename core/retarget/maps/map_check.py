@@ -1,11 +1,11 @@
 """Whether a character map is for a character: all bones that it names must be there."""
 
-from ..errors import InputError
-from ..files.fields import listed
-from ..files.json_file import shown
-from .character import Character
+from ...errors import InputError
+from ...files.fields import listed
+from ...files.json_file import shown
+from ..character import Character
+from ..roles import REQUIRED
 from .character_map import CharacterMap
-from .roles import REQUIRED
 
 MOST_NAMED = 5
 """Missing bones that are named in a sentence."""

@@ -8,14 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..files.digest import digest
-from ..files.fields import Fields
-from ..files.json_file import read_json, shown
-from ..files.json_layout import write_readable_json
+from ...errors import InputError
+from ...files.digest import digest
+from ...files.fields import Fields
+from ...files.json_file import read_json, shown
+from ...files.json_layout import write_readable_json
+from ..roles import LIMBS, ROLES
 from .character_map import CharacterMap, IkControls, RoleBones
 from .character_map_fields import SOLE_ROLES, read_map_fields
-from .roles import LIMBS, ROLES
 
 SCHEMA = "keymark-character"
 SCHEMA_VERSION = 1

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError
-from ..take.character_settings import AUTO, NO_MAP
-from .character import Character
+from ...errors import InputError
+from ...take.character_settings import AUTO, NO_MAP
+from ..character import Character
+from ..recognition.recognize import recognize
+from ..retarget_record import GIVEN, RECOGNIZED, SAVED
 from .character_map import CharacterMap
 from .character_map_file import map_digest
 from .map_check import check_map
 from .map_registry import RegisteredMap, find_map, map_for, registered_maps
-from .recognition.recognize import recognize
-from .retarget_record import GIVEN, RECOGNIZED, SAVED
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
-from ..body.skeleton import SIDES
-from .character import Character
+from ...arrays import Array
+from ...body.skeleton import SIDES
+from ..character import Character
+from ..roles import LIMBS, MIDDLE, ROLES
 from .character_map import CharacterMap, IkControls, RoleBones, Switch
-from .roles import LIMBS, MIDDLE, ROLES
 
 WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))
 """How names tell the sides."""

@@ -6,11 +6,11 @@ Conventions in `presets/characters` have the same fields and a few more; both ar
 from collections.abc import Collection, Iterable, Mapping
 from math import hypot
 
-from ..errors import InputError
-from ..files.control_characters import is_control_character
-from ..files.fields import Fields, listed
-from ..files.json_file import shown
-from ..library.text_fields import (
+from ...errors import InputError
+from ...files.control_characters import is_control_character
+from ...files.fields import Fields, listed
+from ...files.json_file import shown
+from ...library.text_fields import (
     LONGEST_LINE,
     LONGEST_TAG,
     LONGEST_TEXT,
@@ -22,9 +22,9 @@ from ..library.text_fields import (
     text_line,
     text_lines,
 )
-from ..library.texts import LONGEST_NAME
+from ...library.texts import LONGEST_NAME
+from ..roles import CHAINS, LIMBS, ROLES, SOURCES
 from .character_map import CharacterMap, IkControls, Point, RoleBones, Setting, Switch
-from .roles import CHAINS, LIMBS, ROLES, SOURCES
 
 MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
 """Most bones of one role; settings; points of one sole."""

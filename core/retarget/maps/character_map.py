@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from .roles import CHAINS
+from ..roles import CHAINS
 
 Point = tuple[float, float, float]
 

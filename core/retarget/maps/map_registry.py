@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from ..errors import InputError
-from ..files.fields import listed
-from ..files.json_file import read_json, shown
-from ..files.json_folder import ENDING, is_other_format, is_path, json_files
-from ..library.library_file import LARGEST_BYTES
-from ..library.texts import identifier_from, name_key
-from .character import Character
+from ...errors import InputError
+from ...files.fields import listed
+from ...files.json_file import read_json, shown
+from ...files.json_folder import ENDING, is_other_format, is_path, json_files
+from ...library.library_file import LARGEST_BYTES
+from ...library.texts import identifier_from, name_key
+from ..character import Character
 from .character_map import CharacterMap
 from .character_map_file import SCHEMA, map_from_json, read_character_map
 from .map_check import missing_bones

@@ -7,15 +7,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..files.fields import Fields
-from ..files.json_file import read_json, shown
-from ..files.json_folder import json_files
-from .character import Character
+from ...errors import InputError
+from ...files.fields import Fields
+from ...files.json_file import read_json, shown
+from ...files.json_folder import json_files
+from ..character import Character
 from .character_map import CharacterMap, IkControls, RoleBones
 from .character_map_fields import bone_names, read_map_fields
 
-SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "characters"
+SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"
 """The presets that come with Keymark."""
 SCHEMA = "keymark-character-preset"
 SCHEMA_VERSION = 1
