@@ -8,11 +8,11 @@ import numpy as np
 
 from ....core.arrays import Array
 from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from ....core.retarget.control_plan import ControlKind, PlannedControl
-from ....core.retarget.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
-from ....core.retarget.control_targets import PoleSetting
-from ....core.retarget.rigid_offset import rigid_offset
+from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
+from ....core.retarget.controls.control_plan import ControlKind, PlannedControl
+from ....core.retarget.controls.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
+from ....core.retarget.controls.control_targets import PoleSetting
+from ....core.retarget.controls.rigid_offset import rigid_offset
 from .dependencies import active_constraints, driven_bone, drivers
 from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics

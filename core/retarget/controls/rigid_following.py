@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array
+from ...arrays import Array
 from .control_spaces import unscaled
 
 RIGID_RAD = 2e-3

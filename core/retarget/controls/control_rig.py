@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
-from ..finish.hermite import Spline
-from ..finish.rig import NO_TURN, Rig, RigBone, RigPose
+from ...arrays import Array
+from ...finish.hermite import Spline
+from ...finish.rig import NO_TURN, Rig, RigBone, RigPose
 from .control_channels import Control, ControlChannels
 from .control_motion import ChannelValues, KeyedControl
 from .control_spaces import NOTHING

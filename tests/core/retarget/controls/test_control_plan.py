@@ -8,21 +8,26 @@ from _characters import plain_character, plain_map
 from _controls import with_ik
 from keymark.core.retarget.character_map import CharacterMap
 from keymark.core.retarget.character_motion import CharacterMotion, FootRest, Similarity
-from keymark.core.retarget.control_channels import Control
-from keymark.core.retarget.control_plan import ControlKind, PlannedControl, limb_keys, planned_controls
-from keymark.core.retarget.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.control_stages import FollowingControls, control_stages
-from keymark.core.retarget.control_targets import PoleSetting, pole_offset, pole_poses
-from keymark.core.retarget.held_points import HeldPoint, PointKind, held_points
-from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
-from keymark.core.retarget.point_tolerances import (
+from keymark.core.retarget.controls.control_channels import Control
+from keymark.core.retarget.controls.control_plan import (
+    ControlKind,
+    PlannedControl,
+    limb_keys,
+    planned_controls,
+)
+from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
+from keymark.core.retarget.controls.control_stages import FollowingControls, control_stages
+from keymark.core.retarget.controls.control_targets import PoleSetting, pole_offset, pole_poses
+from keymark.core.retarget.controls.held_points import HeldPoint, PointKind, held_points
+from keymark.core.retarget.controls.point_tolerances import (
     SHOWN_REST_M,
     SWITCH_M,
     ToleranceRules,
     pole_tolerance_m,
     reach_tolerance_m,
 )
-from keymark.core.retarget.rigid_following import followed_controls
+from keymark.core.retarget.controls.rigid_following import followed_controls
+from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
 from scipy.spatial.transform import Rotation
 
 FRAMES = 30

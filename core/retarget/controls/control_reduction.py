@@ -1,7 +1,8 @@
 """Few keys on a character's controls, FK and IK together, within a tolerance of the character itself."""
 
-from ..arrays import Array
-from ..progress import Part, scaled
+from ...arrays import Array
+from ...progress import Part, scaled
+from ..roles import LIMBS
 from .body_stage import reduce_body
 from .control_channels import ControlChannels
 from .control_motion import ChannelValues, ControlMotion, KeyedControl
@@ -9,7 +10,6 @@ from .control_spaces import NOTHING
 from .control_stages import control_stages
 from .following_stage import reduce_following
 from .point_tolerances import ToleranceRules
-from .roles import LIMBS
 
 BODY_SHARE = 0.5
 """Share of the work that the body's controls are, where others follow."""

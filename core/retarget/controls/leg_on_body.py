@@ -1,10 +1,10 @@
 """A leg in FK on a body that few keys have moved a little: its foot stays where it was."""
 
-from ..arrays import Array
-from ..body import rotations
+from ...arrays import Array
+from ...body import rotations
+from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for, unit
 from .control_channels import ControlChannels
 from .control_motion import ControlMotion
-from .solve.two_bone import STRAIGHTEST, LimbPose, reach_for, unit
 
 
 def leg_on_body(motion: ControlMotion, leg: str, carrier: ControlChannels) -> dict[str, Array]:

@@ -4,16 +4,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..arrays import Array
-from .character import Character
-from .character_map import CharacterMap
-from .character_motion import CharacterMotion
+from ...arrays import Array
+from ..character import Character
+from ..character_map import CharacterMap
+from ..character_motion import CharacterMotion
+from ..roles import LIMBS
 from .control_channels import Control
 from .control_motion import LimbPaths
 from .control_plan import ControlKind, joint_roles, limb_bones
 from .control_spaces import NOTHING
 from .control_targets import PoleSetting
-from .roles import LIMBS
 
 IN_FK = (ControlKind.FK, ControlKind.HIPS)
 

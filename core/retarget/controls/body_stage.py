@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..arrays import Array
-from ..finish.key_reduction import reduce_keys
-from ..progress import Part
+from ...arrays import Array
+from ...finish.key_reduction import reduce_keys
+from ...progress import Part
 from .control_channels import ControlChannels
 from .control_motion import ChannelValues, ControlMotion, KeyedControl
 from .control_rig import control_rig

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from ...arrays import Array
 from .control_spaces import constant_turn, unscaled
 
 

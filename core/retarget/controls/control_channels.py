@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..arrays import Array
+from ...arrays import Array
 from .control_plan import ControlKind, PlannedControl
 from .control_spaces import NOTHING, ControlSpace, unscaled
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
-from .character_motion import CharacterMotion
+from ...arrays import Array, BoolArray
+from ..character_motion import CharacterMotion
 from .held_points import HeldPoint, PointKind
 
 NEAR_FLOOR_M = 0.03

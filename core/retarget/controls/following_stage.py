@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..arrays import Array
-from ..finish.key_reduction import reduce_keys
-from ..progress import Part
+from ...arrays import Array
+from ...finish.key_reduction import reduce_keys
+from ...progress import Part
 from .body_stage import NO_FRAMES, shown_path
 from .control_channels import ControlChannels, control_channels
 from .control_motion import ChannelValues, ControlMotion, KeyedControl

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..body import rotations
-from .character_motion import CharacterMotion
+from ...arrays import Array
+from ...body import rotations
+from ..character_motion import CharacterMotion
 from .control_plan import ControlKind, PlannedControl
 
 SHORTEST_POLE = 0.25

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
-from ..body import rotations
+from ...arrays import Array
+from ...body import rotations
 
 NOTHING = -1
 """Instead of the index of a control: the armature itself."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from ..arrays import Array
-from ..finish.hermite import Spline
+from ...arrays import Array
+from ...finish.hermite import Spline
 from .control_channels import Control, ControlChannels
 from .control_plan import ControlKind
 from .held_points import HeldPoint

@@ -6,10 +6,10 @@ from enum import Enum
 
 import numpy as np
 
-from ..arrays import Array
-from .character import Character
-from .character_map import CharacterMap
-from .roles import LIMBS, MIDDLE
+from ...arrays import Array
+from ..character import Character
+from ..character_map import CharacterMap
+from ..roles import LIMBS, MIDDLE
 
 LEVER = 0.3
 """Distance of a point that shows a bone's turn about its own length, in lengths of the bone."""

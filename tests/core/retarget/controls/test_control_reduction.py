@@ -13,18 +13,18 @@ from keymark.core.finish.hermite import Spline
 from keymark.core.finish.rig import rotation_matrices
 from keymark.core.progress import run
 from keymark.core.retarget.character_motion import CharacterMotion, Similarity
-from keymark.core.retarget.control_channels import (
+from keymark.core.retarget.controls.control_channels import (
     Control,
     ControlChannels,
     control_channels,
     ordered_controls,
 )
-from keymark.core.retarget.control_motion import ControlMotion, KeyedControl, dense_controls
-from keymark.core.retarget.control_plan import ControlKind, PlannedControl
-from keymark.core.retarget.control_reduction import reduce_controls
-from keymark.core.retarget.control_spaces import NOTHING, ControlSpace
+from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
+from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
+from keymark.core.retarget.controls.control_reduction import reduce_controls
+from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
+from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
-from keymark.core.retarget.point_tolerances import ToleranceRules
 from keymark.core.retarget.solve.solve_motion import solve_motion
 
 FRAMES = 60
