@@ -186,6 +186,28 @@ def test_names_decide_where_only_feet_are_against_them() -> None:
     assert any("left and right" in doubt for doubt in found.doubts)
 
 
+def test_a_presets_sides_are_exchanged_where_the_shape_is_against_them() -> None:
+    """With its controls; and it is said."""
+    names = convention_names("Mixamo")
+    other = {"L": "R", "R": "L"}
+    mirrored = {key: names[key[:-1] + other.get(key[-1], key[-1]) if "." in key else key] for key in names}
+    found = recognize(plain_character(names=mirrored))
+    assert found.preset == "mixamo"
+    assert found.character_map.bones("upper_arm.L") == ("mixamorig:RightArm",)
+    assert any("left and right" in doubt for doubt in found.doubts)
+
+
+def test_a_preset_alone_is_enough_where_the_shape_says_nothing() -> None:
+    """In bones that all hang on the hips, all roles are the names', and it is said."""
+    character = plain_character(names=convention_names("Mixamo"))
+    flat = replace(character, bones=tuple(replace(b, parent=min(b.parent, 0)) for b in character.bones))
+    with pytest.raises(InputError):
+        recognize(renamed(flat))
+    found = recognize(flat)
+    assert found.preset == "mixamo" and found.character_map.bones("foot.L") == ("mixamorig:LeftFoot",)
+    assert any("no body was recognized" in doubt for doubt in found.doubts)
+
+
 def test_a_hand_may_be_missing_on_one_side() -> None:
     """The other is found all the same; both missing is doubted."""
     character = without(plain_character(), "hand.R")
