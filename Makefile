@@ -5,7 +5,7 @@
 
 OUTPUT ?= out/demo
 TESTS ?=
-BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing again speed batch check
+BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing retargeting again speed batch check
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.

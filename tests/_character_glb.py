@@ -1,4 +1,4 @@
-"""A character as a .glb, written without Blender: bones at their heads and a triangle on the hips."""
+"""A character as glTF, written without Blender: bones at their heads and a triangle on the first."""
 
 import json
 import struct
@@ -13,10 +13,30 @@ FLOAT, BYTE = 5126, 5121
 
 
 def write_glb(character: Character, path: Path) -> Path:
-    """Write a character; glTF has Y up, and bones are joints without length."""
-    heads = [
-        character.scale * np.array([bone.head[0], bone.head[2], -bone.head[1]]) for bone in character.bones
-    ]
+    """Write a character as one file, whatever its ending."""
+    whole, binary = _document(character)
+    text = json.dumps(whole).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<II", len(text), JSON_CHUNK) + text
+    chunks += struct.pack("<II", len(binary), BINARY_CHUNK) + binary
+    path.write_bytes(struct.pack("<III", GLB, 2, 12 + len(chunks)) + chunks)
+    return path
+
+
+def write_gltf(character: Character, path: Path) -> Path:
+    """Write a character as JSON with its numbers in a file beside it."""
+    whole, binary = _document(character)
+    buffer = path.with_suffix(".bin")
+    buffer.write_bytes(binary)
+    whole["buffers"][0]["uri"] = buffer.name
+    path.write_text(json.dumps(whole), encoding="utf-8")
+    return path
+
+
+def _document(character: Character) -> tuple[dict[str, Any], bytes]:
+    """The JSON and the numbers; glTF has Y up, and bones are joints without length."""
+    places = np.array([bone.head for bone in character.bones])
+    heads = character.scale * np.stack([places[:, 0], places[:, 2], -places[:, 1]], axis=1)
     inverse = np.tile(np.eye(4, dtype="<f4"), (len(heads), 1, 1))
     inverse[:, 3, :3] = -heads  # column-major
     triangle = heads[0] + np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]])
@@ -58,10 +78,4 @@ def write_glb(character: Character, path: Path) -> Path:
         "bufferViews": views,
         "buffers": [{"byteLength": at}],
     }
-    text = json.dumps(whole).encode()
-    text += b" " * (-len(text) % 4)
-    binary = b"".join(parts)
-    chunks = struct.pack("<II", len(text), JSON_CHUNK) + text
-    chunks += struct.pack("<II", len(binary), BINARY_CHUNK) + binary
-    path.write_bytes(struct.pack("<III", GLB, 2, 12 + len(chunks)) + chunks)
-    return path
+    return whole, b"".join(parts)

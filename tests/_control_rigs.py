@@ -1,4 +1,4 @@
-"""Control rigs that no preset knows, built on a plain skeleton: FK and IK chains, a switch, a body control."""
+"""Control rigs that no preset knows, on a plain skeleton: FK and IK chains, switches, a body control."""
 
 import bpy
 import numpy as np
@@ -16,7 +16,7 @@ def control_rig(pole_behind: bool = False) -> tuple[bpy.types.Object, CharacterM
     """A character whose bones copy controls called `fk_...`, or reach for `ik_...`, by the property `to_ik`.
 
     Args:
-        pole_behind: Whether poles lie on the other side of elbows and knees, and a pole angle makes up for it.
+        pole_behind: Whether poles lie on the other side of elbows and knees, with a pole angle to match.
 
     Returns:
         The armature object, and the map of its deform bones, which knows of no control.

@@ -16,13 +16,18 @@ def rigify_file(folder: Path) -> Path:
     file = folder / f"rigify_human_{bpy.app.version[0]}_{bpy.app.version[1]}.blend"
     if not file.is_file():
         draft = file.with_suffix(".draft.blend")
-        blender = bpy.app.binary_path
-        python = [blender, "-b", "--factory-startup", "--python"] if blender else [sys.executable]
-        command = [*python, str(SCRIPT), *(["--"] if blender else []), str(draft)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S)
-        assert done.returncode == 0, done.stdout + done.stderr
+        run_script(SCRIPT, draft)
         draft.replace(file)
     return file
+
+
+def run_script(script: Path, file: Path) -> None:
+    """Let a script that uses Rigify make a file, in a process of its own with this Blender."""
+    blender = bpy.app.binary_path
+    python = [blender, "-b", "--factory-startup", "--python"] if blender else [sys.executable]
+    command = [*python, str(script), *(["--"] if blender else []), str(file)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def add_rig(file: Path, name: str = "Human", link: bool = False) -> bpy.types.Object:

@@ -1,7 +1,8 @@
 """Check the output of `make demo` against its promises. Usage: check_demo.py OUTPUT TAKE.
 
 OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures that are not
-blank, a motion near the take's truth, and a character whose feet stand still on the floor. The exit status is 1 on errors, with one line for each.
+blank, a motion near the take's truth, and a character whose feet stand still on the floor. The exit status is
+1 on errors, with one line for each.
 """
 
 import json

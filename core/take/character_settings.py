@@ -13,15 +13,12 @@ from ..files.inherited_fields import child_location
 from ..files.json_file import shown
 from ..files.json_folder import ENDING
 from ..files.safe_path import safe_path
+from .character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
 
 CHARACTER_ENDINGS = (".blend", ".fbx", ".glb", ".gltf", ".vrm")
 """Files that a character is read from."""
 AUTO, NO_MAP = "auto", "none"
 """In place of a map: a saved one that knows the character's bones, else recognition; recognition alone."""
-ROOT_MOTIONS = ("as-filmed", "in-place", "root-bone")
-PLACEMENTS = ("performer", "character")
-LIMB_KEYS = ("fk", "ik", "both")
-"""Words for people; the options of `core/retarget/options` are called the same, with underscores."""
 LARGEST_TOLERANCE_MM = 1000.0
 LONGEST_NAME = 255
 FILE_VALID = (

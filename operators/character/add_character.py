@@ -13,7 +13,7 @@ from .requirements import take
 
 
 class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
-    """Add a character: the selected armature, or the only one there is; its bones are recognized at once"""
+    """Add a character: the selected armature, the only one, or one of several; its bones are recognized"""
 
     bl_idname = "keymark.add_character"
     bl_label = "Add Character"
@@ -25,6 +25,25 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         description="Name of the armature's object; by default the selected one, or the only one there is",
         options={"SKIP_SAVE"},
     )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask which, where there are several and none is selected."""
+        found = candidates(context.scene, context.view_layer)
+        if self.armature or len(found) < 2:
+            return self.execute(context)
+
+        names = [each.name for each in found]
+
+        def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+            """Draw an entry for each; Blender has freed the operator by then."""
+            for name in names:
+                operator = KEYMARK_OT_add_character.bl_idname
+                menu.layout.operator(
+                    operator, text=name, icon="ARMATURE_DATA", translate=False
+                ).armature = name
+
+        context.window_manager.popup_menu(draw, title=self.bl_label)
+        return {"CANCELLED"}  # each entry is a step of its own
 
     def run(self, context: bpy.types.Context) -> None:
         """Add it, and recognize its bones."""

@@ -29,13 +29,20 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
     """
     take = find_take(scene)
     taken = {character.armature for character in take.characters} if take is not None else set()
-    free = [each for each in view_layer.objects if may_be_character(each) and each not in taken]
+    there = [*view_layer.objects, *(each for shown in view_layer.objects for each in _instanced(shown))]
+    free = [each for each in dict.fromkeys(there) if may_be_character(each) and each not in taken]
     active = view_layer.objects.active
-    if active in free and active.select_get(view_layer=view_layer):
+    selected = [each for each in view_layer.objects.selected if each in free]
+    if active in selected:
         return [active]
-    chosen = [each for each in free if each.select_get(view_layer=view_layer)]
-    visible = [each for each in free if each.visible_get(view_layer=view_layer)]
-    return chosen or visible or free
+    hidden = {each for each in view_layer.objects if not each.visible_get(view_layer=view_layer)}
+    return selected or [each for each in free if each not in hidden] or free
+
+
+def _instanced(shown: bpy.types.Object) -> list[bpy.types.Object]:
+    """The objects of a collection that an empty shows, as a linked character often stands in a scene."""
+    collection = shown.instance_collection if shown.instance_type == "COLLECTION" else None
+    return [] if collection is None else list(collection.all_objects)
 
 
 def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:

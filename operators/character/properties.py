@@ -89,6 +89,9 @@ class KEYMARK_PG_retargeted(bpy.types.PropertyGroup):
     action: bpy.props.PointerProperty(
         name="Action", description="The Action that holds the character's motion", type=bpy.types.Action
     )
+    armature: bpy.props.PointerProperty(
+        name="Armature", description="The armature that it moves", type=bpy.types.Object
+    )
     source: bpy.props.EnumProperty(
         name="Motion", description="Which motion it was made from", items=SOURCES[1:]
     )

@@ -10,6 +10,7 @@ from ...core.retarget.roles import ROLES
 from ..library import user_folder
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
+from .results import drop_results_of_others
 
 
 def recognize_bones(character: bpy.types.PropertyGroup) -> None:
@@ -61,6 +62,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     character.problem = character.suggested = ""
     if character.armature is None:
         return
+    drop_results_of_others(character)
     known = other_with(character, character.armature)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))

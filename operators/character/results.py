@@ -41,10 +41,18 @@ def add_result(
         index = len(character.results)
         character.results.add()
     result = character.results[index]
-    result.action, result.outdated = action, False
+    result.action, result.outdated, result.armature = action, False, character.armature
     result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
     character.active_result = index
     return result
+
+
+def drop_results_of_others(character: bpy.types.PropertyGroup) -> None:
+    """Take results that move another armature than the chosen one out of the list; their Actions stay."""
+    others = [i for i, each in enumerate(character.results) if each.armature != character.armature]
+    for index in reversed(others):
+        character.results.remove(index)
+    character.active_result = max(0, len(character.results) - 1)
 
 
 def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: Iterable[str]) -> None:

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
+from .blender_exit import end_process
 from .blender_silence import codec_silence
 from .parser import build_parser
 from .usage import UsageError, print_error
@@ -35,8 +36,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
+    status = _run(list(sys.argv[1:] if argv is None else argv))
+    if argv is None:
+        end_process(status)
+    return status
+
+
+def _run(words: list[str]) -> int:
+    """Run one command; returns the exit status."""
     _open_standard_streams()
-    words = list(sys.argv[1:] if argv is None else argv)
     if words[: len(BLENDER_PREFIX)] == BLENDER_PREFIX:
         words = words[len(BLENDER_PREFIX) :]
     debug = "--debug" in words

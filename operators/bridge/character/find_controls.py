@@ -15,6 +15,7 @@ from .dependencies import (
     Graph,
     active_constraints,
     constrained_bones,
+    constraint_bones,
     dependencies,
     driven_bone,
     drivers,
@@ -54,6 +55,7 @@ def find_controls(
     """
     graph = dependencies(armature_object)
     held = _held_bones(armature_object)
+    own = {bone for role in character_map.roles for bone in character_map.bones(role)}
     moved = _moved_roles(character_map, held)
     if not moved:
         return FoundControls(character_map, ())
@@ -66,7 +68,7 @@ def find_controls(
         and (target := ik_targets(armature_object, graph, character_map, limb)) is not None
     }
     looked_at = [name for each in targets.values() for name in (each.goal, each.pole) if name is not None]
-    candidates = _candidates(armature_object, graph, held, [*bones, *looked_at])
+    candidates = _candidates(armature_object, graph, held | own, [*bones, *looked_at])
     tried = _try_switches(armature_object, candidates, [*bones, *looked_at], switches, size)
     for name in looked_at:  # what several controls move together follows none of them while all are posed
         if all(followed.get(name) is None for _, _, followed in tried.followed):
@@ -74,6 +76,8 @@ def find_controls(
             for _, _, followed in tried.followed:
                 followed[name] = control
     found = _completed(character_map, moved, tried, targets)
+    if "hips" in character_map.fk or "hips" in character_map.left_alone:
+        return found
     return _with_hips(armature_object, graph, found, held, size)
 
 
@@ -82,9 +86,7 @@ def _with_hips(
 ) -> FoundControls:
     """The map with a control of the hips that carries the controls of the legs, where its own does not."""
     character_map = found.character_map
-    hips = character_map.bone("hips")
-    if hips is None or "hips" in character_map.left_alone:
-        return found
+    hips = str(character_map.bone("hips"))
     on_hips = ("spine", *(f"thigh.{side}" for side in SIDES))
     carried = [hips]
     for role in on_hips:
@@ -99,11 +101,12 @@ def _with_hips(
 
 
 def _held_bones(armature_object: bpy.types.Object) -> set[str]:
-    """Bones whose poses are not their own channels': with constraints, drivers, or in a chain of IK."""
+    """Bones that others pose: by constraints with a bone to follow, chains of IK, or drivers."""
     held = {
         moved.name
         for bone in armature_object.pose.bones
         for constraint in active_constraints(bone)
+        if any(True for _ in constraint_bones(armature_object, constraint))
         for moved in constrained_bones(bone, constraint)
     }
     driven = {
@@ -217,6 +220,9 @@ def _try_switches(
     """Pose the candidates at random with the switches at either end."""
     every = {(one.bone, one.property): None for found in switches.values() for one in found}
     trials = []
+    bones = armature_object.pose.bones
+    above = {name: parent.name for name in observed if (parent := bones[name].parent) is not None}
+    looked_at = list(dict.fromkeys([*observed, *above.values()]))
     with posing(armature_object, list(every)):
         for number in range(max([1, *(len(found) for found in switches.values())])):
             moved = [found[number] for found in switches.values() if number < len(found)]
@@ -224,10 +230,19 @@ def _try_switches(
                 ends = {(one.bone, one.property): one.fk if upper else one.ik for one in moved}
                 set_properties(armature_object, ends)
                 poses = RandomPoses(SAMPLES, 0, TURN_RAD, 0.0)
-                _, controls, shown = pose_at_random(armature_object, candidates, observed, poses)
-                names = followed_controls(candidates, controls, shown, size)
-                trials.append((number, upper, dict(zip(observed, names, strict=True))))
+                _, controls, shown = pose_at_random(armature_object, candidates, looked_at, poses)
+                followed = dict(
+                    zip(looked_at, followed_controls(candidates, controls, shown, size), strict=True)
+                )
+                trials.append((number, upper, {name: _own(followed, name, above) for name in observed}))
     return _Tried(tuple(trials), switches)
+
+
+def _own(followed: Mapping[str, str | None], name: str, above: Mapping[str, str]) -> str | None:
+    """The control that a bone follows, but for one that carries its parent as well."""
+    control = followed[name]
+    parent = above.get(name)
+    return None if parent not in (None, control) and followed[parent] == control else control
 
 
 def _completed(
@@ -251,24 +266,29 @@ def _completed(
         if limb not in ik and controls is not None:
             ik[limb] = controls
         for role in roles:
-            fk[role] = tuple(followed.get(bone) for bone in character_map.bones(role))
-            unmoved = limb not in ik or role not in limb_of
-            lost += [b for b in character_map.bones(role) if followed.get(b) is None and unmoved]
+            by_ik = limb in ik and role in limb_of
+            fk[role] = _keyed(character_map.bones(role), followed, by_ik)
+            lost += [bone for bone in character_map.bones(role) if followed.get(bone) is None and not by_ik]
     for role in moved:
         if role not in fk:
             followed = tried.followed[0][2]
-            fk[role] = tuple(followed.get(bone) for bone in character_map.bones(role))
+            fk[role] = _keyed(character_map.bones(role), followed, False)
             lost += [bone for bone in character_map.bones(role) if followed.get(bone) is None]
     names = ", ".join(f"'{bone}'" for bone in lost)
     notes = (
         (
-            f"No control was found that moves {names}; name the controls in the character map, or leave "
-            "these roles alone",
+            f"No control was found for what constraints or drivers move: {names}; name the controls in the "
+            "character map, or leave these roles alone",
         )
         if lost
         else ()
     )
     return FoundControls(replace(character_map, fk=fk, ik=ik), notes)
+
+
+def _keyed(bones: Sequence[str], followed: Mapping[str, str | None], by_ik: bool) -> tuple[str | None, ...]:
+    """What is keyed for each of a role's bones: its control, or else itself where no IK moves it."""
+    return tuple(followed.get(bone) or (None if by_ik else bone) for bone in bones)
 
 
 def _ik_controls(

@@ -20,6 +20,8 @@ SOLE = 0.02
 """Height of the band above the lowest vertex of a foot that is its sole, in lengths of the leg."""
 LOWEST, HIGHEST = 0.01, 0.3
 """Height of an ankle over its sole, in lengths of the leg; others are not feet."""
+HEEL = 0.01
+"""Least length of a foot's sole on either side of the ankle, in lengths of the leg."""
 DIRECTIONS = 8
 """Directions along the ground in which a sole's outermost vertices are kept."""
 MOST_VERTICES = 400_000
@@ -138,7 +140,10 @@ def _soles_of(
         sole = points[heights[role] < low + SOLE * leg]
         if len(sole):
             soles[role] = tuple(_point(point) for point in _outermost(sole, stance))
-    return soles if f"foot.{side}" in soles else {}
+    foot = np.array(soles.get(f"foot.{side}", ())).reshape(-1, 3)
+    ahead = -((foot - character.bone(str(character_map.bone(f"foot.{side}"))).head) @ stance[1])
+    both = len(ahead) > 0 and ahead.min() < -HEEL * leg and ahead.max() > HEEL * leg
+    return soles if both else {}
 
 
 def _outermost(points: Array, stance: Array) -> Array:

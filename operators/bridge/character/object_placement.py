@@ -46,7 +46,7 @@ def _delta_rotation(armature_object: bpy.types.Object) -> Array:
         delta = armature_object.delta_rotation_quaternion
     else:
         delta = armature_object.delta_rotation_euler.to_quaternion()
-    return np.array(delta.to_matrix(), dtype=np.float64)
+    return np.array(delta.normalized().to_matrix(), dtype=np.float64)
 
 
 def require_placeable(armature_object: bpy.types.Object) -> None:

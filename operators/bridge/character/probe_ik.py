@@ -97,7 +97,12 @@ def try_inverse_kinematics(
         if limb.toe is not None and limb.toe.space.carrier != NOTHING:
             carrier = controls[limb.toe.space.carrier].name
             origins[limb.toe.name] = rigid_offset(poses[carrier], poses[limb.toe.name])[0][:3, 3]
-        if limb.pole is not None:
+        if limb.pole is None:
+            notes.append(
+                f"The inverse kinematics of {limb.name} has no pole that could be keyed; bone "
+                f"'{limb.bones[1]}' may point elsewhere"
+            )
+        else:
             poles[limb.pole.name] = _pole_setting(limb, limb.pole.name, poses, notes)
     return TriedInverseKinematics(offsets, poles, origins, tuple(notes))
 

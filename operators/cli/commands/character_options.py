@@ -2,7 +2,7 @@
 
 import argparse
 
-from ....core.take.character_settings import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
+from ....core.take.character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
 
 CHARACTER_HELP = (
     "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "

@@ -132,7 +132,10 @@ def write_character_result(
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
-        retargeted = run(_silenced(job, debug), console.progress)
+        try:
+            retargeted = run(_silenced(job, debug), console.progress)
+        except InputError as error:
+            raise InputError(f"{settings.file.path}: {error}") from error
         console.stage("Writing the character")
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())

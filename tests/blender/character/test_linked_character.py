@@ -49,7 +49,9 @@ def test_a_linked_character_is_overridden_and_performs(
     before = rig_file.read_bytes()
     linked = link(rig_file)  # type: ignore[operator]
     bpy.context.view_layer.update()
-    take.characters.add().armature = linked
+    bpy.context.view_layer.objects.active = None
+    assert bpy.ops.keymark.add_character() == {"FINISHED"}
+    assert take.characters[0].armature == linked
     with pytest.raises(RuntimeError, match="'Character' is linked; make a library override of it first"):
         bpy.ops.keymark.retarget()
     assert bpy.ops.keymark.make_override() == {"FINISHED"}

@@ -1,6 +1,7 @@
 """Retargeting by its button: what becomes of earlier results, of a newer motion, and of Esc."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -9,8 +10,10 @@ from _armatures import build_character
 from _characters import plain_character
 from _scene_state import differences, scene_state
 from keymark.core.retarget.character import Character
+from keymark.core.retarget.quality import Quality
 from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
 from keymark.operators.bridge.actor_bones import moves_an_actor
+from keymark.operators.character.figures import figures
 from keymark.operators.character.source_motion import source_of
 from keymark.operators.shell.takes import active_take
 
@@ -73,6 +76,19 @@ def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGro
         bpy.ops.keymark.show_result()
     bpy.ops.keymark.retarget()
     assert [each.action for each in character.results] == [shown(character)]
+
+
+def test_another_armature_begins_without_results(character: bpy.types.PropertyGroup) -> None:
+    """The first one's Action is not written over, and is listed still where the same one is chosen again."""
+    bpy.ops.keymark.retarget()
+    first, before = character.armature, shown(character)
+    digest = curve_digest(first)
+    character.armature = first
+    assert [each.action for each in character.results] == [before]
+    character.armature = build_character(Character("Second", plain_character().bones))
+    assert len(character.results) == 0
+    bpy.ops.keymark.retarget()
+    assert shown(character).name == "Walk Second" and curve_digest(first) == digest
 
 
 def test_the_newest_motion_is_performed(
@@ -243,3 +259,18 @@ def test_removing_a_take_with_its_data_keeps_the_character(
     bpy.ops.keymark.retarget()
     bpy.ops.keymark.remove_take(delete_data=True)
     assert list(bpy.data.actions) == [] and rig in list(bpy.data.objects)
+
+
+def test_the_figures_of_a_motion_in_words() -> None:
+    """Of feet, floor, hands and keys, or of limbs where hands reach nothing; what is unknown is left out."""
+    quality = Quality(
+        arms_deg=0.04, legs_deg=2.26, skate_mm=0.021, penetration_mm=1.06, keys=12, dense_keys=90
+    )
+    assert figures(quality) == [
+        "Feet slide 0.02 mm a frame",
+        "Soles at most 1.1 mm below floor",
+        "Arms 0.0°, legs 2.3° off in the mean",
+        "12 keys instead of 90",
+    ]
+    assert figures(replace(quality, hands_mm=6.4))[2] == "Hands 6 mm from what they reach"
+    assert figures(Quality()) == []

@@ -70,7 +70,7 @@ BAD = {
     "two.blend": "holds 2 armatures, 'Anna', 'Ben'; name one, as in",
     "two.blend:Carl": "'Carl' is not in it; its armatures are 'Anna', 'Ben'",
     "horse.blend": "an animal",
-    "half.blend": "no two pairs of limbs",
+    "half.blend": "a character stands on two legs and has two arms",
     "motion.blend": "is an actor of Keymark",
     "flat.blend": "scale",
     "nan.blend": "scale",

@@ -16,6 +16,7 @@ from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.cli.main import main
 
 FRAMES = 12
+MADE = [".as_made.json", "character.blend", "report", "report/character.png", "retarget.json"]
 Retarget = Callable[..., int]
 
 
@@ -45,7 +46,7 @@ def opened(file: Path) -> bpy.types.Scene:
 def test_the_character_performs_as_filmed(retarget: Retarget, result: Path, output: Path) -> None:
     """With camera, clip, range and rate of the take, its skin, and the Action assigned with its slot."""
     assert retarget() == 0
-    assert sorted(tree(output)) == [".as_made.json", "character.blend", "retarget.json"]
+    assert sorted(tree(output)) == MADE
     bpy.ops.wm.open_mainfile(filepath=str(result / "motion.blend"))
     filmed = bpy.context.scene
     camera = np.array(filmed.camera.matrix_world)
@@ -92,7 +93,7 @@ def test_the_same_input_gives_the_same_result(retarget: Retarget, output: Path) 
     first = (output / "retarget.json").read_bytes()
     assert retarget() == 0
     assert (output / "retarget.json").read_bytes() == first
-    assert sorted(tree(output)) == [".as_made.json", "character.blend", "retarget.json"]
+    assert sorted(tree(output)) == MADE
 
 
 def test_what_a_person_has_changed_is_kept(
@@ -114,7 +115,7 @@ def test_it_says_what_it_made(retarget: Retarget, output: Path, capsys: pytest.C
     """One object for programs."""
     assert retarget("--json") == 0
     answer = json.loads(capsys.readouterr().out)
-    assert answer["files"] == [str(output / name) for name in ("character.blend", "retarget.json")]
+    assert sorted(answer["files"]) == [str(output / name) for name in MADE if name[0] != "." and "." in name]
     assert answer["roles"]["hips"]["bones"] == ["hips"] and answer["seconds"]["total"] > 0.0
 
 
@@ -124,6 +125,8 @@ def test_exports_hold_character_and_motion(retarget: Retarget, output: Path, wor
     kind = {"bvh": "BVH", "fbx": "FBX", "glb": "GLTF", "usd": "USD"}[word]
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
+    if word == "glb" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
+        pytest.skip("Blender 4.5 as a Python module may wait for ever at its exit after a glTF export")
     assert retarget("--format", word) == 0
     file = output / f"character{FORMATS[kind].suffix}"
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

@@ -114,7 +114,7 @@ def test_the_methods_offered_are_the_methods_there_are() -> None:
     assert set(convert_arguments.METHODS) == set(METHODS)
 
 
-CHARACTER_FILES = ("character.blend", "retarget.json")
+CHARACTER_FILES = ("character.blend", "retarget.json", "report/character.png")
 """Of takes that name a character."""
 
 

@@ -5,14 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from _body_plan import Plan
 from _characters import plain_character, plain_map, renamed, shared_characters
 from _conventions import CONVENTIONS, PRESET_OF, convention_names
-from _varied import Plan, Varied, build, nameless, varied
+from _varied import Varied, build, nameless, varied
 from keymark.core.arrays import Array
 from keymark.core.body.heading import yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.recognition import Recognition, recognize
+from keymark.core.retarget.recognition.recognition import Recognition
+from keymark.core.retarget.recognition.recognize import recognize
 from keymark.core.retarget.roles import ROLES
 from keymark.core.retarget.stance import find_stance
 
@@ -61,7 +63,7 @@ def plain_truth(character: Character) -> dict[str, tuple[str, ...]]:
 
 @pytest.mark.parametrize("convention", CONVENTIONS)
 def test_names_of_every_convention_are_recognized(convention: str) -> None:
-    """With the preset that has them and without any, all roles on the right bones; a preset leaves no doubt."""
+    """With the preset that has them and without any, all roles are right; a preset leaves no doubt."""
     names = convention_names(convention)
     character = plain_character(names=names, arms_down_deg=40.0)
     truth = {role: tuple(names[b] for b in bones) for role, bones in plain_truth(plain_character()).items()}

@@ -6,7 +6,7 @@ import pytest
 from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.retarget.options import LimbKeys, Placement, RootMotion
-from keymark.core.take import character_settings
+from keymark.core.take import character_words
 from keymark.core.take.character_settings import CharacterFile, CharacterOptions
 from keymark.core.take.description import describe
 
@@ -41,9 +41,9 @@ def test_what_names_no_character_is_refused(text: str) -> None:
 def test_words_are_those_of_the_options() -> None:
     """Each choice of a file is one of the solver, with hyphens for underscores."""
     for words, kind in (
-        (character_settings.ROOT_MOTIONS, RootMotion),
-        (character_settings.PLACEMENTS, Placement),
-        (character_settings.LIMB_KEYS, LimbKeys),
+        (character_words.ROOT_MOTIONS, RootMotion),
+        (character_words.PLACEMENTS, Placement),
+        (character_words.LIMB_KEYS, LimbKeys),
     ):
         assert [word.replace("-", "_") for word in words] == [one.value for one in kind]
 

@@ -1,0 +1,103 @@
+"""Controls of rigs that no preset knows are found from what constraints and drivers do."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from _armatures import build_character
+from _characters import plain_character, plain_map
+from _control_rigs import control_rig
+from _performances import performance, stepping
+from keymark.core.progress import run
+from keymark.core.retarget.character_map import IkControls, Setting, Switch
+from keymark.core.retarget.options import LimbKeys, RetargetOptions
+from keymark.operators.bridge.character.complete_map import complete_map
+from keymark.operators.bridge.character.find_controls import find_controls
+from keymark.operators.bridge.character.read_character import read_character
+from keymark.operators.bridge.character.retarget import retarget
+
+SIZE = 1.6
+
+
+def test_controls_of_an_unknown_rig_are_found() -> None:
+    """FK chains, goals, poles, switches whichever end is IK, and what carries the hips."""
+    character, known = control_rig()
+    found = find_controls(character, known, SIZE)
+    assert found.notes == ()
+    assert found.character_map.fk["hips"] == ("body",)
+    for side in "LR":
+        for part in ("upper_arm", "forearm", "hand", "thigh", "shin", "foot"):
+            assert found.character_map.fk[f"{part}.{side}"] == (f"fk_{part}.{side}",)
+        for limb, end in (("arm", "hand"), ("leg", "foot")):
+            assert found.character_map.ik[f"{limb}.{side}"] == IkControls(
+                f"ik_{end}.{side}",
+                f"pole_{limb}.{side}",
+                None,
+                Switch(f"ik_{end}.{side}", "to_ik", ik=1.0, fk=0.0),
+            )
+    assert "chest" not in found.character_map.fk
+
+
+@pytest.mark.parametrize("pole_behind", [False, True])
+@pytest.mark.parametrize("keys", [LimbKeys.BOTH, LimbKeys.FK])
+def test_an_unknown_rig_performs(pole_behind: bool, keys: LimbKeys) -> None:
+    """Elbows and knees are where they belong, on whatever side the poles lie."""
+    character, known = control_rig(pole_behind)
+    body, posture = stepping()
+    source = performance(body, posture[:40])
+    options = RetargetOptions(arms=keys, legs=keys)
+    made = run(retarget(character, source, 1.0 + np.arange(40), known, options))
+    made.write(bpy.context.scene, "Steps")
+    assert made.notes == ()
+    off = []
+    for number, frame in enumerate(made.keys.frames):
+        bpy.context.scene.frame_set(int(frame))
+        shown = character.evaluated_get(bpy.context.evaluated_depsgraph_get()).pose.bones
+        off += [
+            np.linalg.norm(np.array(shown[bone].head) - poses[number, :3, 3])
+            for bone, poses in made.motion.poses.items()
+        ]
+    assert max(off) < 0.007
+    if keys is LimbKeys.BOTH:
+        assert made.quality.ik_fk_mm is not None and made.quality.ik_fk_mm < 1.0
+
+
+def test_a_plain_skeleton_has_no_other_controls() -> None:
+    """Bones that nothing else moves are keyed themselves, limits and single drivers or not."""
+    character, known = build_character(plain_character()), plain_map(plain_character())
+    assert find_controls(character, known, SIZE).character_map is known
+    character.pose.bones["neck"].constraints.new("LIMIT_ROTATION")
+    assert find_controls(character, known, SIZE).character_map is known
+
+
+def test_what_has_no_control_is_named_and_keyed_itself() -> None:
+    """A bone that follows one which nobody can pose stays its own control."""
+    character, known = build_character(plain_character()), plain_map(plain_character())
+    constraint = character.pose.bones["head"].constraints.new("COPY_ROTATION")
+    constraint.target, constraint.subtarget, constraint.influence = character, "finger.L", 0.5
+    bpy.context.view_layer.update()
+    found = find_controls(character, known, SIZE)
+    assert found.character_map.fk["head"] == ("head",)
+    assert found.notes and "'head'" in found.notes[0]
+
+
+def test_what_the_map_says_stays() -> None:
+    """Only roles without controls of their own are completed."""
+    character, known = control_rig()
+    given = replace(known, fk={"thigh.L": ("mch_thigh.L",), "hips": ("hips",)})
+    found = find_controls(character, given, SIZE).character_map
+    assert found.fk["thigh.L"] == ("mch_thigh.L",)
+    assert found.fk["hips"] == ("hips",)
+    assert found.fk["thigh.R"] == ("fk_thigh.R",)
+
+
+def test_properties_that_are_not_there_are_left_out_and_named() -> None:
+    """A rig of another version than its map is still keyed."""
+    character, known = control_rig()
+    ik = {"arm.L": IkControls("ik_hand.L", "pole_arm.L", None, Switch("ik_hand.L", "ik_fk", 0.0, 1.0))}
+    given = replace(known, ik=ik, settings=(Setting("body", "follow", 1.0),))
+    completed = complete_map(character, read_character(character), given)
+    assert completed.character_map.settings == ()
+    assert completed.character_map.ik["arm.L"].switch is None
+    assert ["'follow'" in note or "'ik_fk'" in note for note in completed.notes] == [True, True]

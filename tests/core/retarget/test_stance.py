@@ -1,0 +1,42 @@
+"""The stance of a character: up, facing and left, found from its roles."""
+
+import numpy as np
+import pytest
+from _characters import plain_character, plain_map
+from keymark.core.body.heading import yaw_rotation
+from keymark.core.body.rotations import exponential
+from keymark.core.retarget.character_map import CharacterMap
+from keymark.core.retarget.stance import find_stance
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 180.0, 35.0, -120.0])
+@pytest.mark.parametrize("y_up", [False, True])
+def test_the_stance_undoes_how_the_armature_lies(yaw_deg: float, y_up: bool) -> None:
+    """Exactly on clean skeletons, whatever their arms do."""
+    turn = yaw_rotation(np.radians(yaw_deg))
+    if y_up:
+        turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ turn
+    for arms_down_deg in (0.0, 45.0, 85.0):
+        character = plain_character(turn=turn, arms_down_deg=arms_down_deg)
+        stance = find_stance(character, plain_map(character))
+        assert np.allclose(stance @ turn, np.eye(3), atol=1e-9)
+        assert np.allclose(stance @ stance.T, np.eye(3)) and np.linalg.det(stance) > 0.0
+
+
+def test_a_lean_is_no_tilt_of_the_armature() -> None:
+    """A body that leans ahead by five degrees stands upright."""
+    character = plain_character(turn=exponential(np.radians([5.0, 0.0, 0.0])))
+    assert np.array_equal(find_stance(character, plain_map(character)), np.eye(3))
+
+
+def test_a_tilted_armature_is_found() -> None:
+    """One that lies at forty degrees does not: the stance is its own, to the body's lean."""
+    turn = exponential(np.radians([40.0, 0.0, 0.0]))
+    character = plain_character(turn=turn)
+    stance = find_stance(character, plain_map(character))
+    assert float((stance @ turn)[2, 2]) > np.cos(np.radians(3.0))
+
+
+def test_a_map_without_limbs_leaves_the_axes() -> None:
+    """There is nothing to tell by."""
+    assert np.array_equal(find_stance(plain_character(), CharacterMap("X", {})), np.eye(3))
