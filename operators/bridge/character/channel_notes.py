@@ -10,12 +10,10 @@ from ....core.finish.hermite import Spline
 from ....core.retarget.control_channels import Control
 from ....core.retarget.control_motion import ControlMotion, KeyedControl
 from ..rotation_modes import bone_path, rotation_path
-from .dependencies import active_constraints, drivers
+from .dependencies import CARRYING, active_constraints, drivers
 
 MOST_NAMES = 3
 """Bones that a sentence names; more are counted."""
-CARRYING = ("CHILD_OF", "ARMATURE")
-"""Constraints that carry a control as a parent does."""
 NOTICEABLE_M = 0.005
 
 

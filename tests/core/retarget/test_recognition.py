@@ -300,3 +300,16 @@ HUMAN_NAMES = (
     *(f"{part}.{side}" for side in "LR" for part in ("girdle", "upper_arm", "forearm", "hand")),
     *(f"{part}.{side}" for side in "LR" for part in ("thigh", "shin", "foot")),
 )
+
+
+def test_bones_that_only_constraints_carry_are_found_by_their_controls() -> None:
+    """What moves the mesh plays the roles, not the chain of controls that lies in the same places."""
+    plain = plain_character()
+    flat = [replace(bone, name=f"DEF-{bone.name}", parent=-1, connected=False) for bone in plain.bones]
+    controls = [replace(bone, name=f"c_{bone.name}", deforms=False) for bone in plain.bones]
+    found = recognize(Character("Flat", tuple([*controls, *flat])))
+    assert {role: bones.bones for role, bones in found.character_map.roles.items()} == {
+        role: tuple(f"DEF-{name}" for name in bones.bones)
+        for role, bones in recognize(plain).character_map.roles.items()
+    }
+    assert found.doubts == ()
