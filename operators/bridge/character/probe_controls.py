@@ -13,6 +13,7 @@ from ....core.retarget.control_plan import ControlKind, PlannedControl
 from ....core.retarget.control_spaces import PosedControls, find_spaces
 from ....core.retarget.control_targets import PoleSetting
 from ....core.retarget.rigid_offset import rigid_offset
+from .pose_scales import ONE, scaled_bones
 from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics
 from .random_poses import RandomPoses, pose_at_random
@@ -63,6 +64,8 @@ def probe_controls(
     modes = [armature_object.pose.bones[control.name].rotation_mode for control in planned]
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
+        for name in scaled_bones(armature_object, [plan.name for plan in planned]):
+            armature_object.pose.bones[name].scale = ONE
         names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
         poses = RandomPoses(STILL, MOVED, TURN_RAD, MOVE_SHARE * size)
         channels, shown, followed = pose_at_random(armature_object, names, bones, poses)
