@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 import bpy
 from keymark.core.body.segment_motion import SegmentMotion
 from keymark.core.body.skeleton import SIDES
-from keymark.core.retarget.character_map import CharacterMap
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.roles import LIMBS
 from mathutils import Matrix, Vector
 

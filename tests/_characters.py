@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from keymark.core.arrays import Array
 from keymark.core.retarget.character import Character, CharacterBone
-from keymark.core.retarget.character_map import CharacterMap, RoleBones
+from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "characters"
 

@@ -5,15 +5,20 @@ from collections.abc import Callable
 import numpy as np
 from keymark.core.body.rotations import continuous_quaternions, to_quaternions
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_map import CharacterMap, IkControls
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.control_channels import Control, control_channels, ordered_controls
-from keymark.core.retarget.control_motion import ControlMotion
-from keymark.core.retarget.control_plan import ControlKind, PlannedControl, limb_bones, planned_controls
-from keymark.core.retarget.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.control_targets import PoleSetting, control_targets
-from keymark.core.retarget.held_points import held_points
-from keymark.core.retarget.limb_paths import limb_paths
+from keymark.core.retarget.controls.control_channels import Control, control_channels, ordered_controls
+from keymark.core.retarget.controls.control_motion import ControlMotion
+from keymark.core.retarget.controls.control_plan import (
+    ControlKind,
+    PlannedControl,
+    limb_bones,
+    planned_controls,
+)
+from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
+from keymark.core.retarget.controls.control_targets import PoleSetting, control_targets
+from keymark.core.retarget.controls.held_points import held_points
+from keymark.core.retarget.controls.limb_paths import limb_paths
+from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
 from keymark.core.retarget.options import RetargetOptions
 
 SIZE = 1.6

@@ -13,7 +13,7 @@ from _libraries import small_library
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
-from keymark.core.retarget.character_map_file import map_to_json, read_character_map
+from keymark.core.retarget.maps.character_map_file import map_to_json, read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery.take_list import read_take_list

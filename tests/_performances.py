@@ -18,8 +18,8 @@ from keymark.core.body.segment_motion import SegmentMotion, segment_motion
 from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_map import CharacterMap
 from keymark.core.retarget.character_motion import CharacterMotion, Similarity
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.quality import Quality, measured
 from keymark.core.retarget.solve.solve_motion import solve_motion

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .character_map import CharacterMap
+from .maps.character_map import CharacterMap
 from .roles import LIMBS, MIDDLE
 
 

@@ -11,9 +11,9 @@ from ..files.json_file import read_json, shown
 from ..files.json_layout import write_readable_json
 from ..take.character_settings import CharacterOptions, read_character_options
 from ..take.record_fields import checked_sha256, record_files, record_line, record_notes
-from .character_map import RoleBones
-from .character_map_fields import read_roles
-from .character_map_file import roles_to_json
+from .maps.character_map import RoleBones
+from .maps.character_map_fields import read_roles
+from .maps.character_map_file import roles_to_json
 from .roles import LIMBS
 
 RECORD_FILE = "retarget.json"

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import Array
 from .character import Character
-from .character_map import CharacterMap
+from .maps.character_map import CharacterMap
 from .roles import ARM, LEG
 
 UP_SNAP_DEG = 15.0

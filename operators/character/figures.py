@@ -20,7 +20,7 @@ def figures(quality: "Quality") -> list[str]:
     elif quality.arms_deg is not None and quality.legs_deg is not None:
         lines.append(
             label(
-                "Arms {arms:.1f}°, legs {legs:.1f}° off in the mean",
+                "Arms {arms:.1f}°, legs {legs:.1f}° off",
                 arms=quality.arms_deg,
                 legs=quality.legs_deg,
             )

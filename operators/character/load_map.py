@@ -53,8 +53,8 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the whole map and hold it against the armature, and only then show it."""
-        from ...core.retarget.map_check import check_map
-        from ...core.retarget.map_registry import find_map
+        from ...core.retarget.maps.map_check import check_map
+        from ...core.retarget.maps.map_registry import find_map
         from ..bridge.character.read_character import read_character
 
         if not (self.filepath or self.title):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
+from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from ...core.retarget.roles import LIMBS, ROLES
 from .map_properties import is_chain
 

@@ -27,7 +27,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Find the partner of every bone of the side."""
-        from ...core.retarget.mirroring import mirrored_map
+        from ...core.retarget.maps.mirroring import mirrored_map
         from ..bridge.character.read_character import read_character
 
         character = active_character(context.scene)

@@ -77,7 +77,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
 
 def suggest_map(character: bpy.types.PropertyGroup) -> None:
     """Show the title of the map in the user's folder that is for the bones of a character's armature."""
-    from ...core.retarget.map_registry import map_for
+    from ...core.retarget.maps.map_registry import map_for
     from ..bridge.character.read_character import read_character
 
     found = map_for(read_character(character.armature), map_folders())

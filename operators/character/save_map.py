@@ -31,7 +31,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the file, in the user's own folder."""
-        from ...core.retarget.map_registry import map_path
+        from ...core.retarget.maps.map_registry import map_path
 
         with reported(self):
             title = _title(active_character(context.scene))
@@ -56,7 +56,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Write the file."""
-        from ...core.retarget.character_map_file import write_character_map
+        from ...core.retarget.maps.character_map_file import write_character_map
 
         if not self.filepath:
             raise InputError("no file is named to save the map to; give filepath")

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from ...files.json_file import shown
-from ..character_map import CharacterMap, RoleBones
+from ..maps.character_map import CharacterMap, RoleBones
 from ..roles import ARM, LEG, MIDDLE
 from .facing import SURE as SURE_SIDES
 from .facing import Facing

@@ -142,11 +142,10 @@ def _hand_scores(frame: Frame, chains: Chains) -> Array:
     for row, (_, middle, end) in enumerate(chains.bones):
         if end < 0:
             continue
-        points = frame.branch[int(end)] - frame.place[int(end)]
-        if len(points) > 1:
-            found[row] += float(
-                near(float(np.max(_length(points))) / _reach(frame, chains.bones[row]), 0.33, 0.2, 4.0)
-            )
+        both = int(end), int(frame.symmetry.partner[end])
+        reach = min(float(np.max(_length(frame.branch[each] - frame.place[each]))) for each in both)
+        if reach > 0.0:  # one hand may hold something
+            found[row] += float(near(reach / _reach(frame, chains.bones[row]), 0.33, 0.2, 4.0))
         found[row] += 2.0 if leaves[end] >= 3 else (0.3 if leaves[end] == 2 else 0.0)
         above = int(bones.parent[end])
         own = len(bones.subtree[end])

@@ -8,9 +8,10 @@ import numpy as np
 from ...arrays import Array
 from ...files.json_file import shown
 from ..character import Character
-from ..character_map import CharacterMap, IkControls, RoleBones
-from ..roles import CHAINS, ROLES
+from ..maps.character_map import CharacterMap, IkControls, RoleBones
+from ..roles import CHAINS, REQUIRED, ROLES
 from .figure import Figure
+from .refusals import HANDS_ABOVE, LEAST_UPRIGHT
 
 AGREED, UNSEEN, AGAINST = 0.99, 0.9, 0.6
 """Confidence of a preset's role that shape confirms, does not see, and contradicts."""
@@ -51,6 +52,26 @@ def merged_with_preset(
                 f"by its place {shown(seen.bones[0])} fits better"
             )
     return replace(own, roles=merged), found
+
+
+def stands_upright(character: Character, character_map: CharacterMap) -> bool:
+    """Whether a map has all roles that a character must have, on a body that stands upright on its legs."""
+    if any(role not in character_map.roles for role in REQUIRED):
+        return False
+    shoulder, hip, ankle, hand = (
+        np.mean([_head(character, character_map.roles[f"{part}.{side}"]) for side in "LR"], axis=0)
+        for part in ("upper_arm", "thigh", "foot", "hand" if "hand.L" in character_map.roles else "forearm")
+    )
+    leg, trunk = hip - ankle, shoulder - hip
+    lengths = float(np.linalg.norm(leg)), float(np.linalg.norm(trunk))
+    if not min(lengths) > 0.0 or float(leg @ trunk) < LEAST_UPRIGHT * lengths[0] * lengths[1]:
+        return False
+    return float((hand - ankle) @ leg) > HANDS_ABOVE * lengths[0] ** 2
+
+
+def with_confidence(roles: Mapping[str, RoleBones], confidence: float) -> dict[str, RoleBones]:
+    """The roles with one confidence for all."""
+    return {role: replace(bones, confidence=confidence) for role, bones in roles.items()}
 
 
 def swapped_sides(character_map: CharacterMap) -> CharacterMap:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from ..character_map import CharacterMap
+from ..maps.character_map import CharacterMap
 
 
 @dataclass(frozen=True)

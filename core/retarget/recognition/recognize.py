@@ -3,19 +3,23 @@
 from dataclasses import replace
 
 from ..character import Character
-from ..character_map import CharacterMap
-from ..presets import Preset, find_preset
+from ..maps.character_map import CharacterMap
+from ..maps.presets import Preset, find_preset
+from ..stance import find_stance
 from .bones import candidate_bones
 from .doubts import limb_doubts, missing_doubts, name_doubts, side_doubts, trunk_doubts
 from .facing import find_facing
 from .figure import Figure, find_figures
 from .frame import Frame, frames
-from .preset_check import merged_with_preset, swapped_sides
+from .preset_check import UNSEEN, merged_with_preset, stands_upright, swapped_sides, with_confidence
 from .recognition import Recognition
 from .refusals import check_character, refusal, why_no_figure
 from .roles_of_figure import roles_of
 from .root_bone import extra_ends, find_root
-from .symmetry import find_symmetry
+from .symmetry import find_symmetries
+
+CLEAR_FIT = -6.0
+"""Log-likelihood of a figure's places from which no other plane of symmetry is tried."""
 
 
 def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -> Recognition:
@@ -30,41 +34,54 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
             rig, or numbers that cannot be used.
     """
     check_character(character)
+    preset = find_preset(character, presets)
     figure, frame, reason = _best_figure(character)
-    if figure is None:
+    if figure is not None:
+        character_map, doubts = _of_figure(character, figure, preset)
+    elif preset is not None and stands_upright(character, preset):
+        character_map = replace(preset, roles=with_confidence(preset.roles, UNSEEN))
+        doubts = [f"no body was recognized by shape: all roles are those of the names of {preset.title}"]
+    else:
         raise refusal(character, frame, reason)
+    doubts += missing_doubts(character_map)
+    if character_map.root is None:
+        up = find_stance(character, character_map)[2]
+        character_map = replace(character_map, root=find_root(character, character_map, up))
+    extras = extra_ends(character, character_map)
+    return Recognition(character_map, tuple(doubts), character_map.preset, extras)
+
+
+def _of_figure(
+    character: Character, figure: Figure, preset: CharacterMap | None
+) -> tuple[CharacterMap, list[str]]:
+    """The map of a figure, with a preset held against it where there is one, and the doubts."""
     facing = find_facing(figure)
     roles = roles_of(figure, facing)
     doubts = side_doubts(facing)
-    preset = find_preset(character, presets)
     if preset is None:
-        character_map = CharacterMap(character.name, roles)
-        doubts += trunk_doubts(figure) + limb_doubts(figure, facing, roles)
-        doubts += name_doubts(figure, roles)
-    else:
-        if facing.by_names < 0.0:
-            preset = swapped_sides(preset)
-        character_map, against = merged_with_preset(character, preset, roles, figure)
-        doubts += against
-    doubts += missing_doubts(character_map)
-    if character_map.root is None:
-        character_map = replace(character_map, root=find_root(character, character_map, figure.frame.up))
-    extras = extra_ends(character, character_map)
-    return Recognition(character_map, tuple(doubts), character_map.preset, extras)
+        doubts += trunk_doubts(figure) + limb_doubts(figure, facing, roles) + name_doubts(figure, roles)
+        return CharacterMap(character.name, roles), doubts
+    if facing.by_names < 0.0:
+        preset = swapped_sides(preset)
+    character_map, against = merged_with_preset(character, preset, roles, figure)
+    return character_map, doubts + against
 
 
 def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str]:
     """The likeliest figure that is a character's; else a frame, and why the likeliest is none."""
     frame, reason = None, ""
     for bones in candidate_bones(character):
-        symmetry = find_symmetry(bones)
-        if symmetry is None:
-            continue
-        tried = frames(bones, symmetry)
-        frame = frame or next(iter(tried), None)
-        for figure in find_figures(tried):
-            why = why_no_figure(figure)
-            if not why:
-                return figure, frame, ""
-            reason = reason or why
+        best: Figure | None = None
+        for symmetry in find_symmetries(bones):
+            tried = frames(bones, symmetry)
+            frame = frame or next(iter(tried), None)
+            for figure in find_figures(tried):
+                why = why_no_figure(figure)
+                reason = reason or why
+                if not why and (best is None or figure.score > best.score):
+                    best = figure
+            if best is not None and best.score - best.names_score > CLEAR_FIT:
+                break
+        if best is not None:
+            return best, frame, ""
     return None, frame, reason

@@ -18,7 +18,7 @@ LEAST_LEG_DOWN = 0.7
 """Least cosine between a leg and down."""
 HANDS_ABOVE = 0.1
 """Hands are at least so many lengths of a leg above the ankles."""
-LEAST_FIT = -14.0
+LEAST_FIT = -16.0
 """Least log-likelihood of a figure's places alone ..."""
 LEAST_FIT_NAMED = -26.0
 """... and where names speak for its arms and legs."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..character_map import RoleBones
+from ..maps.character_map import RoleBones
 from ..roles import ARM, LEG
 from .facing import Facing
 from .figure import Figure

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..character import Character
-from ..character_map import CharacterMap
+from ..maps.character_map import CharacterMap
 from .names import read_name
 
 ON_GROUND = 0.15

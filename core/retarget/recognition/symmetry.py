@@ -1,6 +1,6 @@
 """The plane between a character's two sides, and which bones are each other's mirror images."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,12 @@ BESIDE = 0.02
 """A head farther from the plane than this, in sizes, is on a side."""
 LOOSE = 0.12
 """Two branches may mirror each other although their heads are this far, in sizes, from doing so."""
+MOST_SYMMETRIES = 3
+"""Planes that are yielded."""
+WORSE = 0.5
+"""Share of the heads that a plane may mirror less than the best one."""
+ALIKE = 0.98
+"""Cosine between normals of planes from which they are taken for one."""
 MOST_PLANES = 60
 """Planes that are tried."""
 MOST_POINTS = 200
@@ -42,22 +48,29 @@ class Symmetry:
         return _mirrored(points, self.normal, self.offset)
 
 
-def find_symmetry(bones: Bones) -> Symmetry | None:
-    """The plane that mirrors most bones onto others; None where nothing has two sides."""
+def find_symmetries(bones: Bones) -> Iterator[Symmetry]:
+    """Yield planes that mirror many bones onto others, the one that mirrors most first.
+
+    A body in a T pose is nearly flat, so that one in a skirt may have its front and back mirrored as well.
+    """
     named = _named_pairs(bones)
     planes = _planes(bones, named)
-    if not planes:
-        return None
-    every = max(1, len(bones.names) // MOST_POINTS)
-    sample = bones.head[::every]
+    sample = bones.head[:: max(1, len(bones.names) // MOST_POINTS)]
     tree = cKDTree(bones.head)
     planes += [_fitted(bones, tree, *plane) for plane in planes]
     scores = [_score(sample, tree, normal, offset, bones.size) for normal, offset in planes]
-    normal, offset = planes[int(np.argmax(scores))]
-    for _ in range(2):
-        partner = _partners(bones, normal, offset, named)
-        normal, offset = _refined(bones, partner, normal, offset)
-    return Symmetry(normal, offset, partner)
+    taken: list[Array] = []
+    for index in sorted(range(len(planes)), key=lambda index: -scores[index]):
+        normal, offset = planes[index]
+        if len(taken) == MOST_SYMMETRIES or scores[index] < max(scores) - WORSE * len(sample):
+            return
+        if any(abs(float(normal @ other)) > ALIKE for other in taken):
+            continue
+        for _ in range(2):
+            partner = _partners(bones, normal, offset, named)
+            normal, offset = _refined(bones, partner, normal, offset)
+        taken.append(planes[index][0])
+        yield Symmetry(normal, offset, partner)
 
 
 def _named_pairs(bones: Bones) -> dict[int, int]:

@@ -16,8 +16,8 @@ from ...body.skeleton import SIDES
 from ...errors import InputError
 from ...files.json_file import shown
 from ..character import Character
-from ..character_map import CharacterMap
-from ..map_check import check_map
+from ..maps.character_map import CharacterMap
+from ..maps.map_check import check_map
 from ..roles import LIMBS, MIDDLE
 from ..stance import find_stance
 

@@ -8,8 +8,8 @@ from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
 from ..character import Character
-from ..character_map import CharacterMap
 from ..character_motion import CharacterMotion, Similarity
+from ..maps.character_map import CharacterMap
 from ..options import Placement, RetargetOptions, RootMotion
 from .alignment import rest_alignment
 from .foot_shape import foot_shape, rest_floor_m, sole_points

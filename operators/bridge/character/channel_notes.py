@@ -7,8 +7,8 @@ import numpy as np
 
 from ....core.arrays import Array
 from ....core.finish.hermite import Spline
-from ....core.retarget.control_channels import Control
-from ....core.retarget.control_motion import ControlMotion, KeyedControl
+from ....core.retarget.controls.control_channels import Control
+from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
 from ..rotation_modes import bone_path, rotation_path
 from .dependencies import CARRYING, active_constraints, drivers
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import bpy
 
 from ....core.retarget.character import Character
-from ....core.retarget.character_map import CharacterMap, IkControls, Switch
+from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from .find_controls import find_controls
 from .mesh_soles import mesh_soles
 from .probe_controls import character_size

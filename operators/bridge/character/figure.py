@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.report.canvas import LEFT, RIGHT
+from ....core.report.canvas import LEFT, RIGHT, Color
 from ....core.report.character_figure import SKIN, CharacterFigure
 from ....core.retarget.figure_lines import FigureLine
 from ..object_space import evaluated
@@ -17,6 +17,8 @@ MOST_TRIANGLES = 200_000
 WAIST, THICKNESS = 0.15, 0.09
 """An octahedral bone's widest place and its half-width there, in bone lengths."""
 LEAST_M = 1e-6
+NEW_GRAY, GAMMA = 0.8, 2.2
+"""Color of a new material, which nobody has chosen; and the display's exponent."""
 CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
@@ -28,18 +30,18 @@ def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLi
         lines: What is drawn where there is no mesh.
     """
     meshes = [_mesh(one) for one in skins(armature_object)]
-    if meshes and sum(len(triangles) for _, triangles in meshes) <= MOST_TRIANGLES:
-        starts = np.cumsum([0, *(len(points) for points, _ in meshes)])
-        points = np.concatenate([points for points, _ in meshes])
-        triangles = np.concatenate(
-            [rows + start for (_, rows), start in zip(meshes, starts[:-1], strict=True)]
+    if meshes and sum(len(mesh.triangles) for mesh in meshes) <= MOST_TRIANGLES:
+        starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
+        return CharacterFigure(
+            np.concatenate([mesh.points for mesh in meshes]),
+            np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]),
+            np.concatenate([mesh.colors for mesh in meshes]),
         )
-        return CharacterFigure(points, triangles, np.tile(np.array(SKIN, dtype=float), (len(triangles), 1)))
     return _bones(armature_object, lines)
 
 
-def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:
-    """World points (N, 3) and triangles (T, 3) of an evaluated mesh."""
+def _mesh(mesh_object: bpy.types.Object) -> CharacterFigure:
+    """An evaluated mesh in the colors that its materials have in the viewport."""
     shown = evaluated(mesh_object)
     mesh = shown.to_mesh()
     try:
@@ -48,13 +50,27 @@ def _mesh(mesh_object: bpy.types.Object) -> tuple[Array, Array]:
         mesh.vertices.foreach_get("co", points)
         triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
         mesh.loop_triangles.foreach_get("vertices", triangles)
+        material = np.empty(len(mesh.loop_triangles), dtype=np.int32)
+        mesh.loop_triangles.foreach_get("material_index", material)
     finally:
         shown.to_mesh_clear()
     matrix = np.array(shown.matrix_world, dtype=np.float64)
-    return (
+    colors = np.array([_color(slot.material) for slot in shown.material_slots] or [SKIN], dtype=np.float64)
+    return CharacterFigure(
         points.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3],
         triangles.reshape(-1, 3).astype(np.intp),
+        colors[np.clip(material, 0, len(colors) - 1)],
     )
+
+
+def _color(material: bpy.types.Material | None) -> Color:
+    """Blue, green, red of a material in the viewport; a new material's own gray is left to `SKIN`."""
+    if material is None or all(abs(value - NEW_GRAY) < 1e-3 for value in material.diffuse_color[:3]):
+        return SKIN
+    red, green, blue = (
+        round(255.0 * min(max(value, 0.0), 1.0) ** (1.0 / GAMMA)) for value in material.diffuse_color[:3]
+    )
+    return blue, green, red
 
 
 def _bones(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:

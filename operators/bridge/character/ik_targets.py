@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.control_plan import limb_bones
+from ....core.retarget.controls.control_plan import limb_bones
+from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.roles import LIMBS
 from .dependencies import Graph, active_constraints, upstream
 

@@ -11,10 +11,10 @@ from ....core.arrays import Array
 from ....core.body.segment_motion import SegmentMotion
 from ....core.progress import Part, scaled
 from ....core.retarget.character import Character
-from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.character_motion import CharacterMotion
-from ....core.retarget.control_plan import joint_roles
-from ....core.retarget.control_spaces import unscaled
+from ....core.retarget.controls.control_plan import joint_roles
+from ....core.retarget.controls.control_spaces import unscaled
+from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Quality, farthest_mm, measured
 from ....core.retarget.roles import LIMBS
 from ..actions import existing_channelbag

@@ -6,8 +6,8 @@ from ....core.arrays import Array, Image
 from ....core.report.character_sheet import character_sheet
 from ....core.report.contact_sheet import evenly_spaced_frames
 from ....core.report.footage_frames import footage_frames
-from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.figure_lines import figure_lines
+from ....core.retarget.maps.character_map import CharacterMap
 from ..camera_from_scene import read_camera
 from ..footage import Footage
 from ..scene_frames import at_scene_frame

@@ -7,12 +7,13 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.control_channels import Control, ordered_controls
-from ....core.retarget.control_plan import ControlKind, PlannedControl
-from ....core.retarget.control_spaces import PosedControls, find_spaces
-from ....core.retarget.control_targets import PoleSetting
-from ....core.retarget.rigid_offset import rigid_offset
+from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
+from ....core.retarget.controls.control_plan import ControlKind, PlannedControl
+from ....core.retarget.controls.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
+from ....core.retarget.controls.control_targets import PoleSetting
+from ....core.retarget.controls.rigid_offset import rigid_offset
+from ....core.retarget.maps.character_map import CharacterMap
+from .dependencies import active_constraints, driven_bone, drivers
 from .pose_scales import ONE, scaled_bones
 from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics
@@ -59,9 +60,9 @@ def probe_controls(
         planned: The controls.
     """
     size = character_size(armature_object, character_map)
+    notes: list[str] = []
     in_fk, in_ik = (probed_properties(character_map, in_ik) for in_ik in (False, True))
     displaced = _displaced(armature_object, planned, size)
-    modes = [armature_object.pose.bones[control.name].rotation_mode for control in planned]
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
@@ -70,20 +71,25 @@ def probe_controls(
         poses = RandomPoses(STILL, MOVED, TURN_RAD, MOVE_SHARE * size)
         channels, shown, followed = pose_at_random(armature_object, names, bones, poses)
         posed = PosedControls(channels, shown, STILL)
-        spaces = find_spaces(posed)
-        controls = [
-            Control(plan, mode, space, plan.kind is not ControlKind.POLE, plan.name in displaced)
-            for plan, mode, space in zip(planned, modes, spaces, strict=True)
-        ]
-        ordered = ordered_controls(controls)
-        offsets, notes = _fk_offsets(armature_object, posed, followed, planned, size)
-        ik = try_inverse_kinematics(armature_object, character_map, ordered, size, in_ik)
-    ordered = tuple(
-        replace(one, space=replace(one.space, origin=ik.origins[one.name])) if one.name in ik.origins else one
-        for one in ordered
-    )
-    notes = (*_loose(controls, size), *notes, *ik.notes)
-    return ProbedControls(ordered, offsets | dict(ik.offsets), ik.poles, size, notes)
+        kept = _steady(armature_object, planned, find_spaces(posed), notes)
+        posed, followed = chosen(posed, kept), followed[:, kept]
+        planned = [planned[index] for index in kept]
+        controls = ordered_controls(
+            [
+                Control(
+                    plan,
+                    armature_object.pose.bones[plan.name].rotation_mode,
+                    space,
+                    turns=plan.kind is not ControlKind.POLE,
+                    displaced=plan.name in displaced,
+                )
+                for plan, space in zip(planned, find_spaces(posed), strict=True)
+            ]
+        )
+        offsets = _fk_offsets(armature_object, posed, followed, planned, size, notes)
+        ik = try_inverse_kinematics(armature_object, character_map, controls, size, in_ik)
+    controls = tuple(_placed(control, ik.places, size) for control in controls)
+    return ProbedControls(controls, offsets | dict(ik.offsets), ik.poles, size, (*notes, *ik.notes))
 
 
 def character_size(armature_object: bpy.types.Object, character_map: CharacterMap) -> float:
@@ -106,9 +112,10 @@ def _fk_offsets(
     bones: Array,
     planned: Sequence[PlannedControl],
     size: float,
-) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """How the bones follow their controls while all limbs show FK."""
-    offsets, notes = {}, []
+    notes: list[str],
+) -> dict[str, Array]:
+    """How bones follow their controls while all limbs show FK; sentences on those that do not are added."""
+    offsets = {}
     for index, plan in enumerate(planned):
         if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
             continue
@@ -123,7 +130,7 @@ def _fk_offsets(
             notes.append(
                 f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
             )
-    return offsets, tuple(notes)
+    return offsets
 
 
 def _offset_at_rest(armature_object: bpy.types.Object, plan: PlannedControl) -> Array:
@@ -135,10 +142,36 @@ def _offset_at_rest(armature_object: bpy.types.Object, plan: PlannedControl) -> 
     return np.linalg.inv(control) @ bone
 
 
-def _loose(controls: Sequence[Control], size: float) -> list[str]:
-    """Sentences on controls whose channels do not act in a space of their own."""
-    return [
-        f"Control '{control.name}' is also moved by something that is not keyed; its poses may be off"
-        for control in controls
-        if control.turns and control.space.residual_rad > NOTICEABLE_RAD
-    ]
+def _steady(
+    armature_object: bpy.types.Object,
+    planned: Sequence[PlannedControl],
+    spaces: Sequence[ControlSpace],
+    notes: list[str],
+) -> list[int]:
+    """Indices of the controls whose rotations act in a space of their own, or that constraints keep from it.
+
+    The others are carried by something that moves and is not keyed, so that no key would show as it should;
+    sentences on them are added.
+    """
+    driven = {driven_bone(driver.data_path) for driver in drivers(armature_object)}
+    kept = []
+    for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
+        own = plan.name in driven or active_constraints(armature_object.pose.bones[plan.name])
+        if plan.kind is ControlKind.POLE or own or space.residual_rad < NOTICEABLE_RAD:
+            kept.append(index)
+        else:
+            notes.append(
+                f"Bone '{plan.name}' hangs on something that moves by itself, such as inverse kinematics, "
+                "and is not keyed; name its control in the character map"
+            )
+    return kept
+
+
+def _placed(control: Control, places: Mapping[str, Array], size: float) -> Control:
+    """A control that random poses did not place, where a limb within reach shows its place."""
+    space = control.space
+    if control.plan.kind in ALWAYS_MOVED or space.is_placed(size):
+        return control
+    if control.name in places:
+        return replace(control, space=space.placed_by_turner(places[control.name]))
+    return replace(control, space=replace(space, axes=np.zeros((3, 3))))

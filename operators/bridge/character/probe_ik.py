@@ -8,12 +8,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
-from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.control_channels import Control, ControlChannels, control_channels
-from ....core.retarget.control_plan import ControlKind, limb_bones
-from ....core.retarget.control_spaces import NOTHING
-from ....core.retarget.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
-from ....core.retarget.rigid_offset import rigid_offset
+from ....core.retarget.controls.control_channels import Control, ControlChannels, control_channels
+from ....core.retarget.controls.control_plan import ControlKind, limb_bones
+from ....core.retarget.controls.control_spaces import NOTHING
+from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
+from ....core.retarget.controls.rigid_offset import rigid_offset
+from ....core.retarget.maps.character_map import CharacterMap
 from .posing import Property, Value, read_poses, set_channels, set_properties
 
 TRIALS = ((0.8, 0.0, (0.2, -0.1, 0.15)), (0.7, 0.5, (-0.15, 0.2, 0.1)))
@@ -32,8 +32,8 @@ class TriedInverseKinematics:
     offsets: Mapping[str, Array]
     """(4, 4) by goal or toe control the pose of its bone in its own axes."""
     poles: Mapping[str, PoleSetting]
-    origins: Mapping[str, Array]
-    """(3,) by toe control its place in its carrier's axes, which only a leg within reach shows."""
+    places: Mapping[str, Array]
+    """(3,) by control its place in the axes of what turns it, of those that stay there."""
     notes: tuple[str, ...]
 
 
@@ -79,10 +79,9 @@ def try_inverse_kinematics(
     seen = [_try(armature_object, controls, limbs, at_rest, size, *trial) for trial in TRIALS]
     offsets: dict[str, Array] = {}
     poles: dict[str, PoleSetting] = {}
-    origins: dict[str, Array] = {}
     notes: list[str] = []
+    poses = {name: np.array([one[name] for one in seen]) for name in seen[0]}
     for limb in limbs:
-        poses = {name: np.array([one[name] for one in seen]) for name in seen[0]}
         for control in (limb.goal, limb.toe):
             if control is None:
                 continue
@@ -94,9 +93,6 @@ def try_inverse_kinematics(
                 )
                 offset = np.linalg.inv(at_rest[control.name]) @ limb.rest[2]
             offsets[control.name] = offset
-        if limb.toe is not None and limb.toe.space.carrier != NOTHING:
-            carrier = controls[limb.toe.space.carrier].name
-            origins[limb.toe.name] = rigid_offset(poses[carrier], poses[limb.toe.name])[0][:3, 3]
         if limb.pole is None:
             notes.append(
                 f"The inverse kinematics of {limb.name} has no pole that could be keyed; bone "
@@ -104,7 +100,14 @@ def try_inverse_kinematics(
             )
         else:
             poles[limb.pole.name] = _pole_setting(limb, limb.pole.name, poses, notes)
-    return TriedInverseKinematics(offsets, poles, origins, tuple(notes))
+    places = {}
+    for control in controls:
+        if control.space.turner != NOTHING:
+            turner = controls[control.space.turner].name
+            offset, _, distance = rigid_offset(poses[turner], poses[control.name])
+            if distance < FOLLOWS * size:
+                places[control.name] = offset[:3, 3]
+    return TriedInverseKinematics(offsets, poles, places, tuple(notes))
 
 
 def _limbs(

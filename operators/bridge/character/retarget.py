@@ -9,18 +9,18 @@ from ....core.body.segment_motion import SegmentMotion
 from ....core.errors import InputError
 from ....core.progress import Job, Progress, stretch, within
 from ....core.retarget.character import Character
-from ....core.retarget.character_map import CharacterMap
 from ....core.retarget.character_motion import CharacterMotion, Similarity
-from ....core.retarget.control_channels import control_channels
-from ....core.retarget.control_motion import ControlMotion, KeyedControl, dense_controls
-from ....core.retarget.control_plan import ControlKind, limb_bones, planned_controls
-from ....core.retarget.control_reduction import reduce_controls
-from ....core.retarget.control_targets import control_targets
-from ....core.retarget.held_points import held_points
-from ....core.retarget.limb_paths import limb_paths
-from ....core.retarget.map_check import check_map
+from ....core.retarget.controls.control_channels import control_channels
+from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
+from ....core.retarget.controls.control_plan import ControlKind, limb_bones, planned_controls
+from ....core.retarget.controls.control_reduction import reduce_controls
+from ....core.retarget.controls.control_targets import control_targets
+from ....core.retarget.controls.held_points import held_points
+from ....core.retarget.controls.limb_paths import limb_paths
+from ....core.retarget.controls.point_tolerances import ToleranceRules
+from ....core.retarget.maps.character_map import CharacterMap
+from ....core.retarget.maps.map_check import check_map
 from ....core.retarget.options import Placement, RetargetOptions
-from ....core.retarget.point_tolerances import ToleranceRules
 from ....core.retarget.quality import Quality
 from ....core.retarget.solve.solve_motion import solve_motion
 from ..object_space import object_space

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from ....core.retarget.character_map import CharacterMap, Switch
-from ....core.retarget.control_plan import limb_keys
+from ....core.retarget.controls.control_plan import limb_keys
+from ....core.retarget.maps.character_map import CharacterMap, Switch
 from ....core.retarget.options import LimbKeys, RetargetOptions
 from .posing import Property, Value
 

@@ -10,7 +10,7 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.finish.hermite import Spline
-from ....core.retarget.control_motion import KeyedControl
+from ....core.retarget.controls.control_motion import KeyedControl
 from ..actions import assign_action, channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path

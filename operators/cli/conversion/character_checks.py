@@ -6,7 +6,7 @@ from contextlib import suppress
 
 from ....core.errors import InputError, KeymarkError, describe_unexpected
 from ....core.files.regular_file import regular_file_size
-from ....core.retarget.choose_map import map_digests
+from ....core.retarget.maps.choose_map import map_digests
 from ....core.shoot.shoot import Shoot
 from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ..library_search_path import library_folders

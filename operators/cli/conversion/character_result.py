@@ -16,8 +16,8 @@ from ....core.progress import Job, run
 from ....core.report.canvas import write_png
 from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import Character
-from ....core.retarget.character_map import CharacterMap
-from ....core.retarget.choose_map import ChosenMap, choose_map
+from ....core.retarget.maps.character_map import CharacterMap
+from ....core.retarget.maps.choose_map import ChosenMap, choose_map
 from ....core.retarget.option_words import retarget_options
 from ....core.retarget.retarget_record import RetargetRecord, write_retarget_record
 from ....core.retarget.roles import LIMBS
@@ -178,7 +178,8 @@ def _draw(
     from ...bridge.character.picture import character_picture
 
     motion = retargeted.motion
-    floor_m = float(motion.to_world.location[2] + min(float(np.median(g)) for g in motion.ground_m.values()))
+    ground_m = [float(np.median(heights)) for heights in motion.ground_m.values()]  # none of feet not planted
+    floor_m = float(motion.to_world.location[2]) + min(ground_m, default=0.0)
     image = character_picture(scene, armature, retargeted.character_map, retargeted.keys.frames, floor_m)
     if image is not None:
         file.parent.mkdir(exist_ok=True)

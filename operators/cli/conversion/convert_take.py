@@ -14,7 +14,7 @@ from ....core.library.library_file import library_digest
 from ....core.matching.match_take import take_to_match
 from ....core.progress import run
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
-from ....core.retarget.choose_map import map_digests
+from ....core.retarget.maps.choose_map import map_digests
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import RetargetRecord
 from ....core.take.conversion_digest import conversion_digest

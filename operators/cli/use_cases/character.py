@@ -2,9 +2,9 @@
 
 import argparse
 
-from ....core.retarget.character_map import CharacterMap, IkControls
-from ....core.retarget.character_map_file import map_to_json, write_character_map
-from ....core.retarget.choose_map import ChosenMap
+from ....core.retarget.maps.character_map import CharacterMap, IkControls
+from ....core.retarget.maps.character_map_file import map_to_json, write_character_map
+from ....core.retarget.maps.choose_map import ChosenMap
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.retarget.roles import ROLES
 from ....core.take.character_settings import CharacterFile

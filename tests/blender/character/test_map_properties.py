@@ -6,10 +6,10 @@ from pathlib import Path
 import bpy
 import pytest
 from _character_maps import full_map
-from keymark.core.retarget.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
-from keymark.core.retarget.character_map_file import read_character_map
+from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
+from keymark.core.retarget.maps.character_map_file import read_character_map
+from keymark.core.retarget.maps.presets import SHIPPED, read_preset
 from keymark.core.retarget.options import RetargetOptions
-from keymark.core.retarget.presets import SHIPPED, read_preset
 from keymark.core.retarget.roles import LIMBS, ROLES
 from keymark.operators.character.map_conversion import map_of, show_found_controls, show_map
 from keymark.operators.character.options import options_of

@@ -9,6 +9,8 @@ import pytest
 from _armatures import build_character
 from _characters import plain_character
 from _scene_state import differences, scene_state
+from keymark.core.errors import InputError
+from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.quality import Quality
 from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
@@ -199,6 +201,23 @@ def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> 
         assert not differences(before, scene_state()), f"after {steps} of {total} steps"
 
 
+def test_what_is_removed_while_the_job_runs_is_said(
+    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+) -> None:
+    """The character, its armature, or the motion: one sentence, and no Action."""
+    from keymark.operators.character.retarget import KEYMARK_OT_retarget
+
+    scene = bpy.context.scene
+    result = run(KEYMARK_OT_retarget.start(None, scene))
+    character.armature = None
+    with pytest.raises(InputError, match="was removed while the job ran; nothing was changed"):
+        KEYMARK_OT_retarget.finish(None, scene, result)
+    bpy.ops.keymark.remove_character()
+    with pytest.raises(InputError, match="was removed while the job ran"):
+        KEYMARK_OT_retarget.finish(None, scene, result)
+    assert list(bpy.data.actions) == [take.motion_action]
+
+
 def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy.types.Object) -> None:
     """Adding, correcting, mirroring, retargeting, showing, removing: one undo each."""
     ops = bpy.ops.keymark
@@ -269,7 +288,7 @@ def test_the_figures_of_a_motion_in_words() -> None:
     assert figures(quality) == [
         "Feet slide 0.02 mm a frame",
         "Soles at most 1.1 mm below floor",
-        "Arms 0.0°, legs 2.3° off in the mean",
+        "Arms 0.0°, legs 2.3° off",
         "12 keys instead of 90",
     ]
     assert figures(replace(quality, hands_mm=6.4))[2] == "Hands 6 mm from what they reach"

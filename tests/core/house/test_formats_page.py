@@ -11,7 +11,8 @@ from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.library import library_file
-from keymark.core.retarget import character_map_file, retarget_record
+from keymark.core.retarget import retarget_record
+from keymark.core.retarget.maps import character_map_file
 from keymark.core.shoot import shoot
 from keymark.core.shoot.discovery import take_list
 from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file

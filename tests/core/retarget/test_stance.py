@@ -8,7 +8,7 @@ from _characters import plain_character, plain_map
 from keymark.core.body.heading import yaw_rotation
 from keymark.core.body.rotations import exponential
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_map import CharacterMap
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.stance import find_stance
 
 

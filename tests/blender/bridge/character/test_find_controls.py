@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character, plain_map
-from _control_rigs import control_rig
+from _control_rigs import control_rig, simple_ik_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
-from keymark.core.retarget.character_map import IkControls, RoleBones, Setting, Switch
+from keymark.core.retarget.maps.character_map import IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.complete_map import complete_map
 from keymark.operators.bridge.character.find_controls import find_controls
@@ -61,6 +61,22 @@ def test_an_unknown_rig_performs(pole_behind: bool, keys: LimbKeys) -> None:
     assert max(off) < 0.007
     if keys is LimbKeys.BOTH:
         assert made.quality.ik_fk_mm is not None and made.quality.ik_fk_mm < 1.0
+
+
+@pytest.mark.parametrize("keys", [LimbKeys.BOTH, LimbKeys.FK])
+def test_legs_that_are_always_in_ik_are_keyed_there(keys: LimbKeys) -> None:
+    """Whatever is chosen; the toes turn on feet that only legs within reach place."""
+    character, known = simple_ik_rig()
+    body, posture = stepping()
+    source = performance(body, posture[:40])
+    made = run(retarget(character, source, 1.0 + np.arange(40), known, RetargetOptions(legs=keys)))
+    assert made.character_map.ik["leg.L"] == IkControls("goal.L", "pole.L")
+    names = {one.control.name: one for one in made.keys.controls}
+    assert {"goal.L", "pole.R", "toe.L"} <= set(names)
+    assert not {"thigh.L", "shin.L", "foot.L"} & set(names)
+    assert names["toe.L"].location is None
+    assert made.quality.legs_deg is not None and made.quality.legs_deg < 3.0
+    assert made.quality.penetration_mm is not None and made.quality.penetration_mm < 2.0
 
 
 def test_a_plain_skeleton_has_no_other_controls() -> None:

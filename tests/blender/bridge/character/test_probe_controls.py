@@ -5,8 +5,8 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
-from keymark.core.retarget.character_map import CharacterMap
-from keymark.core.retarget.control_plan import planned_controls
+from keymark.core.retarget.controls.control_plan import planned_controls
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.recognition.recognize import recognize
 from keymark.operators.bridge.character.probe_controls import ProbedControls, probe_controls

@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character
+from _performances import performance, stepping
 from _rigify import add_rig
 from keymark.core.errors import InputError
+from keymark.core.progress import run
+from keymark.core.retarget.options import RetargetOptions
+from keymark.core.retarget.recognition.recognize import recognize
 from keymark.operators.bridge.character.cycles import dependency_cycle
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
+from keymark.operators.bridge.character.retarget import retarget
 
 
 @pytest.fixture
@@ -142,4 +147,12 @@ def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path
         read_character(linked)
     made = make_override(bpy.context, linked)
     assert not needs_override(made)
-    assert len(read_character(made).bones) == len(linked.data.bones)
+    character = read_character(made)
+    assert len(character.bones) == len(linked.data.bones)
+    known = recognize(character).character_map
+    body, posture = stepping()
+    source = performance(body, posture[:10])
+    done = run(retarget(made, source, 1.0 + np.arange(10), known, RetargetOptions()))
+    action = done.write(bpy.context.scene, "Steps")
+    assert made.animation_data.action == action
+    assert done.quality.ik_fk_mm is not None and done.quality.ik_fk_mm < 1.0

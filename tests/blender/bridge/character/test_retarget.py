@@ -14,7 +14,7 @@ from keymark.core.errors import InputError
 from keymark.core.finish.hermite import Spline
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_map import CharacterMap
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
 from keymark.core.retarget.recognition.recognize import recognize
 from keymark.operators.bridge.actions import existing_channelbag

@@ -24,8 +24,8 @@ from keymark.core.body.segment_motion import segment_motion
 from keymark.core.errors import InputError
 from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.character_motion import Similarity
+from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.options import Placement, RetargetOptions, RootMotion
 from keymark.core.retarget.quality import ARM_BONES, LEG_BONES, direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize

@@ -1,0 +1,131 @@
+"""Channels of controls from the poses they are to have: each in the space of what turns and carries it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from ...arrays import Array
+from .control_plan import ControlKind, PlannedControl
+from .control_spaces import NOTHING, ControlSpace, unscaled
+
+NEEDED = 0.005
+"""Distance [shares of the character's size] from which a bone that usually only turns is moved as well."""
+ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT)
+"""Kinds of controls that are placed wherever they can be."""
+
+
+@dataclass(frozen=True, eq=False)
+class Control:
+    """A bone that is keyed, and how its channels act."""
+
+    plan: PlannedControl
+    mode: str
+    """Its rotation mode."""
+    space: ControlSpace
+    """Its space; turner and carrier are indices among all controls."""
+    turns: bool
+    """Whether its rotation is keyed."""
+    displaced: bool = False
+    """Whether it has a location already, which a motion must replace."""
+
+    @property
+    def name(self) -> str:
+        """The bone's name."""
+        return self.plan.name
+
+
+@dataclass(frozen=True, eq=False)
+class ControlChannels:
+    """A control over F frames."""
+
+    rotation: Array | None
+    """(F, 3, 3) its rotation channels as a turn from rest; None where they are not keyed."""
+    location: Array | None
+    """(F, 3) its location channels; None where they are not keyed."""
+    turn: Array
+    """(F, 3, 3) its axes in the armature's space, as the channels give them."""
+    place: Array
+    """(F, 3) its head in the armature's space, as the channels give it."""
+
+    def on(self, carrier: "ControlChannels") -> "ControlChannels":
+        """The same where turn and place are those in the axes of what carries it."""
+        place = carrier.place + (carrier.turn @ self.place[..., None])[..., 0]
+        return replace(self, turn=carrier.turn @ self.turn, place=place)
+
+
+def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
+    """The controls in an order in which those that turn or carry others come before them.
+
+    Where they would turn each other in a circle, which no rigid space does, one of them is taken as free.
+    """
+    order: list[int] = []
+
+    def visit(index: int, above: frozenset[int]) -> None:
+        if index == NOTHING or index in order or index in above:
+            return
+        space = controls[index].space
+        for other in (space.turner, space.carrier):
+            visit(other, above | {index})
+        order.append(index)
+
+    for index in range(len(controls)):
+        visit(index, frozenset())
+    place = {index: number for number, index in enumerate(order)} | {NOTHING: NOTHING}
+    return tuple(_placed(controls[index], place, number) for number, index in enumerate(order))
+
+
+def _placed(control: Control, place: Mapping[int, int], number: int) -> Control:
+    """A control with the new numbers of others, where they come before its own."""
+    turner, carrier = place[control.space.turner], place[control.space.carrier]
+    turner, carrier = (other if other < number else NOTHING for other in (turner, carrier))
+    return replace(control, space=replace(control.space, turner=turner, carrier=carrier))
+
+
+def control_channels(
+    controls: Sequence[Control],
+    wanted: Mapping[str, Array],
+    size: float,
+    known: Mapping[int, ControlChannels] = MappingProxyType({}),
+) -> tuple[ControlChannels, ...]:
+    """The channels that give controls the poses they are to have, or the nearest that they can.
+
+    Args:
+        controls: The controls, those that turn or carry others before them.
+        wanted: (F, 4, 4) by name the pose of each in the armature's space; of a pole only the place counts.
+        size: The character's, in the armature's units.
+        known: Controls by index whose channels are known already.
+    """
+    frames = len(next(iter(wanted.values()), np.zeros((1, 4, 4))))
+    still, origin = np.broadcast_to(np.eye(3), (frames, 3, 3)), np.zeros((frames, 3))
+    found: list[ControlChannels] = []
+    for index, control in enumerate(controls):
+        if index in known:
+            found.append(known[index])
+            continue
+        space, pose = control.space, wanted[control.name]
+        turner = still if space.turner == NOTHING else found[space.turner].turn
+        axes, place = still, origin
+        if space.carrier != NOTHING:
+            axes, place = found[space.carrier].turn, found[space.carrier].place
+        turn = turner @ space.turn
+        rotation = None
+        if control.turns:
+            rotation = np.swapaxes(turn, -1, -2) @ unscaled(pose[:, :3, :3])
+            turn = turn @ rotation
+        place = place + axes @ space.origin
+        apart = pose[:, :3, 3] - place
+        location = None
+        if space.movable and _is_moved(control, apart, size):
+            local = (np.swapaxes(axes, -1, -2) @ apart[..., None])[..., 0]
+            location = np.linalg.solve(space.axes, local.T).T
+            place = pose[:, :3, 3]
+        found.append(ControlChannels(rotation, location, turn, place))
+    return tuple(found)
+
+
+def _is_moved(control: Control, apart: Array, size: float) -> bool:
+    if control.plan.kind in ALWAYS_MOVED or control.displaced:
+        return True
+    return bool(np.linalg.norm(apart, axis=-1).max() > NEEDED * size)

@@ -1,0 +1,111 @@
+"""Which bones of a character are keyed, and what each of them is for."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from ..maps.character_map import CharacterMap, IkControls
+from ..options import LimbKeys, RetargetOptions, RootMotion
+from ..roles import LIMBS, ROLES
+
+
+class ControlKind(Enum):
+    """What a control does."""
+
+    FK = "fk"
+    """It turns a bone, and places it where it can and must."""
+    HIPS = "hips"
+    """It turns and places the hips."""
+    GOAL = "goal"
+    """Hand or foot follow it by inverse kinematics."""
+    TOE = "toe"
+    """It turns the toes while the leg is in IK."""
+    POLE = "pole"
+    """Elbow or knee point to it."""
+    ROOT = "root"
+    """It carries the whole character."""
+
+
+@dataclass(frozen=True)
+class PlannedControl:
+    """A bone that is to be keyed."""
+
+    name: str
+    kind: ControlKind
+    bone: str
+    """The bone with a role that it moves; for a pole the one that begins at elbow or knee."""
+    limb: str | None = None
+    """The limb of `roles.LIMBS` whose inverse kinematics it belongs to."""
+
+
+def planned_controls(character_map: CharacterMap, options: RetargetOptions) -> tuple[PlannedControl, ...]:
+    """The controls that are keyed, each once."""
+    found: dict[str, PlannedControl] = {}
+    if options.root_motion is RootMotion.ROOT_BONE and character_map.root is not None:
+        root = character_map.root
+        found[root] = PlannedControl(root, ControlKind.ROOT, root)
+    for control in (*_ik_controls(character_map, options), *_fk_controls(character_map, options)):
+        found.setdefault(control.name, control)
+    return tuple(found.values())
+
+
+def limb_keys(character_map: CharacterMap, options: RetargetOptions, limb: str) -> LimbKeys:
+    """How a limb is keyed: as chosen, where the rig and the parts that may be moved allow it."""
+    missing = set(joint_roles(limb)) - set(character_map.roles) | set(character_map.left_alone)
+    if limb not in character_map.ik or missing & set(joint_roles(limb)):
+        return LimbKeys.FK
+    if all(control is None for role in joint_roles(limb)[:2] for control in character_map.keyed_bones(role)):
+        return LimbKeys.IK
+    return options.arms if limb.startswith("arm") else options.legs
+
+
+def joint_roles(limb: str) -> tuple[str, ...]:
+    """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
+    return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+
+
+def limb_bones(character_map: CharacterMap, limb: str) -> tuple[str, str, str]:
+    """The bones that begin at a limb's three joints."""
+    first, second, third = (str(character_map.bone(role)) for role in joint_roles(limb))
+    return first, second, third
+
+
+def _ik_controls(character_map: CharacterMap, options: RetargetOptions) -> Iterator[PlannedControl]:
+    for limb, ik in character_map.ik.items():
+        if limb_keys(character_map, options, limb) is LimbKeys.FK:
+            continue
+        _, middle, end = limb_bones(character_map, limb)
+        yield PlannedControl(ik.goal, ControlKind.GOAL, end, limb)
+        toe = _toe(character_map, limb)
+        if ik.toe is not None and toe is not None:
+            yield PlannedControl(ik.toe, ControlKind.TOE, toe, limb)
+        if ik.pole is not None:
+            yield PlannedControl(ik.pole, ControlKind.POLE, middle, limb)
+
+
+def _fk_controls(character_map: CharacterMap, options: RetargetOptions) -> Iterator[PlannedControl]:
+    in_ik = {
+        role
+        for limb, ik in character_map.ik.items()
+        if limb_keys(character_map, options, limb) is LimbKeys.IK
+        for role in _moved_by_ik(limb, ik)
+    }
+    for role in ROLES:
+        if role not in character_map.roles or role in character_map.left_alone or role in in_ik:
+            continue
+        kind = ControlKind.HIPS if role == "hips" else ControlKind.FK
+        pairs = zip(character_map.keyed_bones(role), character_map.bones(role), strict=True)
+        for control, bone in pairs:
+            if control is not None:
+                yield PlannedControl(control, kind, bone)
+
+
+def _moved_by_ik(limb: str, ik: IkControls) -> tuple[str, ...]:
+    """Roles that a limb's inverse kinematics moves: not the shoulder; the toes where they have a control."""
+    toe = LIMBS[limb][-1:] if limb.startswith("leg") and ik.toe is not None else ()
+    return (*joint_roles(limb), *toe)
+
+
+def _toe(character_map: CharacterMap, limb: str) -> str | None:
+    role = LIMBS[limb][-1]
+    return None if role in character_map.left_alone else character_map.bone(role)

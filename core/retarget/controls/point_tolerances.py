@@ -1,0 +1,106 @@
+"""How far key reduction may move a character's points: less where a foot rests or is near the floor."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array, BoolArray
+from ..character_motion import CharacterMotion
+from .held_points import HeldPoint, PointKind
+
+NEAR_FLOOR_M = 0.03
+"""A sole this near to its lowest place nearby must not pass the floor."""
+NEIGHBORHOOD_S = 1.0
+FLOOR_M = 0.0015
+"""Largest error of a sole near the floor [m]."""
+SHOWN_REST_M = 0.00008
+"""Largest error of a resting foot that is shown [m]: it must not slide."""
+SWITCH_M = 0.0008
+"""Largest distance of wrists and ankles between IK and FK [m]."""
+CARRIED_SHARE = 0.5
+"""Share of the tolerance for a limb's root, and as much for elbow or knee on it."""
+LEAST_M = 0.0002
+"""Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
+
+POLE_RAD = 0.04
+"""Turn of a limb about its own line that a pole's error may make [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class ToleranceRules:
+    """What tolerances follow from."""
+
+    motion: CharacterMotion
+    time_s: Array
+    """(F,) time of each frame [s]."""
+    up: Array
+    """(3,) away from the floor, in the armature's axes."""
+    general_m: float
+    """Tolerance of the body [m]."""
+
+    def of(self, point: HeldPoint, path: Array, shown: bool, ends_m: float) -> Array:
+        """(F,) tolerance of a point [m].
+
+        Args:
+            point: The point.
+            path: (F, 3) its places in the armature's axes [m].
+            shown: Whether the point is what the character shows; otherwise it is what a switch would show.
+            ends_m: Tolerance of wrists and ankles [m].
+        """
+        allowed = np.full(len(path), self.general_m)
+        if point.kind is PointKind.END:
+            allowed[:] = min(ends_m, self.general_m)
+        if point.kind is PointKind.SOLE:
+            allowed[self._near_floor(path)] = min(FLOOR_M, self.general_m)
+        if shown and point.kind is not PointKind.BODY:
+            allowed[self.resting(point.limb)] = min(SHOWN_REST_M, self.general_m)
+        elif point.kind is PointKind.END:
+            allowed[self.resting(point.limb)] = min(SWITCH_M, self.general_m)
+        return allowed
+
+    def resting(self, limb: str | None) -> BoolArray:
+        """(F,) whether the foot of a limb rests."""
+        rests = np.zeros(len(self.time_s), dtype=bool)
+        for rest in self.motion.rests:
+            if rest.limb == limb:
+                rests[rest.first : rest.last + 1] = True
+        return rests
+
+    def _near_floor(self, path: Array) -> BoolArray:
+        height = path @ self.up
+        low = [height[np.abs(self.time_s - now) <= NEIGHBORHOOD_S].min() for now in self.time_s]
+        return np.asarray(height - low < NEAR_FLOOR_M)
+
+
+def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> Array:
+    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
+
+    Args:
+        joints: (F, 3) the limb's root, elbow or knee, and end [m].
+        general_m: The tolerance [m].
+    """
+    root, middle, end = joints
+    line = end - root
+    length = np.linalg.norm(line, axis=-1)
+    along = ((middle - root) * line).sum(axis=-1) / np.maximum(length, LEAST_M)
+    out = np.linalg.norm(
+        middle - root - along[:, None] * line / np.maximum(length, LEAST_M)[:, None], axis=-1
+    )
+    longer = np.maximum(np.maximum(along, length - along), LEAST_M)
+    return np.asarray(np.clip(general_m * out / longer, min(LEAST_M, general_m), general_m))
+
+
+def pole_tolerance_m(joints: tuple[Array, Array, Array], distance_m: float, general_m: float) -> Array:
+    """(F,) error of a pole that moves elbow or knee by the tolerance, or turns the limb by `POLE_RAD` [m].
+
+    Args:
+        joints: (F, 3) the limb's root, elbow or knee, and end [m].
+        distance_m: Distance of the pole from elbow or knee [m].
+        general_m: The tolerance [m].
+    """
+    root, middle, end = joints
+    line = end - root
+    line = line / np.maximum(np.linalg.norm(line, axis=-1, keepdims=True), LEAST_M)
+    out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
+    reach = out + distance_m
+    return np.asarray(np.minimum(general_m * reach / np.maximum(out, LEAST_M), POLE_RAD * reach))

@@ -1,0 +1,1 @@
+"""Character maps: what they hold, their files, where they are found, and the presets of conventions."""

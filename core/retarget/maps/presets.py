@@ -1,0 +1,163 @@
+"""Presets: character maps of conventions of bone names, found by the bones that they require."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from ...errors import InputError
+from ...files.fields import Fields
+from ...files.json_file import read_json, shown
+from ...files.json_folder import json_files
+from ..character import Character
+from .character_map import CharacterMap, IkControls, RoleBones
+from .character_map_fields import bone_names, read_map_fields
+
+SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"
+"""The presets that come with Keymark."""
+SCHEMA = "keymark-character-preset"
+SCHEMA_VERSION = 1
+LARGEST_BYTES = 2**20
+
+_SEPARATORS = re.compile(r"[\s._-]+")
+_PREFIX = re.compile(r"(?:.*[^a-z0-9])?", re.DOTALL)
+"""What may stand before all names of a character: nothing, or a namespace that ends in a sign."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A convention of bone names."""
+
+    identifier: str
+    """Name of its file, without the ending."""
+    character_map: CharacterMap
+    """Its map, of the bones that a full character has."""
+    requires: tuple[str, ...]
+    """Bones by which it is found: all must be there."""
+    lacks: tuple[str, ...] = ()
+    """Bones that must not be there."""
+
+
+def read_preset(path: Path) -> Preset:
+    """Read a preset.
+
+    Raises:
+        InputError: The file is missing, no preset, or invalid.
+    """
+    return preset_from_json(read_json(path, LARGEST_BYTES), str(path), path.stem)
+
+
+def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
+    """Read a preset from JSON that is not trusted.
+
+    Args:
+        value: The JSON: a character map's fields, and `requires` and `lacks`.
+        where: Location of the JSON, with which sentences begin.
+        identifier: The preset's identifier.
+
+    Raises:
+        InputError: The JSON is no valid preset.
+    """
+    fields = Fields.of(value, where)
+    schema = fields.values.get("schema")
+    if schema != SCHEMA:
+        raise InputError(f'{where}: schema is {shown(schema)}; a preset of characters has "{SCHEMA}" there')
+    fields.check_version(SCHEMA_VERSION)
+    if fields.has("preset"):
+        raise InputError(f"{where} has the field 'preset'; a preset is one itself, leave it out")
+    character_map = read_map_fields(fields, "preset", ("requires", "lacks"))
+    requires = bone_names(fields, "requires")
+    lacks = bone_names(fields, "lacks") if fields.has("lacks") else ()
+    return Preset(identifier, replace(character_map, preset=identifier), requires, lacks)
+
+
+@lru_cache(maxsize=1)
+def shipped_presets() -> tuple[Preset, ...]:
+    """The presets that come with Keymark, in order of their files."""
+    return tuple(read_preset(path) for path in json_files(SHIPPED))
+
+
+def find_preset(character: Character, presets: tuple[Preset, ...] | None = None) -> CharacterMap | None:
+    """The map of the convention that a character's bones follow, with the character's own names.
+
+    Of several the one that requires most bones; what the character lacks is left out of the map.
+
+    Args:
+        character: The character.
+        presets: The presets to choose from; by default the shipped ones.
+    """
+    found: list[tuple[int, int, CharacterMap]] = []
+    for preset in shipped_presets() if presets is None else presets:
+        fitted = _fitted(preset, character)
+        if fitted is not None:
+            found.append((len(preset.requires), len(fitted.named_bones), fitted))
+    return max(found, key=lambda each: each[:2])[2] if found else None
+
+
+def _fitted(preset: Preset, character: Character) -> CharacterMap | None:
+    """The preset's map with the character's names; None where a required bone is missing."""
+    names = _by_key(bone.name for bone in character.bones)
+    first = _key(preset.requires[0])
+    prefixes = [key[: -len(first)] for key in names if key.endswith(first)]
+    for prefix in sorted(filter(_PREFIX.fullmatch, prefixes), key=len):
+        keys = (prefix + _key(name) for name in preset.requires)
+        lacking = (prefix + _key(name) for name in preset.lacks)
+        if all(key in names for key in keys) and not any(key in names for key in lacking):
+            return _renamed(preset.character_map, lambda name, prefix=prefix: names.get(prefix + _key(name)))  # type: ignore[misc]
+    return None
+
+
+def _by_key(names: Any) -> dict[str, str]:
+    """Names by their keys; of several with one key the first."""
+    found: dict[str, str] = {}
+    for name in names:
+        found.setdefault(_key(name), name)
+    return found
+
+
+@lru_cache(maxsize=4096)
+def _key(name: str) -> str:
+    """Equal for names that exporters turn into each other: by case and separators."""
+    return _SEPARATORS.sub("_", name.casefold())
+
+
+def _renamed(character_map: CharacterMap, name_of: Callable[[str], str | None]) -> CharacterMap:
+    """The map with other names, without what has none."""
+    roles: dict[str, RoleBones] = {}
+    for role, given in character_map.roles.items():
+        bones = tuple(name for bone in given.bones if (name := name_of(bone)) is not None)
+        if bones:
+            whole = len(bones) == len(given.bones)
+            roles[role] = replace(given, bones=bones, shares=given.shares if whole else ())
+    fk: dict[str, tuple[str | None, ...]] = {}
+    for role, keyed in character_map.fk.items():
+        controls = tuple(None if name is None else name_of(name) for name in keyed)
+        same = len(controls) == len(roles[role].bones) if role in roles else False
+        if same and all((new is None) == (old is None) for new, old in zip(controls, keyed, strict=True)):
+            fk[role] = controls
+    settings = tuple(
+        replace(setting, bone=bone)
+        for setting in character_map.settings
+        if (bone := name_of(setting.bone)) is not None
+    )
+    root = name_of(character_map.root) if character_map.root is not None else None
+    ik = _renamed_ik(character_map.ik, name_of)
+    return replace(character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=root)
+
+
+def _renamed_ik(ik: Mapping[str, IkControls], name_of: Callable[[str], str | None]) -> dict[str, IkControls]:
+    """Controls with other names; limbs whose goal has none are left out."""
+    found = {}
+    for limb, controls in ik.items():
+        goal = name_of(controls.goal)
+        if goal is None:
+            continue
+        pole = name_of(controls.pole) if controls.pole is not None else None
+        toe = name_of(controls.toe) if controls.toe is not None else None
+        switch = controls.switch
+        holder = name_of(switch.bone) if switch is not None else None
+        kept = replace(switch, bone=holder) if switch is not None and holder is not None else None
+        found[limb] = IkControls(goal, pole, toe, kept)
+    return found

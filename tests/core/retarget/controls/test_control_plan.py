@@ -1,0 +1,184 @@
+"""Which controls are keyed, in which order their keys are found, and how far points may stray."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _characters import plain_character, plain_map
+from _controls import with_ik
+from keymark.core.retarget.character_motion import CharacterMotion, FootRest, Similarity
+from keymark.core.retarget.controls.control_channels import Control
+from keymark.core.retarget.controls.control_plan import (
+    ControlKind,
+    PlannedControl,
+    limb_keys,
+    planned_controls,
+)
+from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
+from keymark.core.retarget.controls.control_stages import FollowingControls, control_stages
+from keymark.core.retarget.controls.control_targets import PoleSetting, pole_offset, pole_poses
+from keymark.core.retarget.controls.held_points import HeldPoint, PointKind, held_points
+from keymark.core.retarget.controls.point_tolerances import (
+    SHOWN_REST_M,
+    SWITCH_M,
+    ToleranceRules,
+    pole_tolerance_m,
+    reach_tolerance_m,
+)
+from keymark.core.retarget.controls.rigid_following import followed_controls
+from keymark.core.retarget.maps.character_map import CharacterMap
+from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
+from scipy.spatial.transform import Rotation
+
+FRAMES = 30
+
+
+@pytest.fixture
+def known() -> CharacterMap:
+    """A plain character's map with goals and poles."""
+    return with_ik(plain_map(plain_character()))
+
+
+def names(known: CharacterMap, **options: object) -> set[str]:
+    """Names of the controls that are keyed."""
+    return {plan.name for plan in planned_controls(known, RetargetOptions(**options))}  # type: ignore[arg-type]
+
+
+def test_limbs_are_keyed_as_chosen(known: CharacterMap) -> None:
+    """In FK, in IK or in both; shoulders and toes in any case, the root where it carries the way."""
+    both = names(known)
+    assert {"hips", "chest", "thigh.L", "foot.R", "toe.L", "ik_foot.L", "pole_arm.R"} <= both
+    fk = names(known, arms=LimbKeys.FK, legs=LimbKeys.FK)
+    assert not any(name.startswith(("ik_", "pole_")) for name in fk)
+    ik = names(known, arms=LimbKeys.IK, legs=LimbKeys.IK)
+    assert not {"upper_arm.L", "forearm.L", "hand.L", "thigh.L", "shin.L", "foot.L"} & ik
+    assert {"shoulder.L", "toe.L", "ik_hand.L"} <= ik
+    rooted = replace(known, root="root")
+    assert "root" not in names(rooted)
+    assert "root" in names(rooted, root_motion=RootMotion.ROOT_BONE)
+
+
+def test_roles_that_are_left_alone_are_not_keyed(known: CharacterMap) -> None:
+    """And a limb that lacks one of its joints is keyed in FK."""
+    left = replace(known, left_alone=("hand.L", "neck"))
+    assert not {"hand.L", "neck", "ik_hand.L", "pole_arm.L"} & names(left)
+    assert {"forearm.L", "ik_hand.R"} <= names(left)
+    assert limb_keys(left, RetargetOptions(), "arm.L") is LimbKeys.FK
+
+
+def test_a_limb_without_fk_controls_is_keyed_in_ik(known: CharacterMap) -> None:
+    """Nothing else would show."""
+    bare = replace(known, fk={"thigh.L": (None,), "shin.L": (None,), "foot.L": ("ik_foot.L",)})
+    assert limb_keys(bare, RetargetOptions(legs=LimbKeys.FK), "leg.L") is LimbKeys.IK
+    assert limb_keys(bare, RetargetOptions(legs=LimbKeys.FK), "leg.R") is LimbKeys.FK
+
+
+def control(name: str, kind: ControlKind, turner: int, carrier: int) -> Control:
+    """A control of a limb."""
+    space = ControlSpace(turner, np.eye(3), carrier, np.zeros(3), np.eye(3), 0.0, 0.0)
+    return Control(PlannedControl(name, kind, name, "leg.L"), "XYZ", space, turns=True)
+
+
+def test_legs_follow_the_body_and_goals_follow_the_legs() -> None:
+    """What hangs together is found together; what two things carry is found with the body."""
+    fk, goal = ControlKind.FK, ControlKind.GOAL
+    controls = [
+        control("hips", ControlKind.HIPS, NOTHING, NOTHING),
+        control("thigh", fk, 0, 0),
+        control("shin", fk, 1, 1),
+        control("goal", goal, NOTHING, NOTHING),
+        control("toe", ControlKind.TOE, 3, 3),
+        control("pole", ControlKind.POLE, 0, 0),
+        control("odd", goal, NOTHING, 0),
+        control("chest", fk, 0, 0),
+    ]
+    stages = control_stages(controls, {"leg.L": (0, [1, 2])})
+    assert stages.body == (0, 6, 7)
+    assert stages.following == (
+        FollowingControls((1, 2), 0, "leg.L"),
+        FollowingControls((3, 4), NOTHING),
+        FollowingControls((5,), 0),
+    )
+    on_leg = [*controls[:3], control("knife", fk, 2, 2)]
+    assert control_stages(on_leg, {"leg.L": (0, [1, 2])}).body == (0, 1, 2, 3)
+
+
+def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:
+    """Nothing but rests."""
+    return CharacterMotion({}, {}, None, Similarity(np.eye(3), np.zeros(3), 1.0), rests, {}, 1.0)
+
+
+def test_resting_and_low_feet_are_held_more_tightly() -> None:
+    """Ankles within what a switch may show, resting ones all but still."""
+    motion = still_motion((FootRest("leg.L", 5, 9, 0.0),))
+    rules = ToleranceRules(motion, np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0]), 0.005)
+    path = np.zeros((FRAMES, 3))
+    path[20:, 2] = 0.2
+    ankle = HeldPoint("foot.L", np.zeros(3), PointKind.END, "leg.L")
+    allowed = rules.of(ankle, path, True, SWITCH_M)
+    assert set(allowed[5:10]) == {SHOWN_REST_M}
+    assert set(np.delete(allowed, range(5, 10))) == {SWITCH_M}
+    hidden = rules.of(ankle, path, False, 0.005)
+    assert set(hidden[5:10]) == {SWITCH_M} and hidden[0] == 0.005
+    sole = replace(ankle, kind=PointKind.SOLE)
+    low = rules.of(sole, path, False, 0.005)
+    assert (low[:20] < 0.002).all() and (low[20:] == 0.005).all()
+    assert (rules.of(replace(ankle, kind=PointKind.BODY), path, True, 0.001) == 0.005).all()
+
+
+def test_straight_limbs_are_held_by_what_their_knees_do() -> None:
+    """An error along a limb moves a straight knee far, and one of the pole hardly."""
+    root, end = np.zeros((2, 3)), np.array([[0.0, 0.0, -0.8], [0.0, 0.0, -0.6]])
+    middle = np.array([[0.0, -0.01, -0.4], [0.0, -0.26, -0.3]])
+    reach = reach_tolerance_m((root, middle, end), 0.005)
+    assert reach[0] < 0.0003 < reach[1] <= 0.005
+    pole = pole_tolerance_m((root, middle, end), 0.5, 0.005)
+    assert pole[0] == pytest.approx(0.04 * 0.51)
+    assert pole[1] == pytest.approx(0.005 * 0.76 / 0.26)
+
+
+@pytest.mark.parametrize("offset_rad", [0.0, 0.7, np.pi])
+def test_poles_lie_where_their_joints_point(offset_rad: float) -> None:
+    """At the same angle about the limb's line as was seen, as far from it whatever the side."""
+    rng = np.random.default_rng(5)
+    root, middle, end = rng.normal(size=(3, 4, 3))
+    axis = (end - root) / np.linalg.norm(end - root, axis=-1, keepdims=True)
+    out = middle - root - ((middle - root) * axis).sum(axis=-1, keepdims=True) * axis
+    bend = out / np.linalg.norm(out, axis=-1, keepdims=True)
+    places = pole_poses((root, middle, end), bend, PoleSetting(0.5, offset_rad))[:, :3, 3]
+    for frame in range(4):
+        found = pole_offset(root[frame], middle[frame], end[frame], places[frame])
+        assert np.cos(found - offset_rad) == pytest.approx(1.0)
+        apart = places[frame] - root[frame]
+        away = np.linalg.norm(apart - (apart @ axis[frame]) * axis[frame])
+        assert away == pytest.approx(np.linalg.norm(out[frame]) + 0.5)
+
+
+def test_every_bone_has_points_that_show_its_place_and_turn() -> None:
+    """Three that are not in line, in its own axes, whatever its size."""
+    character = plain_character(scale=0.01, roll_rad=0.4)
+    known = plain_map(character)
+    soles = {"foot.L": np.array([[10.0, 5.0, 0.0]])}
+    points = held_points(character, known, soles)
+    for role in known.roles:
+        for bone in known.bones(role):
+            places = np.array([point.place for point in points if point.bone == bone])
+            spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
+            assert spread[1] > 1.0  # a centimeter
+    sole = next(point for point in points if point.kind is PointKind.SOLE)
+    rest = character.bone("foot.L").rest
+    assert rest[:3, :3] @ sole.place + rest[:3, 3] == pytest.approx([10.0, 5.0, 0.0])
+
+
+def test_the_control_that_a_bone_follows() -> None:
+    """One of several that are posed at random; none where none carries it."""
+    rng = np.random.default_rng(1)
+    poses = np.tile(np.eye(4), (4, 3, 1, 1))
+    poses[..., :3, :3] = Rotation.random(12, random_state=3).as_matrix().reshape(4, 3, 3, 3)
+    poses[..., :3, 3] = rng.normal(size=(4, 3, 3))
+    offset = np.eye(4)
+    offset[:3, 3] = [0.1, 0.2, 0.3]
+    bones = np.stack([poses[:, 1] @ offset, poses[:, 2] @ offset, poses[:, 0]], axis=1)
+    bones[2, 1, :3, 3] += 0.01
+    assert followed_controls(["a", "b", "c"], poses, bones, 1.0) == ["b", None, "a"]
+    assert followed_controls([], poses[:, :0], bones, 1.0) == [None, None, None]
