@@ -17,15 +17,6 @@ def poses(rng: np.random.Generator, count: int) -> np.ndarray:
     return made
 
 
-def test_a_bone_follows_what_carries_it() -> None:
-    """In place and turn, wherever it lies on it; one that moves on its own follows nothing."""
-    rng = np.random.default_rng(1)
-    controls, offset = poses(rng, 2), poses(rng, 1)[0, 0]
-    bones = np.stack([controls[:, 1] @ offset, poses(rng, 1)[:, 0]], axis=1)
-    assert followed_controls(NAMES, controls, bones, SIZE) == ["second", None]
-    assert followed_controls([], controls[:, :0], bones, SIZE) == [None, None]
-
-
 def test_a_bone_that_cannot_get_there_follows_by_its_turn() -> None:
     """Toes of a leg that does not reach its goal still turn with their control."""
     rng = np.random.default_rng(2)
