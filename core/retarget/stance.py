@@ -9,6 +9,8 @@ from .roles import ARM, LEG
 
 UP_SNAP_DEG = 15.0
 """A body leans by a few degrees at rest; an axis this near to its length is up."""
+BENT_DEG = 30.0
+"""Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not upright."""
 SIDE_SNAP_DEG = 3.0
 """An axis this near to the line from side to side is that line."""
 PAIRS = (*LEG[:3], *ARM[1:])
@@ -30,7 +32,7 @@ def find_stance(character: Character, character_map: CharacterMap) -> Array:
     up = _upward(character, character_map)
     if left is None or up is None:
         return np.eye(3)
-    up = _snapped(up, UP_SNAP_DEG)
+    up = _upright(up, character, character_map)
     left = left - up * float(left @ up)
     if not np.linalg.norm(left) > 1e-9:
         return np.eye(3)
@@ -55,15 +57,45 @@ def _sideways(character: Character, character_map: CharacterMap) -> Array | None
 
 def _upward(character: Character, character_map: CharacterMap) -> Array | None:
     """Direction from the middle of the feet to that of the shoulder joints, or as far up as is known."""
-    middles = []
-    for part in ("foot", "shin", "thigh", "upper_arm"):
-        joints = [_joint(character, character_map, f"{part}.{side}") for side in "LR"]
-        if joints[0] is not None and joints[1] is not None:
-            middles.append(0.5 * (joints[0] + joints[1]))
+    parts = ("foot", "shin", "thigh", "upper_arm")
+    middles = [place for part in parts if (place := _middle(character, character_map, part)) is not None]
     head = _joint(character, character_map, "head")
     if len(middles) < 2 and head is not None:
         middles.append(head)
     return _mean_direction([middles[-1] - middles[0]]) if len(middles) > 1 else None
+
+
+def _upright(up: Array, character: Character, character_map: CharacterMap) -> Array:
+    """The axis that is up where the body's length, or a part of a bent body, is near one; else the length."""
+    snapped = _snapped(up, UP_SNAP_DEG)
+    trunk, *legs = (
+        _between(character, character_map, *parts)
+        for parts in (("thigh", "upper_arm"), ("foot", "thigh"), ("foot", "shin"), ("shin", "thigh"))
+    )
+    if snapped is not up or trunk is None or legs[0] is None:
+        return snapped
+    if float(trunk @ legs[0]) > np.cos(np.radians(BENT_DEG)):
+        return up
+    axis = _snapped(up, 90.0)
+    near = [
+        part
+        for part in (trunk, *legs)
+        if part is not None and float(part @ axis) >= np.cos(np.radians(UP_SNAP_DEG))
+    ]
+    return axis if near else up
+
+
+def _between(character: Character, character_map: CharacterMap, low: str, high: str) -> Array | None:
+    """Direction from the middle of a part's two joints to that of another's."""
+    middles = [_middle(character, character_map, part) for part in (low, high)]
+    if middles[0] is None or middles[1] is None:
+        return None
+    return _mean_direction([middles[1] - middles[0]])
+
+
+def _middle(character: Character, character_map: CharacterMap, part: str) -> Array | None:
+    left, right = (_joint(character, character_map, f"{part}.{side}") for side in "LR")
+    return None if left is None or right is None else np.asarray(0.5 * (left + right))
 
 
 def _joint(character: Character, character_map: CharacterMap, role: str) -> Array | None:

@@ -16,7 +16,10 @@ RIGID = 1e-3
 def followed_controls(
     controls: Sequence[str], control_poses: Array, bone_poses: Array, size: float
 ) -> list[str | None]:
-    """For each bone the control that it follows in place and turn; None where there is none.
+    """For each bone the control that it follows in place and turn, else in turn alone; None where none is.
+
+    A bone that is bound to its parent's tail stays there whatever its constraints say, and a limb in inverse
+    kinematics may not get to its goal; both are turned all the same.
 
     Args:
         controls: Names of the C controls, each posed on its own.
@@ -32,10 +35,10 @@ def followed_controls(
     places = (axes @ apart[..., None])[..., 0]
     turned = _spread(turns, (-2, -1)) / np.sqrt(2.0)  # near enough the angle, where it is small
     moved = _spread(places, (-1,))
-    off = np.maximum(turned / RIGID_RAD, moved / (RIGID * size))  # (C, B)
-    best = off.argmin(axis=0)
+    whole = np.maximum(turned / RIGID_RAD, moved / (RIGID * size))  # (C, B)
     return [
-        controls[control] if off[control, bone] < 1.0 else None for bone, control in enumerate(map(int, best))
+        next((controls[int(off.argmin())] for off in (each, by_turn) if off.min() < 1.0), None)
+        for each, by_turn in zip(whole.T, turned.T / RIGID_RAD, strict=True)
     ]
 
 

@@ -156,34 +156,39 @@ def _deforming(character: Character) -> IndexArray:
 def _nearest_parents(
     character: Character, number: IndexArray, heads: Array, tails: Array, size: float
 ) -> IndexArray:
-    """(N,) nearest ancestor in the table, or the bone of the table that lies where an ancestor lies."""
+    """(N,) nearest ancestor in the table, or the bone of the table that lies where an ancestor lies.
+
+    A bone that hangs on nothing, as constraints alone may carry it, has the ancestors of a bone that lies
+    where it does and is not in the table.
+    """
     place = {int(index): row for row, index in enumerate(number)}
     found = np.full(len(number), -1, dtype=np.intp)
     if len(number) == len(character.bones):
         return np.array([place.get(character.bones[index].parent, -1) for index in number], dtype=np.intp)
-    inside = {int(index): row for row, index in enumerate(number)}
+    outside = np.setdiff1d(np.arange(len(character.bones)), number)
     for row, index in enumerate(number):
-        above = character.bones[index].parent
-        while above >= 0 and found[row] < 0:
-            if above in place:
-                found[row] = place[above]
-            else:
-                twin = _twin(above, int(index), number, heads, tails, size)
-                if twin is not None and not _is_above(character, int(index), twin):
-                    found[row] = inside[twin]
-            above = character.bones[above].parent
+        starts = [int(index)]
+        if character.bones[index].parent < 0:
+            starts += [int(twin) for twin in _twins(int(index), int(index), outside, heads, tails, size)]
+        ways = []
+        for start in starts:
+            above, steps = character.bones[start].parent, 0
+            while above >= 0:
+                twins = (above,) if above in place else _twins(above, int(index), number, heads, tails, size)
+                if len(twins) and (above in place or not _is_above(character, int(index), int(twins[0]))):
+                    ways.append((steps, place[int(twins[0])]))
+                    break
+                above, steps = character.bones[above].parent, steps + 1
+        found[row] = min(ways)[1] if ways else -1
     return _without_circles(found)
 
 
-def _twin(bone: int, child: int, number: IndexArray, heads: Array, tails: Array, size: float) -> int | None:
-    """The bone of the table that lies where `bone` does, head and tail."""
+def _twins(bone: int, child: int, number: IndexArray, heads: Array, tails: Array, size: float) -> IndexArray:
+    """The bones of a table that lie where `bone` does, head and tail, the nearest first."""
     apart = np.linalg.norm(heads[number] - heads[bone], axis=1)
     ends = np.linalg.norm(tails[number] - tails[bone], axis=1)
-    apart[number == child] = np.inf
-    best = int(np.argmin(apart + 0.01 * ends))
-    return (
-        int(number[best]) if apart[best] < SAME_PLACE * size and ends[best] < 10 * SAME_PLACE * size else None
-    )
+    there = (apart < SAME_PLACE * size) & (ends < 10 * SAME_PLACE * size) & (number != child)
+    return number[there][np.argsort((apart + 0.01 * ends)[there], kind="stable")]
 
 
 def _is_above(character: Character, bone: int, other: int) -> bool:

@@ -15,15 +15,24 @@ SAME_JOINT = 0.02
 
 
 def find_root(character: Character, character_map: CharacterMap, up: Array) -> str | None:
-    """The lowest bone above all role bones that lies near the ground, or is named after what it does."""
+    """The lowest bone above all that is keyed that lies near the ground, or is named after what it does.
+
+    Args:
+        character: The character.
+        character_map: Its map; the bones with roles are keyed where it gives no controls.
+        up: (3,) in the armature's axes.
+    """
     hips = character_map.bone("hips")
     if hips is None:
         return None
     bones = [character.index[name] for role in character_map.roles.values() for name in role.bones]
     ground = min(float(character.bones[bone].head @ up) for bone in bones)
     height = max(float(character.bone(hips).head @ up) - ground, 1e-9)
-    above = [set(_ancestors(character, bone)) for bone in bones]
-    for bone in _ancestors(character, character.index[hips]):
+    keyed = [name for role in character_map.roles for name in character_map.keyed_bones(role)]
+    keyed += [name for ik in character_map.ik.values() for name in (ik.goal, ik.pole)]
+    above = [set(_ancestors(character, character.index[name])) for name in keyed if name is not None]
+    moving = next((name for name in character_map.keyed_bones("hips") if name is not None), hips)
+    for bone in _ancestors(character, character.index[moving]):
         carries = all(bone in each for each in above)
         low = float(character.bones[bone].head @ up) - ground < ON_GROUND * height
         named = not ROOT_WORDS.isdisjoint(read_name(character.bones[bone].name).words)

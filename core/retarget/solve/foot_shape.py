@@ -72,7 +72,7 @@ def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
         floor_m: Height of the ground it stands on at rest [m].
     """
     ankle = body.joint(f"foot.{side}")
-    toe = body.joint(f"toe.{side}") if f"toe.{side}" in body.first else None
+    toe = body.joint(f"toe.{side}") if body.is_moved(f"toe.{side}") else None
     given = {
         part: _given_sole(body, f"{part}.{side}")
         for part in ("foot", "toe")

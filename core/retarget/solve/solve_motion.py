@@ -15,6 +15,7 @@ from .alignment import rest_alignment
 from .foot_shape import foot_shape, rest_floor_m, sole_points
 from .ground import find_ground
 from .rest_body import RestBody
+from .rest_notes import rest_notes
 from .root_motion import root_poses, smooth_headings_rad, smooth_way
 from .solution import Solution
 from .stage import find_stage
@@ -81,7 +82,7 @@ def solve_motion(
         way_m=way,
         ground_m={f"leg.{side}": foot.ground_m for side, foot in feet.items()},
         hands=hands,
-        notes=notes,
+        notes=(*rest_notes(body), *notes),
     )
 
 

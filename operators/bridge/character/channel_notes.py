@@ -10,12 +10,10 @@ from ....core.finish.hermite import Spline
 from ....core.retarget.controls.control_channels import Control
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
 from ..rotation_modes import bone_path, rotation_path
-from .dependencies import active_constraints, drivers
+from .dependencies import CARRYING, active_constraints, drivers
 
 MOST_NAMES = 3
 """Bones that a sentence names; more are counted."""
-CARRYING = ("CHILD_OF", "ARMATURE")
-"""Constraints that carry a control as a parent does."""
 NOTICEABLE_M = 0.005
 
 
@@ -41,9 +39,12 @@ def _width(held: Array | Spline) -> int:
 
 
 def channel_notes(
-    armature_object: bpy.types.Object, keyed: Sequence[KeyedControl], motion: ControlMotion
+    armature_object: bpy.types.Object,
+    keyed: Sequence[KeyedControl],
+    motion: ControlMotion,
+    scaled: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Sentences on what keeps the keyed controls from their poses."""
+    """Sentences on what keeps the keyed controls from their poses, and on bones that were scaled."""
     driven = driven_channels(armature_object)
     bones = armature_object.pose.bones
     notes = [
@@ -61,6 +62,11 @@ def channel_notes(
             (one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
             "is locked and keyed all the same: unlock it to change it by hand",
             "are locked and keyed all the same: unlock them to change them by hand",
+        ),
+        _sentence(
+            scaled,
+            "is scaled in its pose: the motion keys its scale at 1",
+            "are scaled in their pose: the motion keys their scale at 1",
         ),
         _sentence(
             _held_back(armature_object, motion),

@@ -7,6 +7,8 @@ import bpy
 
 from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
+from ....core.retarget.recognition.root_bone import find_root
+from ....core.retarget.stance import find_stance
 from .find_controls import find_controls
 from .mesh_soles import mesh_soles
 from .probe_controls import character_size
@@ -33,6 +35,9 @@ def complete_map(
     checked, missing = _with_properties(armature_object, character_map)
     found = find_controls(armature_object, checked, character_size(armature_object, checked))
     completed = found.character_map
+    if completed.root is None:
+        up = find_stance(character, completed)[2]
+        completed = replace(completed, root=find_root(character, completed, up))
     if not completed.soles:
         completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
     return CompletedMap(completed, (*missing, *found.notes))

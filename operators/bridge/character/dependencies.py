@@ -11,6 +11,8 @@ import bpy
 BONE_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]')
 PROPERTY_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]\["((?:[^"\\]|\\.)*)"\]$')
 CONSTRAINT_PATH = re.compile(r'^pose\.bones\["(?:[^"\\]|\\.)*"\]\.constraints\["((?:[^"\\]|\\.)*)"\]')
+CARRYING = ("CHILD_OF", "ARMATURE")
+"""Constraints that carry a bone as a parent does: its own channels still count."""
 VECTORS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 """Properties of several components, each with a driver of its own."""
 
@@ -53,11 +55,11 @@ def upstream(graph: Graph, names: Iterable[str]) -> set[str]:
 
 def active_constraints(bone: bpy.types.PoseBone) -> list[bpy.types.Constraint]:
     """The constraints of a bone that move it, or may do so once their influence is driven."""
-    working = [constraint for constraint in bone.constraints if not constraint.mute and constraint.is_valid]
-    if all(constraint.influence > 0.0 for constraint in working):
-        return working
+    valid = [constraint for constraint in bone.constraints if constraint.is_valid]
+    if all(constraint.influence > 0.0 and not constraint.mute for constraint in valid):
+        return valid
     driven = _driven_constraints(bone)
-    return [one for one in working if one.influence > 0.0 or one.name in driven]
+    return [one for one in valid if (one.influence > 0.0 and not one.mute) or one.name in driven]
 
 
 def constraint_bones(armature_object: bpy.types.Object, constraint: bpy.types.Constraint) -> Iterator[str]:

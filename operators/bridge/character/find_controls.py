@@ -12,6 +12,7 @@ from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switc
 from ....core.retarget.roles import LIMBS
 from .carrying_control import carrying_control
 from .dependencies import (
+    CARRYING,
     Graph,
     active_constraints,
     constrained_bones,
@@ -21,7 +22,7 @@ from .dependencies import (
     drivers,
     upstream,
 )
-from .ik_targets import IkTargets, ik_targets
+from .ik_targets import IkTargets, ik_targets, moving_bones
 from .posing import posing, set_properties
 from .random_poses import RandomPoses, pose_at_random
 from .rig_switches import rig_switches
@@ -33,6 +34,8 @@ FEWEST_CONTROLS = 3
 """Fewer bones with shapes are not a rig's controls."""
 MOST_CONTROLS = 400
 """Bones that are posed at most."""
+SHARES = (".influence", ".weight", ".mute")
+"""Properties of constraints, and of their targets, that a switch drives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,7 @@ def find_controls(
         and (target := ik_targets(armature_object, graph, character_map, limb)) is not None
     }
     looked_at = [name for each in targets.values() for name in (each.goal, each.pole) if name is not None]
-    candidates = _candidates(armature_object, graph, held | own, [*bones, *looked_at])
+    candidates = _candidates(armature_object, graph, own, [*bones, *looked_at])
     tried = _try_switches(armature_object, candidates, [*bones, *looked_at], switches, size)
     for name in looked_at:  # what several controls move together follows none of them while all are posed
         if all(followed.get(name) is None for _, _, followed in tried.followed):
@@ -78,11 +81,11 @@ def find_controls(
     found = _completed(character_map, moved, tried, targets)
     if "hips" in character_map.fk or "hips" in character_map.left_alone:
         return found
-    return _with_hips(armature_object, graph, found, held, size)
+    return _with_hips(armature_object, graph, found, size)
 
 
 def _with_hips(
-    armature_object: bpy.types.Object, graph: Graph, found: FoundControls, held: set[str], size: float
+    armature_object: bpy.types.Object, graph: Graph, found: FoundControls, size: float
 ) -> FoundControls:
     """The map with a control of the hips that carries the controls of the legs, where its own does not."""
     character_map = found.character_map
@@ -92,7 +95,7 @@ def _with_hips(
     for role in on_hips:
         named = [name for name in character_map.keyed_bones(role) if name is not None]
         carried += list(dict.fromkeys([*named[:1], *named[-1:]]))
-    candidates = _candidates(armature_object, graph, held, carried)
+    candidates = _candidates(armature_object, graph, set(), carried)
     control = carrying_control(armature_object, graph, candidates, carried, size)
     if control is None or control in (hips, *character_map.keyed_bones("hips")):
         return found
@@ -100,13 +103,19 @@ def _with_hips(
     return replace(found, character_map=replace(character_map, fk=fk))
 
 
-def _held_bones(armature_object: bpy.types.Object) -> set[str]:
-    """Bones that others pose: by constraints with a bone to follow, chains of IK, or drivers."""
+def _held_bones(armature_object: bpy.types.Object, carried: bool = True) -> set[str]:
+    """Bones that others pose: by constraints with a bone to follow, chains of IK, or drivers.
+
+    Args:
+        armature_object: The character.
+        carried: Whether those count that are only carried, as by a parent, and move no mesh.
+    """
     held = {
         moved.name
         for bone in armature_object.pose.bones
         for constraint in active_constraints(bone)
         if any(True for _ in constraint_bones(armature_object, constraint))
+        and (carried or constraint.type not in CARRYING or bone.bone.use_deform)
         for moved in constrained_bones(bone, constraint)
     }
     driven = {
@@ -132,13 +141,13 @@ def _moved_roles(character_map: CharacterMap, held: set[str]) -> list[str]:
 
 
 def _candidates(
-    armature_object: bpy.types.Object, graph: Graph, held: set[str], bones: Sequence[str]
+    armature_object: bpy.types.Object, graph: Graph, playing: set[str], bones: Sequence[str]
 ) -> list[str]:
-    """Bones that a person would pose and that the moved bones depend on.
+    """Bones that a person would pose and that some bones depend on, but for those that play a role.
 
     Where a rig has controls with shapes of their own, those; else the bones that are shown; else all.
     """
-    own = armature_object.pose.bones
+    own, held = armature_object.pose.bones, _held_bones(armature_object, carried=False) | playing
     free = sorted(name for name in upstream(graph, bones) if name in own and name not in held)
     shaped = [name for name in free if own[name].custom_shape is not None]
     shown = [name for name in free if _is_shown(own[name].bone)]
@@ -160,12 +169,13 @@ def _limb_switches(
     limb: str,
     moved: Sequence[str],
 ) -> list[Switch]:
-    """Custom properties that may choose between IK and FK of a limb: they drive constraints of its bones."""
-    bones = {bone for role in LIMBS[limb] if role in moved for bone in character_map.bones(role)}
+    """Custom properties that may choose between IK and FK of a limb: they drive constraints that move it."""
+    bones = [bone for role in LIMBS[limb] if role in moved for bone in character_map.bones(role)]
+    moving = moving_bones(graph, character_map, limb, bones)
     paths = [
         driver.data_path
         for driver in drivers(armature_object)
-        if driven_bone(driver.data_path) in bones and driver.data_path.endswith(".influence")
+        if driven_bone(driver.data_path) in moving and driver.data_path.endswith(SHARES)
     ]
     return rig_switches(armature_object, graph, paths)
 
@@ -184,11 +194,17 @@ class _Tried:
 
         FK is where most of the bones follow a control; where all switches lead to the same, there is none.
         """
-        best = max(self.followed, key=lambda trial: _count(trial[2], bones))
-        number, upper, followed = best
-        other = next((t for t in self.followed if t[0] == number and t[1] != upper), None)
         switches = self.switches[limb]
-        if other is None or number >= len(switches) or _count(other[2], bones) == _count(followed, bones):
+        counts = {(number, upper): _count(followed, bones) for number, upper, followed in self.followed}
+
+        def sureness(trial: tuple[int, bool, dict[str, str | None]]) -> tuple[int, int]:
+            number, upper, _ = trial
+            count = counts[number, upper]
+            return count, count - counts.get((number, not upper), count) if number < len(switches) else 0
+
+        best = max(self.followed, key=sureness)
+        number, upper, followed = best
+        if not sureness(best)[1]:
             return followed, None
         switch = switches[number]  # holds its lower end as `ik`
         return followed, switch if upper else replace(switch, ik=switch.fk, fk=switch.ik)

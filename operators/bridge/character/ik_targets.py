@@ -1,5 +1,6 @@
 """Constraints of inverse kinematics that move a limb: the bones that they reach for and point to."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import bpy
@@ -26,14 +27,18 @@ def ik_targets(
 ) -> IkTargets | None:
     """The bones that a limb's inverse kinematics reaches for and points to; None where it has none."""
     upper, middle, _ = limb_bones(character_map, limb)
-    own = upstream(graph, (upper, middle)) - upstream(graph, _above(character_map, limb))
-    for name in sorted(own):
+    for name in sorted(moving_bones(graph, character_map, limb, (upper, middle))):
         bone = armature_object.pose.bones.get(name)
         for constraint in [] if bone is None else active_constraints(bone):
             if constraint.type == "IK" and constraint.target == armature_object and constraint.subtarget:
                 pole = constraint.pole_subtarget if constraint.pole_target == armature_object else ""
                 return IkTargets(constraint.subtarget, pole or None)
     return None
+
+
+def moving_bones(graph: Graph, character_map: CharacterMap, limb: str, bones: Iterable[str]) -> set[str]:
+    """All on which bones of a limb depend, but nothing on which its trunk depends too."""
+    return upstream(graph, bones) - upstream(graph, _above(character_map, limb))
 
 
 def _above(character_map: CharacterMap, limb: str) -> list[str]:

@@ -72,6 +72,11 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
 def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]:
     """All objects of a .blend by their names there, and its scripts."""
     check_blend(file.path, "a character")
+    if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
+        raise InputError(
+            f"{file.path}: is open in this Blender, which appends nothing from it; name a copy of it, or run "
+            "the command without opening it"
+        )
     try:
         with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
             names = list(inside.objects)

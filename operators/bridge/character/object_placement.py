@@ -42,6 +42,8 @@ def _around(armature_object: bpy.types.Object) -> Array:
 
 
 def _delta_rotation(armature_object: bpy.types.Object) -> Array:
+    if armature_object.rotation_mode == "AXIS_ANGLE":  # has a delta of its own, which nobody can set
+        return np.eye(3)
     if armature_object.rotation_mode == "QUATERNION":
         delta = armature_object.delta_rotation_quaternion
     else:

@@ -14,6 +14,7 @@ from ....core.retarget.controls.control_targets import PoleSetting
 from ....core.retarget.controls.rigid_offset import rigid_offset
 from ....core.retarget.maps.character_map import CharacterMap
 from .dependencies import active_constraints, driven_bone, drivers
+from .pose_scales import ONE, scaled_bones
 from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics
 from .random_poses import RandomPoses, pose_at_random
@@ -64,6 +65,8 @@ def probe_controls(
     displaced = _displaced(armature_object, planned, size)
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
+        for name in scaled_bones(armature_object, [plan.name for plan in planned]):
+            armature_object.pose.bones[name].scale = ONE
         names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
         poses = RandomPoses(STILL, MOVED, TURN_RAD, MOVE_SHARE * size)
         channels, shown, followed = pose_at_random(armature_object, names, bones, poses)

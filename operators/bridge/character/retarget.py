@@ -29,6 +29,7 @@ from .channel_notes import channel_notes
 from .complete_map import complete_map
 from .measure import measure_keys
 from .object_placement import placement_keys, require_placeable
+from .pose_scales import scaled_bones
 from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
 from .shown_properties import fk_properties, shown_properties
@@ -130,6 +131,7 @@ def retarget(
         keyed,
         shown_properties(character_map, options),
         placement_keys(armature_object, motion.to_world) if placed else (),
+        scaled_bones(armature_object, (one.control.name for one in keyed)),
     )
     in_fk = fk_properties(character_map, options)
     measuring = measure_keys(armature_object, keys, source, motion, character, character_map, in_fk)
@@ -146,7 +148,7 @@ def retarget(
             *completed.notes,
             *motion.notes,
             *probed.notes,
-            *channel_notes(armature_object, keyed, controls),
+            *channel_notes(armature_object, keyed, controls, keys.scaled),
         ),
     )
 

@@ -16,6 +16,7 @@ from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path
 from .channel_notes import driven_channels, keyed_paths
 from .object_placement import PlacementKeys
+from .pose_scales import ONE
 from .posing import Property, Value
 from .property_paths import property_path
 
@@ -36,6 +37,8 @@ class RetargetedKeys:
     """Custom properties that are keyed at the first frame."""
     placement: PlacementKeys
     """The object's channels that are keyed at the first frame."""
+    scaled: tuple[str, ...] = ()
+    """Bones whose scale is keyed at one, but where curves or drivers give them a scale."""
 
     @property
     def key_count(self) -> int:
@@ -97,6 +100,11 @@ def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: 
     for (bone, name), value in keys.properties.items():
         path = property_path(bone, name)
         made.append(_write_first(channelbag, path, 0, bone, frames, float(value)))
+    for name in keys.scaled:
+        path = bone_path(name, "scale")
+        for index, value in enumerate(ONE):
+            if (path, index) not in driven and channelbag.fcurves.find(path, index=index) is None:
+                made.append(_write_first(channelbag, path, index, name, frames, value))
     for path, values in keys.placement:
         for index, value in enumerate(values):
             made.append(_write_first(channelbag, path, index, OBJECT_GROUP, frames, float(value)))

@@ -178,7 +178,8 @@ def _draw(
     from ...bridge.character.picture import character_picture
 
     motion = retargeted.motion
-    floor_m = float(motion.to_world.location[2] + min(float(np.median(g)) for g in motion.ground_m.values()))
+    ground_m = [float(np.median(heights)) for heights in motion.ground_m.values()]  # none of feet not planted
+    floor_m = float(motion.to_world.location[2]) + min(ground_m, default=0.0)
     image = character_picture(scene, armature, retargeted.character_map, retargeted.keys.frames, floor_m)
     if image is not None:
         file.parent.mkdir(exist_ok=True)

@@ -238,3 +238,19 @@ def test_nothing_stays_in_the_open_file(retarget: Retarget) -> None:
     before, scene = set(bpy.data.user_map()), bpy.context.scene
     assert retarget() == 0
     assert set(bpy.data.user_map()) == before and bpy.context.scene == scene
+
+
+def test_the_character_of_the_open_file_is_refused(
+    retarget: Retarget, cast: Path, output: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Blender appends nothing from the file that it has open."""
+    bpy.ops.wm.open_mainfile(filepath=str(cast / "anna.blend"))
+    assert retarget() == 2
+    assert "is open in this Blender" in one_line(capfd.readouterr().err) and not output.parent.exists()
+
+
+def test_feet_need_not_be_planted(retarget: Retarget, output: Path) -> None:
+    """All the same files come of it, the picture too; no foot is held to a ground."""
+    assert retarget("--no-plant-feet", "--no-reach-hands") == 0
+    assert sorted(tree(output)) == MADE
+    assert "skate_mm" not in read_retarget_record(output).quality

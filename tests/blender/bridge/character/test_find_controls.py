@@ -10,7 +10,7 @@ from _characters import plain_character, plain_map
 from _control_rigs import control_rig, simple_ik_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
-from keymark.core.retarget.maps.character_map import IkControls, Setting, Switch
+from keymark.core.retarget.maps.character_map import IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.complete_map import complete_map
 from keymark.operators.bridge.character.find_controls import find_controls
@@ -117,3 +117,37 @@ def test_properties_that_are_not_there_are_left_out_and_named() -> None:
     assert completed.character_map.settings == ()
     assert completed.character_map.ik["arm.L"].switch is None
     assert ["'follow'" in note or "'ik_fk'" in note for note in completed.notes] == [True, True]
+
+
+def test_a_goal_that_a_constraint_carries_is_a_control() -> None:
+    """Child Of is a parent by another name: the animator still poses the foot."""
+    character, known = control_rig()
+    for side in "LR":
+        constraint = character.pose.bones[f"ik_foot.{side}"].constraints.new("CHILD_OF")
+        constraint.target, constraint.subtarget = character, "body"
+        constraint.inverse_matrix = character.data.bones["body"].matrix_local.inverted()
+    found = find_controls(character, known, SIZE).character_map
+    assert found.ik["leg.L"].goal == "ik_foot.L" and found.ik["leg.R"].goal == "ik_foot.R"
+
+
+@pytest.mark.parametrize("in_ik", [0.0, 1.0])
+def test_switches_behind_helper_bones_are_found(in_ik: float) -> None:
+    """The bones of the mesh copy bones that choose between FK and IK, whichever the rig shows."""
+    character, known = control_rig()
+    bpy.ops.object.mode_set(mode="EDIT")
+    names = [f"{part}.{side}" for part in ("thigh", "shin", "foot") for side in "LR"]
+    for name in names:
+        inner = character.data.edit_bones[name]
+        outer = character.data.edit_bones.new(f"DEF-{name}")
+        outer.head, outer.tail, outer.roll = inner.head, inner.tail, inner.roll
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for name in names:
+        constraint = character.pose.bones[f"DEF-{name}"].constraints.new("COPY_TRANSFORMS")
+        constraint.target, constraint.subtarget = character, name
+    for side in "LR":
+        character.pose.bones[f"ik_foot.{side}"]["to_ik"] = in_ik
+    outer_roles = {name: RoleBones((f"DEF-{name}",)) for name in names}
+    found = find_controls(character, replace(known, roles={**known.roles, **outer_roles}), SIZE)
+    for side in "LR":
+        assert found.character_map.fk[f"shin.{side}"] == (f"fk_shin.{side}",)
+        assert found.character_map.ik[f"leg.{side}"].switch == Switch(f"ik_foot.{side}", "to_ik", 1.0, 0.0)

@@ -17,6 +17,7 @@ from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
 from keymark.core.retarget.recognition.recognize import recognize
+from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted, retarget
 from scipy.spatial.transform import Rotation
@@ -89,6 +90,15 @@ def turned_object() -> tuple[bpy.types.Object, CharacterMap]:
     return made, known
 
 
+def about_an_axis() -> tuple[bpy.types.Object, CharacterMap]:
+    """An object that stands by axis and angle, in which mode Blender leaves the delta of other modes out."""
+    made, known = plain()
+    made.delta_rotation_euler = (0.2, 0.1, 0.4)
+    made.rotation_mode, made.rotation_axis_angle = "AXIS_ANGLE", (1.3, 0.2, 0.4, 0.8)
+    bpy.context.view_layer.update()
+    return made, known
+
+
 def in_modes() -> tuple[bpy.types.Object, CharacterMap]:
     """Bones in every rotation mode."""
     made, known = plain()
@@ -121,6 +131,7 @@ def with_flags() -> tuple[bpy.types.Object, CharacterMap]:
         lambda: plain(without=("shoulder", "toe", "neck")),
         on_root,
         turned_object,
+        about_an_axis,
         in_modes,
         with_flags,
     ],
@@ -141,6 +152,26 @@ def test_blender_shows_what_was_solved(
     assert few.quality.keys == few.keys.key_count
     assert few.quality.skate_mm is None or few.quality.skate_mm < 0.08
     assert few.quality.penetration_mm is not None and few.quality.penetration_mm < 2.0
+
+
+def test_bones_scaled_in_the_pose_are_keyed_at_one(source: SegmentMotion) -> None:
+    """Bones of the motion and what carries them, the same when it is written again; others stay."""
+    character, known = plain(root="root")
+    for name, scale in (("root", 1.2), ("hips", 0.8), ("head", 1.3), ("finger.L", 2.0)):
+        character.pose.bones[name].scale = (scale,) * 3
+    made = retargeted(character, known, source, DENSE)
+    assert farthest_m(character, made) < 1e-4
+    assert [note for note in made.notes if "'hips', 'root', 'head' are scaled in their pose" in note]
+    assert character.pose.bones["finger.L"].scale[0] == 2.0
+    action = character.animation_data.action
+    curve = next(
+        one for one in existing_channelbag(action, character).fcurves if one.data_path.endswith("scale")
+    )
+    assert [point.co[1] for point in curve.keyframe_points] == [1.0]
+    bones = {name: character.pose.bones[name].scale[0] for name in ("root", "hips", "head")}
+    assert set(bones.values()) == {1.0}
+    made.write(bpy.context.scene, action)
+    assert farthest_m(character, made) < 1e-4
 
 
 def test_the_character_stands_where_the_performer_does(source: SegmentMotion) -> None:

@@ -179,6 +179,6 @@ def test_the_control_that_a_bone_follows() -> None:
     offset = np.eye(4)
     offset[:3, 3] = [0.1, 0.2, 0.3]
     bones = np.stack([poses[:, 1] @ offset, poses[:, 2] @ offset, poses[:, 0]], axis=1)
-    bones[2, 1, :3, 3] += 0.01
+    bones[2, 1, :3, :3] = poses[2, 0, :3, :3]
     assert followed_controls(["a", "b", "c"], poses, bones, 1.0) == ["b", None, "a"]
     assert followed_controls([], poses[:, :0], bones, 1.0) == [None, None, None]

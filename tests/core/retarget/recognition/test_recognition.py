@@ -15,6 +15,7 @@ from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.recognition.recognition import Recognition
 from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.retarget.recognition.root_bone import find_root
 from keymark.core.retarget.roles import ROLES
 from keymark.core.retarget.stance import find_stance
 
@@ -322,3 +323,34 @@ HUMAN_NAMES = (
     *(f"{part}.{side}" for side in "LR" for part in ("girdle", "upper_arm", "forearm", "hand")),
     *(f"{part}.{side}" for side in "LR" for part in ("thigh", "shin", "foot")),
 )
+
+
+def test_bones_that_only_constraints_carry_are_found_by_their_controls() -> None:
+    """What moves the mesh plays the roles, not the chain of controls that lies in the same places."""
+    plain = plain_character()
+    flat = [replace(bone, name=f"DEF-{bone.name}", parent=-1, connected=False) for bone in plain.bones]
+    controls = [replace(bone, name=f"c_{bone.name}", deforms=False) for bone in plain.bones]
+    found = recognize(Character("Flat", tuple([*controls, *flat])))
+    assert {role: bones.bones for role, bones in found.character_map.roles.items()} == {
+        role: tuple(f"DEF-{name}" for name in bones.bones)
+        for role, bones in recognize(plain).character_map.roles.items()
+    }
+    assert found.doubts == ()
+
+
+def test_the_root_of_the_controls_is_the_root_of_the_character() -> None:
+    """Bones of the mesh that only constraints carry hang on nothing; their controls do."""
+    plain = plain_character(root="root")
+    flat = [
+        replace(bone, name=f"DEF-{bone.name}", parent=-1, connected=False)
+        for bone in plain.bones
+        if bone.name != "root"
+    ]
+    controls = [replace(bone, deforms=False) for bone in plain.bones]
+    character = Character("Flat", tuple([*controls, *flat]))
+    found = recognize(character).character_map
+    assert found.bone("hips") == "DEF-hips" and found.root is None
+    fk = {
+        role: tuple(name.removeprefix("DEF-") for name in bones.bones) for role, bones in found.roles.items()
+    }
+    assert find_root(character, replace(found, fk=fk), np.array([0.0, 0.0, 1.0])) == "root"

@@ -82,3 +82,17 @@ def test_a_sole_on_one_side_of_the_ankle_is_enough(points: tuple[tuple[float, fl
     soles = {f"foot.{side}": points for side in "LR"}
     motion = solved(character, replace(plain_map(character), soles=soles), steps())
     assert all(np.isfinite(pose).all() for pose in motion.poses.values())
+
+
+def test_toes_that_are_left_alone_are_part_of_the_foot() -> None:
+    """They do not bend, so the foot must lift them; what they stand on is the same."""
+    character = plain_character()
+    known = plain_map(character)
+    stiff = replace(known, left_alone=("toe.L", "toe.R"))
+    shape = foot_shape(RestBody.of(character, stiff), "L", 0.0)
+    assert shape.toe_joint is None and not len(shape.toe)
+    moving = foot_shape(RestBody.of(character, known), "L", 0.0)
+    assert moving.toe_joint is not None
+    reach = (moving.toe_joint + moving.toe)[:, 1].min()
+    assert abs(shape.foot[:, 1].min() - reach) < 0.03
+    assert abs(shape.ankle_m - moving.ankle_m) < 1e-9

@@ -363,3 +363,17 @@ def test_feet_that_are_rigid_with_the_shins_lie_flat_at_rest() -> None:
     foot = motion.poses[f"foot.{rest.limb[-1]}"][rest.first : rest.last + 1, :3, :3]
     sole = foot @ character.bone("foot.L").rest[:3, :3].T @ [0.0, 0.0, 1.0]
     np.testing.assert_allclose(sole, [[0.0, 0.0, 1.0]] * len(sole), atol=0.02)
+
+
+def test_a_map_with_its_sides_mistaken_is_named() -> None:
+    """The character would walk backward; no motion can tell, but its toes do."""
+    character = plain_character()
+    known = plain_map(character)
+    other = {"L": "R", "R": "L"}
+    roles = {
+        f"{role[:-1]}{other[role[-1]]}" if role[-2:] in (".L", ".R") else role: bones
+        for role, bones in known.roles.items()
+    }
+    assert solved(character, known, steps()).notes == ()
+    (note,) = solved(character, replace(known, roles=roles), steps()).notes
+    assert "left and right may be mistaken for each other" in note
