@@ -9,9 +9,9 @@ from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from ....core.retarget.recognition.root_bone import find_root
 from ....core.retarget.stance import find_stance
-from .find_controls import find_controls
+from .controls.find_controls import find_controls
+from .controls.probe_controls import character_size
 from .mesh_soles import mesh_soles
-from .probe_controls import character_size
 
 
 @dataclass(frozen=True, eq=False)

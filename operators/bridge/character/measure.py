@@ -20,8 +20,8 @@ from ....core.retarget.roles import LIMBS
 from ..actions import existing_channelbag
 from ..object_space import evaluated, object_space
 from ..scene_frames import at_scene_frame
-from .posing import Property, Value, posing
-from .property_paths import property_path
+from .controls.posing import Property, Value, posing
+from .controls.property_paths import property_path
 from .write_retargeted import RetargetedKeys, write_keys
 
 TEMPORARY = "Keymark Measuring"

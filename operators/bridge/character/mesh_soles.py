@@ -10,7 +10,7 @@ from ....core.body.skeleton import SIDES
 from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap, Point
 from ....core.retarget.stance import find_stance
-from .dependencies import active_constraints, constraint_bones
+from .controls.dependencies import active_constraints, constraint_bones
 from .skins import is_deformed, skins
 
 PARTS = ("foot", "toe")

@@ -6,7 +6,7 @@ import numpy as np
 from ....core.errors import InputError
 from ....core.retarget.character import Character, CharacterBone
 from ..object_space import object_space
-from .cycles import dependency_cycle
+from .controls.cycles import dependency_cycle
 
 SMALLEST_SCALE = 1e-9
 

@@ -25,14 +25,14 @@ from ....core.retarget.quality import Quality
 from ....core.retarget.solve.solve_motion import solve_motion
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
-from .channel_notes import channel_notes
 from .complete_map import complete_map
+from .controls.channel_notes import channel_notes
+from .controls.probe_controls import ProbedControls, probe_controls
+from .controls.shown_properties import fk_properties, shown_properties
 from .measure import measure_keys
 from .object_placement import placement_keys, require_placeable
 from .pose_scales import scaled_bones
-from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
-from .shown_properties import fk_properties, shown_properties
 from .write_retargeted import RetargetedKeys, write_retargeted
 
 SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8

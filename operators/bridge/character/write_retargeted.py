@@ -14,11 +14,11 @@ from ....core.retarget.controls.control_motion import KeyedControl
 from ..actions import assign_action, channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path
-from .channel_notes import driven_channels, keyed_paths
+from .controls.channel_notes import driven_channels, keyed_paths
+from .controls.posing import Property, Value
+from .controls.property_paths import property_path
 from .object_placement import PlacementKeys
 from .pose_scales import ONE
-from .posing import Property, Value
-from .property_paths import property_path
 
 MADE_BY_KEYMARK = "keymark_retargeted"
 """Custom property of an Action: which curves of which slot retargeting made, as JSON."""

@@ -14,7 +14,7 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.operators.bridge.character.cycles import dependency_cycle
+from keymark.operators.bridge.character.controls.cycles import dependency_cycle
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
 from keymark.operators.bridge.character.retarget import retarget
 

@@ -14,7 +14,7 @@ from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.complete_map import complete_map
-from keymark.operators.bridge.character.find_controls import find_controls
+from keymark.operators.bridge.character.controls.find_controls import find_controls
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import retarget
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import bpy
 
-from ....core.retarget.controls.control_plan import limb_bones
-from ....core.retarget.maps.character_map import CharacterMap
-from ....core.retarget.roles import LIMBS
+from .....core.retarget.controls.control_plan import limb_bones
+from .....core.retarget.maps.character_map import CharacterMap
+from .....core.retarget.roles import LIMBS
 from .dependencies import Graph, active_constraints, upstream
 
 ABOVE = {"arm": ("spine", "hips"), "leg": ("hips",)}

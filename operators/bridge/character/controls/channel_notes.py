@@ -5,11 +5,11 @@ from collections.abc import Iterable, Sequence
 import bpy
 import numpy as np
 
-from ....core.arrays import Array
-from ....core.finish.hermite import Spline
-from ....core.retarget.controls.control_channels import Control
-from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
-from ..rotation_modes import bone_path, rotation_path
+from .....core.arrays import Array
+from .....core.finish.hermite import Spline
+from .....core.retarget.controls.control_channels import Control
+from .....core.retarget.controls.control_motion import ControlMotion, KeyedControl
+from ...rotation_modes import bone_path, rotation_path
 from .dependencies import CARRYING, active_constraints, drivers
 
 MOST_NAMES = 3

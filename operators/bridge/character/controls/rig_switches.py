@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import bpy
 
-from ....core.retarget.maps.character_map import Switch
+from .....core.retarget.maps.character_map import Switch
 from .dependencies import Graph, custom_property, upstream
 
 FALLBACK = (0.0, 1.0)

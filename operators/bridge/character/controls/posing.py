@@ -8,9 +8,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ....core.arrays import Array
-from ..object_space import evaluated
-from ..scene_frames import showing_action
+from .....core.arrays import Array
+from ...object_space import evaluated
+from ...scene_frames import showing_action
 
 Property = tuple[str, str]
 """Name of a pose bone, and of one of its custom properties."""

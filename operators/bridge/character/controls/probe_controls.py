@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
-from ....core.arrays import Array
-from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from ....core.retarget.controls.control_plan import ControlKind, PlannedControl
-from ....core.retarget.controls.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
-from ....core.retarget.controls.control_targets import PoleSetting
-from ....core.retarget.controls.rigid_offset import rigid_offset
-from ....core.retarget.maps.character_map import CharacterMap
+from .....core.arrays import Array
+from .....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
+from .....core.retarget.controls.control_plan import ControlKind, PlannedControl
+from .....core.retarget.controls.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
+from .....core.retarget.controls.control_targets import PoleSetting
+from .....core.retarget.controls.rigid_offset import rigid_offset
+from .....core.retarget.maps.character_map import CharacterMap
+from ..pose_scales import ONE, scaled_bones
 from .dependencies import active_constraints, driven_bone, drivers
-from .pose_scales import ONE, scaled_bones
 from .posing import posing, set_properties
 from .probe_ik import try_inverse_kinematics
 from .random_poses import RandomPoses, pose_at_random

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from ....core.retarget.controls.control_plan import limb_keys
-from ....core.retarget.maps.character_map import CharacterMap, Switch
-from ....core.retarget.options import LimbKeys, RetargetOptions
+from .....core.retarget.controls.control_plan import limb_keys
+from .....core.retarget.maps.character_map import CharacterMap, Switch
+from .....core.retarget.options import LimbKeys, RetargetOptions
 from .posing import Property, Value
 
 

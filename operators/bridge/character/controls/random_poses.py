@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ....core.arrays import Array
+from .....core.arrays import Array
 from .posing import read_poses, set_channels
 
 SEED = 4

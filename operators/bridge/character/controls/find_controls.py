@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from ....core.body.skeleton import SIDES
-from ....core.retarget.controls.control_plan import joint_roles
-from ....core.retarget.controls.rigid_following import followed_controls
-from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
-from ....core.retarget.roles import LIMBS
+from .....core.body.skeleton import SIDES
+from .....core.retarget.controls.control_plan import joint_roles
+from .....core.retarget.controls.rigid_following import followed_controls
+from .....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
+from .....core.retarget.roles import LIMBS
 from .carrying_control import carrying_control
 from .dependencies import (
     CARRYING,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from ....core.retarget.controls.rigid_offset import rigid_offset
+from .....core.retarget.controls.rigid_offset import rigid_offset
 from .dependencies import Graph, upstream
 from .posing import posing, read_poses, set_channels
 

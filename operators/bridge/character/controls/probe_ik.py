@@ -7,13 +7,13 @@ import bpy
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ....core.arrays import Array
-from ....core.retarget.controls.control_channels import Control, ControlChannels, control_channels
-from ....core.retarget.controls.control_plan import ControlKind, limb_bones
-from ....core.retarget.controls.control_spaces import NOTHING
-from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
-from ....core.retarget.controls.rigid_offset import rigid_offset
-from ....core.retarget.maps.character_map import CharacterMap
+from .....core.arrays import Array
+from .....core.retarget.controls.control_channels import Control, ControlChannels, control_channels
+from .....core.retarget.controls.control_plan import ControlKind, limb_bones
+from .....core.retarget.controls.control_spaces import NOTHING
+from .....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
+from .....core.retarget.controls.rigid_offset import rigid_offset
+from .....core.retarget.maps.character_map import CharacterMap
 from .posing import Property, Value, read_poses, set_channels, set_properties
 
 TRIALS = ((0.8, 0.0, (0.2, -0.1, 0.15)), (0.7, 0.5, (-0.15, 0.2, 0.1)))
