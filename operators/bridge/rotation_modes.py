@@ -48,37 +48,30 @@ def set_rotation(pose_bone: bpy.types.PoseBone, rotation: Array) -> None:
 
 def _continuous_axis_angles(rotation: Array) -> Array:
     vectors = Rotation.from_matrix(rotation).as_rotvec()
-    values = np.zeros((len(vectors), 4))
-    before = np.array([0.0, 0.0, 1.0, 0.0])
-    for frame, vector in enumerate(vectors):
-        angle = float(np.linalg.norm(vector))
-        if angle < SMALL_TURN:
-            axis, angle = before[1:], 0.0
-        else:
-            axis = vector / angle
-            if axis @ before[1:] < 0.0:  # the opposite axis and angle are the same rotation and lie nearer
-                axis, angle = -axis, -angle
-        turns = np.round((before[0] - angle) / (2.0 * np.pi)) if frame else 0.0
-        before = np.array([angle + 2.0 * np.pi * turns, *axis])
-        values[frame] = before
-    return values
+    angles = np.linalg.norm(vectors, axis=-1)
+    turned = angles >= SMALL_TURN
+    axes = np.concatenate([[[0.0, 1.0, 0.0]], vectors / np.where(turned, angles, 1.0)[:, None]])
+    # Where it hardly turns, the axis stays the last one; before the first turn it is Y, as of new bones.
+    rows = np.maximum.accumulate(np.where(turned, 1 + np.arange(len(angles)), 0))
+    axes = axes[np.concatenate([[0], rows])]
+    # The opposite axis and angle are the same rotation; where they lie nearer, they are taken.
+    signs = np.cumprod(np.where(np.sum(axes[1:] * axes[:-1], axis=-1) < 0.0, -1.0, 1.0))
+    unwrapped = np.unwrap(signs * np.where(turned, angles, 0.0))
+    return np.concatenate([unwrapped[:, None], signs[:, None] * axes[1:]], axis=-1)
 
 
 def _continuous_eulers(rotation: Array, order: str) -> Array:
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.
     angles = Rotation.from_matrix(rotation).as_euler(order.lower())
+    # The second triple is the same rotation; it is the nearer one after passing the pole.
+    triples = np.stack([angles, angles * [1.0, -1.0, 1.0] + np.pi])
+    steps = triples[None, :, 1:] - triples[:, None, :-1]
+    ways = np.abs(steps - 2.0 * np.pi * np.round(steps / (2.0 * np.pi))).sum(axis=-1)  # (from, to, F - 1)
+    passes = ways[:, 1] < ways[:, 0]
+    chosen = np.zeros(len(angles), dtype=np.intp)
+    for frame, found in enumerate(passes.T.tolist()):
+        chosen[frame + 1] = found[chosen[frame]]
+    values = np.empty((len(angles), 3))
     columns = ["XYZ".index(axis) for axis in order]
-    values = np.zeros((len(angles), 3))
-    before = np.zeros(3)
-    for frame, (first, middle, last) in enumerate(angles):
-        found = [
-            candidate + 2.0 * np.pi * np.round((before - candidate) / (2.0 * np.pi)) if frame else candidate
-            for candidate in (
-                np.array([first, middle, last]),
-                np.array([first + np.pi, np.pi - middle, last + np.pi]),
-            )
-        ]
-        # The second triple is the same rotation; it is the nearer one after passing the pole.
-        before = found[0] if not frame else min(found, key=lambda angle: float(np.abs(angle - before).sum()))
-        values[frame, columns] = before
+    values[:, columns] = np.unwrap(triples[chosen, np.arange(len(angles))], axis=0)
     return values

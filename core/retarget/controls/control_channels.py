@@ -120,6 +120,7 @@ def control_channels(
         if space.movable and _is_moved(control, apart, size):
             local = (np.swapaxes(axes, -1, -2) @ apart[..., None])[..., 0]
             location = np.linalg.solve(space.axes, local.T).T
+        if location is not None or not space.is_placed(size):  # where none can tell, as wanted
             place = pose[:, :3, 3]
         found.append(ControlChannels(rotation, location, turn, place))
     return tuple(found)

@@ -125,6 +125,7 @@ def retarget(
     )
     yield Progress("Bringing the motion onto the controls", PROBED)
     controls = _on_controls(character, character_map, motion, probed)
+    yield Progress("Finding the keys", PROBED)
     keyed = yield from _keyed(controls, motion, source, scene_frames, options)
     keys = RetargetedKeys(
         scene_frames,
@@ -133,6 +134,7 @@ def retarget(
         placement_keys(armature_object, motion.to_world) if placed else (),
         scaled_bones(armature_object, (one.control.name for one in keyed)),
     )
+    yield Progress("Measuring the character", REDUCED)
     in_fk = fk_properties(character_map, options)
     measuring = measure_keys(armature_object, keys, source, motion, character, character_map, in_fk)
     quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)

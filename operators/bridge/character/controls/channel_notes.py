@@ -15,6 +15,8 @@ from .dependencies import CARRYING, active_constraints, drivers
 MOST_NAMES = 3
 """Bones that a sentence names; more are counted."""
 NOTICEABLE_M = 0.005
+ADRIFT = 0.01
+"""Distance, in sizes of the character, that random poses move a control from where its carrier has it."""
 
 
 def driven_channels(armature_object: bpy.types.Object) -> set[tuple[str, int]]:
@@ -73,6 +75,11 @@ def channel_notes(
             "is connected to its parent or cannot be moved, and stays off its place: disconnect it",
             "are connected to their parents or cannot be moved, and stay off their places: disconnect them",
         ),
+        _sentence(
+            _adrift(motion),
+            "is placed by constraints that follow its carriers only in part, and may be off its place",
+            "are placed by constraints that follow their carriers only in part, and may be off their places",
+        ),
     ]
     return tuple(note for note in notes if note)
 
@@ -103,3 +110,12 @@ def _held_back(armature_object: bpy.types.Object, motion: ControlMotion) -> list
         if not control.space.movable and motion.scale * off > NOTICEABLE_M:
             found.append(control.name)
     return found
+
+
+def _adrift(motion: ControlMotion) -> list[str]:
+    """Controls of whose places no other control can tell, and that cannot be moved to them."""
+    return [
+        control.name
+        for control, channels in zip(motion.controls, motion.channels, strict=True)
+        if channels.location is None and control.space.residual > ADRIFT * motion.size
+    ]

@@ -1,6 +1,6 @@
 """Find the controls of a rig that no preset knows: free bones that others follow when they are posed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -78,7 +78,7 @@ def find_controls(
             control = carrying_control(armature_object, graph, candidates, [name], size)
             for _, _, followed in tried.followed:
                 followed[name] = control
-    found = _completed(character_map, moved, tried, targets)
+    found = _completed(character_map, moved, tried, targets, _sharing(armature_object, graph, tried, bones))
     if "hips" in character_map.fk or "hips" in character_map.left_alone:
         return found
     return _with_hips(armature_object, graph, found, size)
@@ -261,13 +261,40 @@ def _own(followed: Mapping[str, str | None], name: str, above: Mapping[str, str]
     return None if parent not in (None, control) and followed[parent] == control else control
 
 
+def _sharing(
+    armature_object: bpy.types.Object, graph: Graph, tried: _Tried, bones: Sequence[str]
+) -> set[str]:
+    """Bones that constraints turn by a share of what another bone's control does, as spines by a chest's."""
+    found = set()
+    for bone in bones:
+        pose_bone = armature_object.pose.bones[bone]
+        looked_at = {
+            name
+            for constraint in active_constraints(pose_bone)
+            for name in constraint_bones(armature_object, constraint)
+        }
+        for _, _, followed in tried.followed:
+            if followed.get(bone) is None and looked_at & {followed.get(other) for other in bones}:
+                found.add(bone)
+    return found
+
+
 def _completed(
     character_map: CharacterMap,
     moved: Sequence[str],
     tried: _Tried,
     targets: Mapping[str, IkTargets],
+    sharing: set[str],
 ) -> FoundControls:
-    """The map with the controls that were found, and sentences on those that were not."""
+    """The map with the controls that were found, and sentences on those that were not.
+
+    Args:
+        character_map: The map to complete.
+        moved: Roles whose bones something moves.
+        tried: What bones follow.
+        targets: What limbs in inverse kinematics look at.
+        sharing: Bones that are left to the controls of others.
+    """
     fk = dict(character_map.fk)
     ik = dict(character_map.ik)
     lost: list[str] = []
@@ -282,14 +309,15 @@ def _completed(
         if limb not in ik and controls is not None:
             ik[limb] = controls
         for role in roles:
-            by_ik = limb in ik and role in limb_of
-            fk[role] = _keyed(character_map.bones(role), followed, by_ik)
-            lost += [bone for bone in character_map.bones(role) if followed.get(bone) is None and not by_ik]
+            bones = character_map.bones(role)
+            left = bones if limb in ik and role in limb_of else sharing
+            fk[role] = _keyed(bones, followed, left)
+            lost += [bone for bone in bones if followed.get(bone) is None and bone not in left]
     for role in moved:
         if role not in fk:
-            followed = tried.followed[0][2]
-            fk[role] = _keyed(character_map.bones(role), followed, False)
-            lost += [bone for bone in character_map.bones(role) if followed.get(bone) is None]
+            bones, followed = character_map.bones(role), tried.followed[0][2]
+            fk[role] = _keyed(bones, followed, sharing)
+            lost += [bone for bone in bones if followed.get(bone) is None and bone not in sharing]
     names = ", ".join(f"'{bone}'" for bone in lost)
     notes = (
         (
@@ -302,9 +330,11 @@ def _completed(
     return FoundControls(replace(character_map, fk=fk, ik=ik), notes)
 
 
-def _keyed(bones: Sequence[str], followed: Mapping[str, str | None], by_ik: bool) -> tuple[str | None, ...]:
-    """What is keyed for each of a role's bones: its control, or else itself where no IK moves it."""
-    return tuple(followed.get(bone) or (None if by_ik else bone) for bone in bones)
+def _keyed(
+    bones: Sequence[str], followed: Mapping[str, str | None], left: Collection[str]
+) -> tuple[str | None, ...]:
+    """What is keyed for each of a role's bones: its control, or else itself if it is not left to others."""
+    return tuple(followed.get(bone) or (None if bone in left else bone) for bone in bones)
 
 
 def _ik_controls(

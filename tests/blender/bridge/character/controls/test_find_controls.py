@@ -10,6 +10,7 @@ from _characters import plain_character, plain_map
 from _control_rigs import control_rig, simple_ik_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
+from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.complete_map import complete_map
@@ -151,3 +152,28 @@ def test_switches_behind_helper_bones_are_found(in_ik: float) -> None:
     for side in "LR":
         assert found.character_map.fk[f"shin.{side}"] == (f"fk_shin.{side}",)
         assert found.character_map.ik[f"leg.{side}"].switch == Switch(f"ik_foot.{side}", "to_ik", 1.0, 0.0)
+
+
+def test_a_spine_that_shares_the_chests_turn_is_left_to_it() -> None:
+    """One control bends all of the spine; what hangs on it is where it belongs all the same."""
+    plain = plain_character()
+    chest = plain.bone("chest")
+    control = replace(chest, name="c_chest", parent=plain.index["hips"], deforms=False)
+    character = build_character(Character("Shared", (*plain.bones, control)))
+    known = plain_map(plain)
+    for name, share in (("spine", 0.5), ("chest", 1.0)):
+        constraint = character.pose.bones[name].constraints.new("COPY_ROTATION")
+        constraint.target, constraint.subtarget, constraint.influence = character, "c_chest", share
+    body, posture = stepping()
+    source = performance(body, posture[:20])
+    made = run(retarget(character, source, 1.0 + np.arange(20), known, RetargetOptions()))
+    assert made.character_map.fk["spine"] == (None, "c_chest")
+    (note,) = made.notes
+    assert "placed by constraints that follow their carriers only in part" in note
+    made.write(bpy.context.scene, "Steps")
+    for number in (0, 10, 19):
+        bpy.context.scene.frame_set(1 + number)
+        shown = character.evaluated_get(bpy.context.evaluated_depsgraph_get()).pose.bones
+        for bone in ("neck", "head", "hand.L", "hand.R", "foot.L"):
+            apart = np.array(shown[bone].head) - made.motion.poses[bone][number, :3, 3]
+            assert np.linalg.norm(apart) < 0.02
