@@ -78,9 +78,12 @@ def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
 
 def _placed(control: Control, place: Mapping[int, int], number: int) -> Control:
     """A control with the new numbers of others, where they come before its own."""
-    turner, carrier = place[control.space.turner], place[control.space.carrier]
-    turner, carrier = (other if other < number else NOTHING for other in (turner, carrier))
-    return replace(control, space=replace(control.space, turner=turner, carrier=carrier))
+    space = control.space
+    turner, carrier = (
+        other if other < number else NOTHING for other in (place[space.turner], place[space.carrier])
+    )
+    residual = space.residual if carrier == place[space.carrier] else np.inf
+    return replace(control, space=replace(space, turner=turner, carrier=carrier, residual=residual))
 
 
 def control_channels(

@@ -303,8 +303,7 @@ def _completed(
         roles = [role for role in LIMBS[limb] if role in moved]
         if not roles:
             continue
-        bones = [bone for role in roles for bone in character_map.bones(role)]
-        followed, switch = tried.in_fk(limb, bones)
+        followed, switch = tried.in_fk(limb, [bone for role in roles for bone in character_map.bones(role)])
         controls = _ik_controls(character_map, limb, tried, targets, followed, switch)
         if limb not in ik and controls is not None:
             ik[limb] = controls

@@ -172,6 +172,6 @@ def _placed(control: Control, places: Mapping[str, Array], size: float) -> Contr
     space = control.space
     if control.plan.kind in ALWAYS_MOVED or space.is_placed(size):
         return control
-    if control.name in places:
+    if control.name in places and space.residual_rad < NOTICEABLE_RAD:
         return replace(control, space=space.placed_by_turner(places[control.name]))
     return replace(control, space=replace(space, axes=np.zeros((3, 3))))

@@ -198,3 +198,20 @@ def test_controls_are_ordered_by_what_carries_them() -> None:
     assert (ordered[2].space.turner, ordered[2].space.carrier) == (1, 0)
     circle = ordered_controls([control("a", 1, 1), control("b", 0, 0)])
     assert all(max(one.space.turner, one.space.carrier) < number for number, one in enumerate(circle))
+    assert [one.space.is_placed(1.0) for one in circle] == [False, True]
+
+
+def test_a_control_of_unknown_place_tears_nothing_off() -> None:
+    """It is taken to be where it belongs: what hangs on it is not moved to make up for a wrong guess."""
+    plans = [PlannedControl(name, ControlKind.FK, name) for name in "bc"]
+    adrift = ControlSpace(NOTHING, np.eye(3), NOTHING, np.zeros(3), np.zeros((3, 3)), 0.0, np.inf)
+    child = ControlSpace(0, np.eye(3), 0, np.array([0.0, 1.0, 0.0]), np.eye(3), 0.0, 0.0)
+    controls = [
+        Control(plan, "XYZ", space, turns=True) for plan, space in zip(plans, (adrift, child), strict=True)
+    ]
+    wanted = {name: np.tile(np.eye(4), (2, 1, 1)) for name in "bc"}
+    wanted["b"][:, :3, 3] = [[3.0, 0.0, 0.0], [4.0, 0.0, 0.0]]
+    wanted["c"][:, :3, 3] = [[3.0, 1.0, 0.0], [4.0, 1.0, 0.0]]
+    found = control_channels(controls, wanted, 1.0)
+    assert found[0].location is None and found[1].location is None
+    assert found[1].place == pytest.approx(wanted["c"][:, :3, 3])
