@@ -14,6 +14,7 @@ from types import ModuleType
 STEPS = (
     "footage",
     "markers",
+    "keypoints",
     "actor",
     "keyframes",
     "matching",

@@ -36,7 +36,8 @@ class KnownFrames:
 
 def placement_values(placements: tuple[MarkerPlacement, ...]) -> Array:
     """The parameters (M, P) of M placements, in the order of `PARAMETERS`."""
-    return np.array([[getattr(placement, name) for name in PARAMETERS] for placement in placements])
+    values = [[getattr(placement, name) for name in PARAMETERS] for placement in placements]
+    return np.array(values).reshape(len(placements), len(PARAMETERS))
 
 
 def placements_from(start: tuple[MarkerPlacement, ...], values: Array) -> tuple[MarkerPlacement, ...]:

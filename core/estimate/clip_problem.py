@@ -8,6 +8,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise
@@ -38,8 +39,10 @@ class ClipProblem:
     """(K,) which keyframes are matched."""
     depth_std_m: Array
     """(F,) noise of the prior's depths [m]."""
-    ankle_height_m: Array | None = None
+    ankle_height_m: Array | None
     """(F,) usual height of the lower ankle [m]; None where no floor is known."""
+    keypoints: Keypoints
+    """Of the performer, N of them."""
 
     @property
     def frames(self) -> int:

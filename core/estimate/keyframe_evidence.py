@@ -115,6 +115,9 @@ def read_keyframes(
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
+    if not model.placements:
+        information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
+        return replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
     judged = evenly_spread(frame, MOST_JUDGED)
     known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.

@@ -10,6 +10,7 @@ from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
+from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
@@ -21,6 +22,7 @@ from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.methods import METHODS
 from ..take.motion import Motion
+from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
@@ -49,6 +51,8 @@ class Reconstruction:
     """(F,) V_sum of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """Notes on the result for people, one sentence each."""
+    keypoints: Keypoints
+    """The performer's keypoints in every frame, none where the take has none."""
     model: RegionModel
     """The markers' region model: calibrated on the keyframes, or of average placements."""
     solution: WholeClipResult | None = None
@@ -120,10 +124,12 @@ def _reconstruct(
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
+    keypoints = performer_keypoints(take, prior)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
-        solution = yield from _whole_clip(take, reading, prior, match_scale, begun, _usable(earlier, reading))
+        usable = _usable(earlier, reading)
+        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
         motion, model = _solved(take, tracks, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
     elif method == "ekf":
@@ -131,7 +137,8 @@ def _reconstruct(
         notes += filter_notes(take)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    return Reconstruction(motion, baseline, reading, marker_speed(tracks), notes, model, solution)
+    speed = marker_speed(tracks)
+    return Reconstruction(motion, baseline, reading, speed, notes, keypoints, model, solution)
 
 
 def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
@@ -154,6 +161,7 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
 def _whole_clip(
     take: Take,
     reading: Reading,
+    keypoints: Keypoints,
     prior: Posture,
     match_scale: Array,
     begun: float,
@@ -169,6 +177,7 @@ def _whole_clip(
         album=reading.album,
         earlier=earlier,
         match_scale=match_scale,
+        keypoints=keypoints,
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

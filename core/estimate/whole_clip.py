@@ -16,6 +16,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
+from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
@@ -78,6 +79,7 @@ def estimate_whole_clip(
     album: Album | None = None,
     earlier: WholeClipResult | None = None,
     match_scale: Array | None = None,
+    keypoints: Keypoints | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -94,6 +96,7 @@ def estimate_whole_clip(
             tolerances of `warm_start`.
         match_scale: (K,) size of each matched keyframe's error, relative to a usual difference between
             performers; 0 for posed ones, which all are by default.
+        keypoints: The performer's keypoints in the F frames; None for none.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
@@ -129,6 +132,7 @@ def estimate_whole_clip(
         depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
         lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
+        Keypoints.none(tracks.frame_count) if keypoints is None else keypoints,
     )
     return (yield from _solve(problem, options, album, earlier))
 

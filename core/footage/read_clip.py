@@ -3,6 +3,8 @@
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ..errors import InputError
 from .clips.album import Album
 from .clips.clip import Clip
@@ -12,7 +14,7 @@ from .marker_style import MarkerStyle
 from .markers import assign_detections, detect_markers, still_valid
 from .reading import Reading
 from .reading_key import of_same_footage, reading_key
-from .region_tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions, RegionTracks
 
 
 def read_clip(
@@ -52,6 +54,9 @@ def read_clip(
         if seen is not None and of_same_footage(kept.key, key) and still_valid(seen, styles, expected):
             return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
     album, checks = Album() if with_album else None, FrameChecks()
+    if not styles:
+        tracks = yield from _watch(watch_clip(clip, checks, album))
+        return Reading(tracks, album, key=key, frame_findings=checks.findings())
     try:
         seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected)
     except InputError as error:
@@ -65,3 +70,12 @@ def read_clip(
     return Reading(
         assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
     )
+
+
+def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
+    """Decode a clip in which no marker is followed, for its checks, pictures and times."""
+    time_s: list[float] = []
+    for _, stamp, _ in clip.frames():
+        time_s.append(stamp)
+        yield min(len(time_s) / clip.frame_count, 1.0)
+    return RegionTracks.unmarked(np.array(time_s), clip.size)

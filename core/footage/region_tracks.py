@@ -56,6 +56,26 @@ class RegionTracks:
             array.setflags(write=False)
             object.__setattr__(self, field.name, array)
 
+    @classmethod
+    def unmarked(cls, time_s: Array, size: tuple[int, int]) -> "RegionTracks":
+        """Tracks of a performer who wears no marker, M = 0.
+
+        Args:
+            time_s: (F,) time stamps of the frames in seconds.
+            size: Width and height of the image [px].
+        """
+        empty = np.zeros((len(time_s), 0))
+        return cls(
+            names=(),
+            centroid=np.zeros((*empty.shape, 2)),
+            second_moment=np.zeros((*empty.shape, 2, 2)),
+            area=empty,
+            quality=empty,
+            clipped=empty.astype(bool),
+            time_s=time_s,
+            size=size,
+        )
+
     def frame(self, index: int) -> "RegionTracks":
         """The tracks of one frame, its time included."""
         rows = {

@@ -89,6 +89,16 @@ class RegionPrediction:
     """(F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]."""
 
     @classmethod
+    def unmarked(cls, frames: int, dofs: int | None) -> "RegionPrediction":
+        """The prediction of no marker at all, M = 0, with Jacobians by `dofs` unknowns where given."""
+        empty = np.zeros((frames, 0))
+        prediction = cls(np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2)), empty, empty)
+        if dofs is None:
+            return prediction
+        by_tangent = {"centroid_jacobian": np.zeros((frames, 0, 2, dofs))}
+        return replace(prediction, **by_tangent, moment_jacobian=np.zeros((frames, 0, 3, dofs)))
+
+    @classmethod
     def concatenate(cls, stretches: list["RegionPrediction"]) -> "RegionPrediction":
         """One prediction of several stretches of frames, all with Jacobians or all without."""
         columns = {field.name: [getattr(one, field.name) for one in stretches] for field in fields(cls)}
@@ -153,6 +163,9 @@ class RegionModel:
         Returns:
             The prediction; wholly hidden markers keep the moments of their whole silhouette.
         """
+        if not self.placements:
+            dofs = pose.posture.skeleton.dof_count if jacobian else None
+            return RegionPrediction.unmarked(len(frame), dofs)
         count = max(1, round(len(frame) * len(self._marker_of) / PIECES_AT_ONCE))
         edges = [len(frame) * i // count for i in range(count + 1)]
         stretches = [slice(*pair) for pair in zip(edges[:-1], edges[1:], strict=True)]

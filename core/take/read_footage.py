@@ -46,7 +46,7 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
         expected_regions(take, take.frame_count or clip.frame_count) if len(take.keyframes) > 1 else None
     )
     # Before a camera that moves, no background stands still to tell the performer from.
-    with_album = not take.camera.is_moving
+    with_album = take.contours and not take.camera.is_moving
     reading = yield from within(
         FOLLOWING, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0
     )

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..body.kinematics import Body
 from ..footage.camera import Camera
+from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
@@ -28,11 +29,16 @@ class Take:
     camera: Camera
     body: Body
     markers: tuple[MarkerStyle, ...]
+    """The colored garments that are followed; none where the performer wears any clothes."""
     keyframes: tuple[Keyframe, ...]
     described_in: Path | None = None
     """The nearest file that describes it; None for the `take.json` of its folder."""
     title: str = ""
     """Its name; empty for the folder's name."""
+    keypoints: tuple[People, ...] = ()
+    """People seen by each source of keypoints: detectors, Blender's tracks, clicks."""
+    contours: bool = True
+    """Whether the contours of the body are followed, where the camera stands still."""
 
     @property
     def file(self) -> Path:

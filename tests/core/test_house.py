@@ -17,7 +17,8 @@ LINES_AT_MOST = 400
 ROOMS = (
     ("core.arrays", "core.text", "core.errors"),
     ("core.progress", "core.files"),
-    ("core.body", "core.footage"),
+    ("core.body",),
+    ("core.footage",),
     ("core.observation", "core.library"),
     ("core.prior",),
     ("core.take",),
@@ -31,6 +32,7 @@ ROOMS = (
     ("operators.shell",),
     ("operators.footage",),
     ("operators.markers",),
+    ("operators.keypoints",),
     ("operators.overlays",),
     ("operators.actor", "operators.library"),
     ("operators.matching",),

@@ -182,9 +182,8 @@ class RegionTerm:
         residual = np.where(weight > 0.0, residual, 0.0) * weight
         jacobian = (jacobian @ state.tangent_jacobian[:, None]) * weight[..., None]
         shape = (state.frames, count * FEATURES)
-        equations.add_biased_rows(
-            residual.reshape(shape), jacobian.reshape(*shape, -1), weight.reshape(shape)
-        )
+        by_posture = jacobian.reshape(*shape, jacobian.shape[-1])
+        equations.add_biased_rows(residual.reshape(shape), by_posture, weight.reshape(shape))
 
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of Student's t over all markers, up to a constant.
