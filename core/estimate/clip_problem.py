@@ -11,6 +11,7 @@ from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise
 from .windows import Window
 
@@ -43,6 +44,8 @@ class ClipProblem:
     """(F,) usual height of the lower ankle [m]; None where no floor is known."""
     keypoints: Keypoints
     """Of the performer, N of them."""
+    points: ObservedKeypoints
+    """The same, as they are compared."""
 
     @property
     def frames(self) -> int:

@@ -26,7 +26,9 @@ from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_mixed_keyframes
+from .keypoint_evidence import KeypointEvidence
 from .match_error import depth_std_m
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
 from .window_problem import WindowProblem
@@ -111,8 +113,18 @@ def estimate_whole_clip(
     index = np.array(keyframe_indices, dtype=np.intp)
     match_scale = np.zeros(len(index)) if match_scale is None else match_scale
     matched = match_scale > 0.0
+    keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
+    points = ObservedKeypoints.of(keypoints)
     reading = read_mixed_keyframes(
-        model, options.regions, observed[index], width_px[index], prior[index], index, match_scale
+        model,
+        options.regions,
+        observed[index],
+        width_px[index],
+        prior[index],
+        index,
+        match_scale,
+        KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources),
+        points[index],
     )
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = process_noise_factor(prior[index], tracks.time_s[index])
@@ -132,7 +144,8 @@ def estimate_whole_clip(
         depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
         lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
-        Keypoints.none(tracks.frame_count) if keypoints is None else keypoints,
+        keypoints,
+        points,
     )
     return (yield from _solve(problem, options, album, earlier))
 
