@@ -1,7 +1,7 @@
 """Calibration of keypoints on posed keyframes: where each sits on its segment, and how far it errs.
 
-Both are shrunk toward usual values, since keyframes are few: places toward where detectors usually have a point
-and toward its mirror image's, errors toward the usual one and that of all points of the same name.
+Both are shrunk toward usual values, since keyframes are few: places toward where detectors usually have a
+point and toward its mirror image's, errors toward the usual one and that of all points of the same name.
 """
 
 from dataclasses import dataclass, replace
@@ -15,16 +15,20 @@ from ..footage.keypoints.body_points import mirrored_point
 from ..observation.keypoints import USUAL_PLACES, KeypointModel
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
-from .terms.term import student_weight
 
 MIRRORED = 0.7
 """Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
 sides."""
 NAME_COUNT, POINT_COUNT = 40.0, 12.0
 """Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
-MEMORY_S = 0.2
+MEMORY_S = 0.15
 """Time in which an error fades to a third."""
-DEGREES = 4.0
+CLIP_FACTOR = 2.5
+"""Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
+a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
+turns it a long way toward or away from the camera, of which a linearised row knows nothing."""
+LARGEST_ERROR = 4.0
+"""A larger error, in standard deviations, is an outlier and counts as one this large."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +52,16 @@ class KeypointEvidence:
     ) -> "KeypointEvidence":
         """Keypoints before any keyframe is posed: usual places and errors."""
         return cls(
-            KeypointModel.usual(body, camera, names), sources, usual_std_m(names, sources), np.ones(len(names))
+            KeypointModel.usual(body, camera, names),
+            sources,
+            usual_std_m(names, sources),
+            np.ones(len(names)),
         )
+
+    @property
+    def error_m(self) -> Array:
+        """(N,) error along each axis of the image that the estimate of a clip reckons with [m]."""
+        return np.where(self.trust > 0.0, CLIP_FACTOR * self.std_m, np.inf)
 
     def with_camera(self, camera: Camera) -> "KeypointEvidence":
         """The same before another camera."""
@@ -59,7 +71,7 @@ class KeypointEvidence:
 def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
     """(N,) usual error of sure detections along each axis of the image [m].
 
-    Points of one source on one segment, a wrist and the knuckles, err together: all of them weigh as much as one.
+    Points of one source on one segment, a wrist and the knuckles, err together: all weigh as much as one.
     """
     joints = [USUAL_PLACES[name].joint for name in names]
     together = list(zip(joints, sources, strict=True))
@@ -138,7 +150,9 @@ def place_covariance(names: tuple[str, ...], sources: tuple[str, ...] | None = N
 def learned_std(
     model: KeypointModel, known: KnownKeypoints, usual_m: Array, std_m: Array, left: Array, noise: Array
 ) -> Array:
-    """(N,) error of a sure detection [m] by what is left at the keyframes, a step of expectation maximization.
+    """(N,) error of a sure detection [m] by what is left at the keyframes.
+
+    A step of expectation maximization, in which the rows' error is what is not known.
 
     Args:
         model: The points' model.
@@ -156,8 +170,8 @@ def learned_std(
     spread = own - own**2 * np.diagonal(inverse, axis1=1, axis2=2)
     squared = (mean**2 + spread).reshape(judged, points, 2).sum(-1) / scale**2  # of both axes [m²]
     used = known.observed.seen
-    weight = np.where(used, student_weight(squared / std_m**2, DEGREES, 2), 0.0)
-    total, count = (weight * squared).sum(axis=0), 2.0 * used.sum(axis=0)
+    bounded = np.minimum(squared, LARGEST_ERROR**2 * 2.0 * std_m**2)
+    total, count = np.where(used, bounded, 0.0).sum(axis=0), 2.0 * used.sum(axis=0)
     usual = usual_m**2
     stems = np.array([name.partition(".")[0] for name in model.names])
     variance = np.empty(points)

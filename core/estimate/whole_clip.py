@@ -8,6 +8,7 @@ annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from .contour_evidence import ContourEvidence, learn_contours
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
+from .keypoint_fit import KeypointFit, keypoint_fit
 from .match_error import depth_std_m
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
@@ -63,6 +65,13 @@ class WholeClipResult:
     """The problem it solves."""
     contours: ContourEvidence | None
     """The look of performer and background; None where no background can be trusted."""
+
+    @cached_property
+    def keypoints(self) -> KeypointFit:
+        """How the keypoints agree with the estimate."""
+        problem = self.problem
+        evidence = problem.evidence.keypoints
+        return keypoint_fit(evidence, problem.keypoints, problem.points, problem.swapped, self.posture)
 
     @property
     def evidence(self) -> KeyframeEvidence:
@@ -146,6 +155,7 @@ def estimate_whole_clip(
         lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
         keypoints,
         points,
+        np.zeros(points.seen.shape, dtype=bool),
     )
     return (yield from _solve(problem, options, album, earlier))
 

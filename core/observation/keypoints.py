@@ -1,9 +1,9 @@
 """Measurement model of keypoints: points fixed to segments, seen in the image, with Jacobians.
 
-A detector's shoulder or hip is not the joint's center, and a nose, a knuckle or a toe is no principal point at
-all. So every point of the body has a usual place in the frame of one of the skeleton's joints, from which a
-calibration departs. Hands and feet do not turn against forearm and shin in a posture; their points err by what
-wrists and ankles really do.
+A detector's shoulder or hip is not the joint's center, and a nose, a knuckle or a toe is no principal point
+at all. So every point of the body has a usual place in the frame of one of the skeleton's joints, from which
+a calibration departs. Hands and feet do not turn against forearm and shin in a posture; their points err by
+what wrists and ankles really do.
 """
 
 from collections.abc import Mapping

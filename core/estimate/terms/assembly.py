@@ -117,9 +117,8 @@ def _ankles(body: Body) -> tuple[int, ...]:
 
 def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> KeypointTerm:
     evidence = clip.evidence.keypoints
-    std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     kept = np.exp(-step_s / evidence.memory_s)[:, None]
-    return KeypointTerm(evidence.model, clip.points[window.frames], std_m, kept)
+    return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
 
 
 def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:

@@ -2,13 +2,13 @@
 
 Detectors err alike for many frames. Counted as independent their errors would average out, and be believed
 far too much. They are first-order processes instead, e_t = φ e_t-1 + noise of variance 1 - φ² in units of the
-error's own standard deviation, whose likelihood needs no unknowns of their own: a row for the first frame, and
+error's own standard deviation, whose likelihood needs no unknowns of its own: a row for the first frame, and
 e_t - φ e_t-1 for every later one (quasi-differences; Cochrane & Orcutt 1949). Where the error is known, at a
-keyframe, it stays known for a while: near keyframes such rows say how the motion goes on and little of where it
-is; far from them they say both.
+keyframe, it stays known for a while: near keyframes such rows say how the motion goes on and little of where
+it is; far from them they say both.
 
-Outliers are recognized twice, both by Student's t: as errors too large, which then tell of no other frame, and
-as errors that change too fast, as they do where a detector jumps to another thing.
+Outliers are recognized twice, both by Student's t: as errors too large, which then tell of no other frame,
+and as errors that change too fast, as they do where a detector jumps to another thing.
 """
 
 from dataclasses import dataclass
@@ -69,7 +69,8 @@ def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift) -> None:
 
     Args:
         equations: The equations.
-        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the leading unknowns.
+        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the leading
+            unknowns.
         rows: Their weights.
     """
     frames, points, size, dofs = jacobian.shape
