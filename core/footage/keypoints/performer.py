@@ -1,10 +1,10 @@
 """Who of the people that a detector saw is the performer: the likeliest path through all frames.
 
 A detector counts people anew in every frame, swaps them where they cross, and misses them where they are
-hidden. The path is found by the Viterbi algorithm, which may pass over frames. A person's cost is the distance
-from where the performer is expected; a step's cost is the distance from where the last sighting was heading
-and the change of its shape, both of which may grow with the time between. All are half squares of deviations,
-each limited, so that one wrong point or frame decides nothing.
+hidden. The path is found by the Viterbi algorithm, which may pass over frames. A person's cost is the
+distance from where the performer is expected; a step's cost is the distance from where the last sighting was
+heading and the change of its shape, both of which may grow with the time between. All are half squares of
+deviations, each limited, so that one wrong point or frame decides nothing.
 """
 
 from dataclasses import dataclass
