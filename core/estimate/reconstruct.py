@@ -124,7 +124,8 @@ def _reconstruct(
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    keypoints = performer_keypoints(take, prior)
+    keypoints = performer_keypoints(take, prior, tracks)
+    notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
