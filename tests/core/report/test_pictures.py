@@ -75,7 +75,7 @@ def test_large_frames_are_kept_no_larger_than_drawn(
     sizes = []
 
     def sheet(*given: object) -> np.ndarray:
-        sizes.extend(image.shape[:2] for image in given[-1].values())
+        sizes.extend(image.shape[:2] for image in given[3].values())
         return np.zeros((8, 8, 3), dtype=np.uint8)
 
     monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", sheet)
