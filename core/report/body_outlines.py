@@ -6,10 +6,19 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.kinematics import Pose
+from ..estimate.reconstruct import Reconstruction
 from ..observation.contours import SHARES, SIDES, ContourModel
 from .canvas import WHITE, Canvas, Color
 
 OUTLINE: Color = (150, 70, 150)
+
+
+def performer_contours(reconstruction: Reconstruction) -> ContourModel:
+    """The contours of a reconstruction's performer: those learned from the footage, or of an average body."""
+    solution = reconstruction.solution
+    if solution is not None and solution.contours is not None:
+        return solution.contours.model
+    return ContourModel.average(reconstruction.motion.body, reconstruction.model.camera)
 
 
 def draw_outlines(

@@ -12,6 +12,7 @@ from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.review import Review, review
+from keymark.core.review.used_evidence import used_evidence
 from keymark.core.take.evidence import with_evidence
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -132,6 +133,14 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
         assert np.nanmedian(found.keypoints.misfit) < 4.0
         assert not found.keypoints.thrown_out.all(axis=0).any()
     assert np.isfinite(found.confidence).all() and found.confidence[0] > found.confidence[4]
+    used = used_evidence(result)
+    assert (len(used.markers), len(used.keypoints)) == (len(partly.markers), int("keypoints" in kinds))
+    assert used.contours == (partly.contours and result.solution.contours is not None)
+    for said in used.keypoints:
+        assert said.points == names and 0.5 < said.believed <= 1.0
+    if used.markers:
+        filtered = used_evidence(run(reconstruct(partly, "ekf", result.reading)))
+        assert (filtered.markers, filtered.keypoints, filtered.contours) == (used.markers, (), False)
     assert same(Review.from_arrays(found.to_arrays()), found)
 
 
