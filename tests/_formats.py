@@ -157,6 +157,12 @@ def _record() -> dict[str, Any]:
         "matched": [5],
     }
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
+    value["evidence"] = {
+        "markers": ["trunk"],
+        "keypoints": [{"source": "a detector", "points": ["nose", "wrist.L"], "believed": 0.97}],
+        "depth_hints": False,
+        "contours": True,
+    }
     return value | {"files": {"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32}}
 
 
