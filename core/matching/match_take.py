@@ -16,6 +16,7 @@ from ..prior.keyframe_proposals import propose_keyframes
 from ..prior.keyframes import Keyframe, Matched
 from ..prior.marker_speed import marker_speed
 from ..progress import Job, Progress, stretch, within
+from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
 from ..take.take import Take
@@ -68,16 +69,21 @@ class LibraryChoice:
     holds."""
 
 
-def take_to_match(description: Description, keyframes: Path | None) -> Take:
+def take_to_match(
+    description: Description, keyframes: Path | None, settings: ConversionSettings | None = None
+) -> Take:
     """Read a take with the keyframes that a person posed, or with none where no file is named.
 
-    Keyframes that an earlier run has matched are left out, since they are matched anew.
+    Keyframes that an earlier run has matched are left out, since they are matched anew. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
 
     Raises:
         InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
-    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    take = read_described(
+        description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
+    )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
