@@ -7,14 +7,15 @@ from ..footage.keypoints.keypoints import Keypoints
 from .take import Take
 
 
-def performer_keypoints(take: Take, prior: Posture) -> Keypoints:
+def performer_keypoints(take: Take, prior: Posture | None, frame_count: int | None = None) -> Keypoints:
     """The keypoints of the performer from all sources, side by side.
 
     Args:
         take: The take.
-        prior: F postures, roughly where the performer is.
+        prior: F postures, roughly where the performer is; None before there are keyframes.
+        frame_count: F where there is no prior.
     """
-    frames = prior.batch[0]
+    frames = prior.batch[0] if prior is not None else frame_count or 0
     parts = []
     for people in take.keypoints:
         if people.most_people > 1:
