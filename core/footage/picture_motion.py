@@ -1,7 +1,7 @@
-"""How much the pictures of a clip change from frame to frame: a speed where nothing of the performer is known.
+"""How much a clip's pictures change from frame to frame: a speed where nothing of the performer is known.
 
-What moves sweeps over an area of about twice its height times its way in the picture: once where it goes, once
-where it was. So the changed area over that height is roughly a speed.
+What moves sweeps over an area of about twice its height times its way in the picture: once where it goes,
+once where it was. So the changed area over that height is roughly a speed.
 """
 
 from collections.abc import Generator

@@ -1,8 +1,8 @@
 """V_sum of whatever shows the performer: how fast markers, keypoints or the pictures themselves move.
 
-With markers alone it is the paper's sum (eq. 8). Keypoints are many, and each jitters: their paths are cleaned of
-outliers and smoothed, and each of the five parts of the body counts once, by the mean of all that shows it,
-markers included. Without either the change of the pictures stands for it.
+With markers alone it is the paper's sum (eq. 8). Keypoints are many, and each jitters: their paths are
+cleaned of outliers and smoothed, and each of the five parts of the body counts once, by the mean of all that
+shows it, markers included. Without either the change of the pictures stands for it.
 """
 
 from dataclasses import dataclass

@@ -40,7 +40,7 @@ def principal_keypoints(keypoints: Keypoints) -> Keypoints:
 
 
 def performer_size_px(keypoints: Keypoints) -> Array:
-    """(F,) larger side of the box around all keypoints [px], at least the clip's median; 0 where none is seen."""
+    """(F,) larger side of the box around all keypoints [px], at least the clip's median; 0 without any."""
     seen = keypoints.seen
     if not seen.any():
         return np.zeros(keypoints.frame_count)
@@ -104,4 +104,3 @@ def _mean(values: Array, weight: Array) -> Array:
     total = weight.sum(axis=1)[:, None]
     summed = (weight[..., None] * np.where(weight[..., None] > 0.0, values, 0.0)).sum(axis=1)
     return np.where(total > 0.0, summed / np.where(total > 0.0, total, 1.0), np.nan)
-

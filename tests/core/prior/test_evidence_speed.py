@@ -25,7 +25,9 @@ def swinging(names: tuple[str, ...] = NAMES) -> Array:
 def seen(pixel: Array, names: tuple[str, ...] = NAMES, score: float = 1.0) -> Keypoints:
     """Keypoints at those places, all equally sure."""
     shape = pixel.shape[:2]
-    return Keypoints(names, ("test",) * len(names), pixel, np.full(shape, score), np.full((*shape, 3), np.nan))
+    return Keypoints(
+        names, ("test",) * len(names), pixel, np.full(shape, score), np.full((*shape, 3), np.nan)
+    )
 
 
 def marked(centroid: Array) -> RegionTracks:
