@@ -1,7 +1,7 @@
 """Keypoints of one person by MediaPipe Pose, as a file that Keymark reads.
 
-A program of its own, which imports nothing of Keymark: it runs in a virtual environment with the distributions
-of `mediapipe_pose.txt`, whose OpenCV would clash with Keymark's. The network comes with pip's `mediapipe`;
+A program of its own, which imports nothing of Keymark: it runs in a virtual environment with what
+`mediapipe_pose.txt` lists, whose OpenCV would clash with Keymark's. The network comes with pip's `mediapipe`;
 nothing is downloaded here.
 
     python mediapipe_pose.py CLIP --output keypoints.json
@@ -30,7 +30,7 @@ IMAGES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".tif", ".tiff", ".webp"})
 FAILED, UNUSABLE = 1, 2
 
 
-class Stop(Exception):
+class StopError(Exception):
     """An end of the program: its exit status, and a sentence that says why."""
 
     def __init__(self, status: int, sentence: str) -> None:
@@ -43,7 +43,7 @@ class OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise instead of writing the usage."""
-        raise Stop(UNUSABLE, f"{message}; see --help")
+        raise StopError(UNUSABLE, f"{message}; see --help")
 
 
 class Frames:
@@ -53,7 +53,7 @@ class Frames:
         """Open the clip.
 
         Raises:
-            Stop: There is no such clip, or it cannot be decoded.
+            StopError: There is no such clip, or it cannot be decoded.
         """
         import cv2
 
@@ -65,15 +65,15 @@ class Frames:
             files = (file for file in path.iterdir() if file.suffix.lower() in IMAGES)
             self._images = sorted((file for file in files if file.name[:1] != "."), key=_by_number)
             if not self._images:
-                raise Stop(UNUSABLE, f"{path}: holds no images; a clip is a video or a folder of images")
+                raise StopError(UNUSABLE, f"{path}: holds no images; a clip is a video or a folder of images")
             self.count = len(self._images)
             return
         if not path.is_file():
-            raise Stop(UNUSABLE, f"{path}: no such file; a clip is a video or a folder of images")
+            raise StopError(UNUSABLE, f"{path}: no such file; a clip is a video or a folder of images")
         self._video = cv2.VideoCapture(str(path))
         self._video.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)  # as Blender and Keymark turn it
         if not self._video.isOpened():
-            raise Stop(UNUSABLE, f"{path}: cannot be decoded; a clip is a video or a folder of images")
+            raise StopError(UNUSABLE, f"{path}: cannot be decoded; a clip is a video or a folder of images")
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
         self.count = int(self._video.get(cv2.CAP_PROP_FRAME_COUNT))
 
@@ -83,7 +83,7 @@ class Frames:
             for file in self._images:
                 picture = self._cv2.imread(str(file), self._cv2.IMREAD_COLOR)
                 if picture is None:
-                    raise Stop(UNUSABLE, f"{file}: cannot be decoded; it must be an image")
+                    raise StopError(UNUSABLE, f"{file}: cannot be decoded; it must be an image")
                 yield picture
             return
         while True:
@@ -97,7 +97,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     """The options of the command line.
 
     Raises:
-        Stop: They are unusable.
+        StopError: They are unusable.
     """
     parser = OneLineParser(
         prog="mediapipe_pose.py", description="Finds the keypoints of one person with MediaPipe Pose."
@@ -115,7 +115,7 @@ def parse(words: list[str]) -> argparse.Namespace:
         metavar=("X", "Y", "WIDTH", "HEIGHT"),
         type=int,
         nargs=4,
-        help="search this part of the picture alone, in pixels from its top left corner: one of several people",
+        help="search this part of the picture alone, as for one of several people [pixels]",
     )
     parser.add_argument(
         "--still-images", action="store_true", help="search each picture anew instead of following the person"
@@ -148,7 +148,7 @@ def detect(options: argparse.Namespace) -> dict[str, Any]:
     """Run the network over the clip; returns the content of the keypoint file.
 
     Raises:
-        Stop: The clip cannot be read, or the network cannot be loaded.
+        StopError: The clip cannot be read, or the network cannot be loaded.
     """
     frames = Frames(options.clip)
     network = _network(options)
@@ -158,7 +158,7 @@ def detect(options: argparse.Namespace) -> dict[str, Any]:
     for index, picture in enumerate(frames):
         height, width = picture.shape[:2]
         if size is not None and size != (width, height):
-            raise Stop(
+            raise StopError(
                 UNUSABLE,
                 f"{options.clip}: frame {index + options.frame_start} has {width} x {height} pixels; "
                 f"all must have {size[0]} x {size[1]}",
@@ -171,7 +171,7 @@ def detect(options: argparse.Namespace) -> dict[str, Any]:
         world.append(_space_points(result))
         print(f"frame {index + 1}/{max(frames.count, index + 1)}", flush=True)
     if size is None:
-        raise Stop(UNUSABLE, f"{options.clip}: holds no frame that can be decoded")
+        raise StopError(UNUSABLE, f"{options.clip}: holds no frame that can be decoded")
     content: dict[str, Any] = {
         "detector": f"MediaPipe Pose {_version()}, landmark model {options.model}",
         "layout": LAYOUT,
@@ -190,7 +190,7 @@ def write(path: Path, content: dict[str, Any]) -> None:
     """Write the file whole or not at all.
 
     Raises:
-        Stop: It cannot be written.
+        StopError: It cannot be written.
     """
     text = json.dumps(content, allow_nan=False, separators=(",", ":")) + "\n"
     beside = ""
@@ -205,7 +205,7 @@ def write(path: Path, content: dict[str, Any]) -> None:
     except OSError as error:
         if beside and os.path.exists(beside):
             os.remove(beside)
-        raise Stop(FAILED, f"{path}: cannot be written ({error.strerror or error})") from error
+        raise StopError(FAILED, f"{path}: cannot be written ({error.strerror or error})") from error
 
 
 def _network(options: argparse.Namespace) -> Any:
@@ -214,7 +214,7 @@ def _network(options: argparse.Namespace) -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise Stop(
+        raise StopError(
             FAILED,
             f"mediapipe cannot be loaded ({error}); install {Path(__file__).with_suffix('.txt').name} "
             "into a virtual environment and run this program with its Python",
@@ -222,7 +222,7 @@ def _network(options: argparse.Namespace) -> Any:
     folder = Path(mediapipe.__file__).parent / "modules" / "pose_landmark"
     model = folder / f"pose_landmark_{options.model}.tflite"
     if not model.is_file():  # else MediaPipe would download it
-        raise Stop(UNUSABLE, f"--model is {options.model}; {model} is missing, and full is always there")
+        raise StopError(UNUSABLE, f"--model is {options.model}; {model} is missing, and full is always there")
     return mediapipe.solutions.pose.Pose(
         static_image_mode=options.still_images,
         model_complexity=MODELS[options.model],
@@ -268,7 +268,7 @@ def _part(region: list[int] | None, width: int, height: int) -> tuple[int, int, 
         return 0, 0, width, height
     left, top, across, down = region
     if min(left, top) < 0 or min(across, down) < 1 or left + across > width or top + down > height:
-        raise Stop(
+        raise StopError(
             UNUSABLE,
             f"--region is {' '.join(map(str, region))}; it must lie within {width} x {height} pixels",
         )
@@ -293,7 +293,7 @@ def main(words: list[str]) -> int:
     try:
         options = parse(words)
         write(options.output, detect(options))
-    except Stop as stop:
+    except StopError as stop:
         print(f"mediapipe_pose.py: {stop}", file=sys.stderr)
         return stop.status
     except KeyboardInterrupt:
