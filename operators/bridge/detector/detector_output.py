@@ -5,7 +5,6 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
-from ....core.files.safe_path import check_symlinks
 
 OUTPUT_NAME = "keypoints.json"
 """The file that `{output}` stands for."""
@@ -37,7 +36,7 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
     """The keypoint file that a detector wrote, or the folder of its files.
 
     Args:
-        folder: The detector's own folder.
+        folder: The detector's own folder, links resolved.
         detector: Its name, for sentences.
         clip: The clip, for sentences.
 
@@ -63,8 +62,13 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
             )
         files = _json_files(holding[0])
         found = files[0] if len(files) == 1 else holding[0]
-    inside = _json_files(found) if found.is_dir() else []
-    check_symlinks([found, *inside], [folder])
+    for file in (found, *(_json_files(found) if found.is_dir() else ())):
+        real = Path(os.path.realpath(file))
+        if not real.is_relative_to(folder):
+            raise InputError(
+                f"{clip}: the detector {detector} wrote {file.relative_to(folder)} as a link to {real}; it must "
+                "write a file"
+            )
     return found
 
 
