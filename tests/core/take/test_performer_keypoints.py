@@ -11,6 +11,7 @@ from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Matched
 from keymark.core.take.performer_keypoints import performer_keypoints
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
@@ -62,6 +63,17 @@ def test_keyframes_say_who_the_performer_is(take: Take) -> None:
     assert note == (
         f"detector: up to 2 people in {FRAMES} frames; the performer is the one that the keyframes show"
     )
+
+
+def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take) -> None:
+    """A library is matched beside a single posed keyframe; one that was matched says nothing."""
+    people, truth = two_people(take)
+    one = replace(take, keyframes=take.keyframes[1:2], keypoints=(people,))
+    found = performer_keypoints(one, None)
+    assert_shows(found, people, truth)
+    assert "the keyframes show" in found.notes[0]
+    matched = replace(one.keyframes[0], matched=Matched("walking", "Left foot lands", False, 0.9))
+    assert "click a point" in performer_keypoints(replace(one, keyframes=(matched,)), None).notes[0]
 
 
 @pytest.mark.parametrize("twin", [False, True])
