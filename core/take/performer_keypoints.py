@@ -27,6 +27,9 @@ MARKER_STD, HAND_STD = 0.15, 0.1
 """Of a marker's center from the middle of its segment, and of a click, as shares of a person's size."""
 POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
 """Of the frames in which a person has said where the performer is; all others count once."""
+FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
+"""Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
+ELSEWHERE = "nobody in it is where most posed keyframes have the performer, so it is left out; it must be of this clip"
 TRUNK_ENDS = ("shoulder.L", "shoulder.R", "hip.L", "hip.R")
 ENDS = {
     "upper_arm": ("shoulder", "elbow"),
@@ -58,7 +61,11 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
             expected = _expected(take, prior, tracks, hand, points, seen, frames)
             if expected is not None or people.most_people > 1:
                 chosen = choose_performer(seen, expected, take.fps)
-                notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+                if _is_somebody_else(take, people, chosen):
+                    chosen = np.full(frames, NOBODY, dtype=np.intp)
+                    notes += (f"{people.source}: {ELSEWHERE}",)
+                else:
+                    notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
         parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
 
@@ -69,6 +76,17 @@ def _frame_count(take: Take, prior: Posture | None, tracks: RegionTracks | None)
     if tracks is not None:
         return tracks.frame_count
     return take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
+
+
+def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
+    """Whether most posed keyframes say that none of the people is the performer."""
+    fits = [
+        chosen[keyframe.index] != NOBODY
+        for keyframe in take.keyframes
+        if keyframe.matched is None and keyframe.index < min(len(people.frames), len(chosen))
+        if len(people.frames[keyframe.index].pixel)
+    ]
+    return len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING
 
 
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:

@@ -146,6 +146,20 @@ def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
     assert found.notes[0] == "Read." and "6 frames of 30" in found.notes[1]
 
 
+def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:
+    """Where most keyframes show nobody near the performer, the rest is chance."""
+    pixel = performer_pixels(take)
+    keyed = [keyframe.index for keyframe in take.keyframes]
+    pixel[keyed[1:]] += 8 * SHIFT
+    none = np.full((1, 13, 3), np.nan)
+    frames = tuple(SeenPeople(pixel[index][None], np.ones((1, 13)), none) for index in range(FRAMES))
+    people = People(take.body.skeleton.point_names, "detector", take.camera.resolution, frames)
+    found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
+    assert not found.seen.any()
+    (note,) = found.notes
+    assert "most posed keyframes" in note and "left out" in note
+
+
 def test_what_a_person_placed_is_taken_as_it_is(take: Take) -> None:
     """Also where it is far from the keyframes; frames that the clip does not have are left."""
     far = np.full((1, 1, 2), 3.0)
