@@ -15,8 +15,8 @@ from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
+from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
-from ..prior.marker_speed import marker_speed
 from ..prior.performer_offset import with_offset
 from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
@@ -48,7 +48,7 @@ class Reconstruction:
     reading: Reading
     """Data read from the clip, for another reconstruction of it."""
     speed: Array
-    """(F,) V_sum of paper eq. 8 [px per frame]."""
+    """(F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """Notes on the result for people, one sentence each."""
     keypoints: Keypoints
@@ -139,7 +139,8 @@ def _reconstruct(
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    keypoints = performer_keypoints(take, prior)
+    keypoints = performer_keypoints(take, prior, tracks)
+    notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
@@ -150,10 +151,11 @@ def _reconstruct(
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
+    moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
+    speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    speed = marker_speed(tracks)
-    return Reconstruction(motion, baseline, reading, speed, notes, keypoints, model, solution)
+    return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 
 
 def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
