@@ -97,15 +97,30 @@ def reconstruct(
 
 
 def check_reconstructible(take: Take, method: str) -> None:
-    """Check method and keyframes, which do not depend on the clip.
+    """Check method, keyframes and evidence, which do not depend on the clip.
 
     Raises:
-        InputError: The method is unknown, or there are too few keyframes.
+        InputError: The method is unknown or needs markers that the take has not got, or there are too few
+            keyframes.
+    """
+    check_method(take, method)
+    if len(take.keyframes) < 2:
+        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
+
+
+def check_method(take: Take, method: str) -> None:
+    """Check that a take can be reconstructed by a method, once it has keyframes.
+
+    Raises:
+        InputError: The method is unknown, or needs markers that the take has not got.
     """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
-    if len(take.keyframes) < 2:
-        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
+    if method == "ekf" and not take.markers:
+        raise InputError(
+            f"{take.name}: method is ekf, the paper's filter, which follows markers alone, and this take is "
+            "held against none; map is valid, which uses keypoints and contours too"
+        )
 
 
 def _reconstruct(
@@ -124,7 +139,8 @@ def _reconstruct(
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    keypoints = performer_keypoints(take, prior)
+    keypoints = performer_keypoints(take, prior, tracks)
+    notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":

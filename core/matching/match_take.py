@@ -17,6 +17,7 @@ from ..prior.evidence_speed import evidence_speed
 from ..prior.keyframe_proposals import propose_keyframes
 from ..prior.keyframes import Keyframe, Matched
 from ..progress import Job, Progress, run, stretch, within
+from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import read_footage
@@ -71,16 +72,21 @@ class LibraryChoice:
     holds."""
 
 
-def take_to_match(description: Description, keyframes: Path | None) -> Take:
+def take_to_match(
+    description: Description, keyframes: Path | None, settings: ConversionSettings | None = None
+) -> Take:
     """Read a take with the keyframes that a person posed, or with none where no file is named.
 
-    Keyframes that an earlier run has matched are left out, since they are matched anew.
+    Keyframes that an earlier run has matched are left out, since they are matched anew. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
 
     Raises:
         InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
-    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    take = read_described(
+        description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
+    )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
@@ -114,7 +120,7 @@ def match_take(
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to match with")
-    keypoints = performer_keypoints(take, None, reading.tracks.frame_count)
+    keypoints = performer_keypoints(take, None, reading.tracks)
     if not (reading.tracks.visible.any() or keypoints.seen.any()):
         raise InputError(_nothing_seen(take))
     with threadpool_limits(limits=1, user_api="blas"):

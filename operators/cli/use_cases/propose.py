@@ -44,7 +44,7 @@ def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     bare = not take.markers and not take.keypoints
     unposed = replace(take, keyframes=(), contours=take.contours and bare)
     reading = yield from stretch(read_footage(unposed), 0.0, READING_SHARE)
-    keypoints = performer_keypoints(unposed, None, reading.tracks.frame_count)
+    keypoints = performer_keypoints(unposed, None, reading.tracks)
     moved = evidence_speed(reading.tracks, unposed.marker_segments, keypoints, reading.album)
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 
