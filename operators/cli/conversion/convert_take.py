@@ -203,13 +203,13 @@ def _recorded_files(output: Path) -> Mapping[str, str]:
 
 def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:
     if settings.library is None:
-        return read_described(description, settings.keyframes)
+        return read_described(description, settings.keyframes, settings=settings)
     if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
             f"{output}: is the take's own folder, whose {KEYFRAMES} the matched keyframes would replace; "
             "name another folder"
         )
-    return take_to_match(description, settings.keyframes)
+    return take_to_match(description, settings.keyframes, settings)
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
