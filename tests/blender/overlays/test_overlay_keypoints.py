@@ -51,7 +51,7 @@ def test_crosses_lie_where_keypoints_are_seen_and_rings_where_the_motion_puts_th
 
 
 def test_what_is_not_believed_hidden_or_swapped_is_told_by_its_shape() -> None:
-    """A slanting cross without a line; nothing but the ring of a hidden one; a square around a swapped one."""
+    """A slanting cross without a line; of a hidden one the ring alone; a square around a swapped one."""
     _, _, upright, slanting, _ = compared_marks(KEYPOINTS, 1, FOOTAGE.to_region, ALL, STYLE)
     assert len(centers(upright)) == 2
     assert centers(slanting) == pytest.approx(FOOTAGE.to_region(KEYPOINTS.seen[1, :1]))
