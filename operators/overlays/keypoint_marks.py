@@ -1,7 +1,7 @@
 """Keypoints as items: a cross where each is seen, a ring where the motion puts it, marks of what is wrong.
 
-Shapes tell apart what colors do: a keypoint that is not believed is a slanting cross, one of the other side a
-cross in a square.
+Shapes tell apart what colors do: a keypoint that is not believed is a slanting cross, one that its source saw
+on the other side of the body a cross in a square.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import Array, BoolArray
+from ...core.footage.keypoints.body_points import mirrored_point
 from ..keypoints.frame_keypoints import FrameKeypoints
 from .figures import circles, segments
 from .picture import Item, Stroke
@@ -59,7 +60,7 @@ def compared_marks(
     thrown_out, swapped = keypoints.thrown_out[index], keypoints.swapped[index]
     red = np.broadcast_to(style.color(THROWN_OUT), colors.shape)
     links = np.stack([seen, predicted], axis=1)
-    linked = np.isfinite(links).all(axis=(-2, -1)) & ~thrown_out & ~swapped
+    linked = np.isfinite(links).all(axis=(-2, -1)) & ~thrown_out
     shown = np.isfinite(seen).all(axis=-1)
     rims = circles(predicted, style.size(RING), 12)
     ringed = np.isfinite(predicted).all(axis=-1)
@@ -101,7 +102,7 @@ def not_yet_compared(
     for each in seen:
         pixel = each.pixel.copy()
         for column, name in enumerate(each.names):
-            same = [i for i, other in enumerate(keypoints.names) if other == name]
+            same = [i for i, other in enumerate(keypoints.names) if other in (name, mirrored_point(name))]
             apart = np.linalg.norm(pixel[:, column, None] - keypoints.seen[index, same], axis=-1)
             pixel[(apart < SAME_PX).any(axis=1), column] = np.nan
         if np.isfinite(pixel).any():

@@ -30,7 +30,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     show_keypoints: bpy.props.BoolProperty(
         name="Keypoints",
         description="Mark each keypoint with a cross where it is seen, with a ring where the motion puts it; "
-        "a slanting cross is not believed, one in a square belongs to the other side of the body",
+        "a slanting cross is not believed, one in a square was seen on the other side of the body",
         default=True,
         update=_changed,
     )

@@ -61,7 +61,7 @@ def test_what_is_not_believed_hidden_or_swapped_is_told_by_its_shape() -> None:
     links, _, upright, _, _ = compared_marks(KEYPOINTS, 2, FOOTAGE.to_region, ALL, STYLE)
     assert len(links.segments) == len(centers(upright)) == 2
     links, _, _, _, squares = compared_marks(KEYPOINTS, 4, FOOTAGE.to_region, ALL, STYLE)
-    assert len(links.segments) == 2 and len(squares.segments) == 4
+    assert len(links.segments) == 3 and len(squares.segments) == 4
 
 
 def test_only_what_the_motion_does_not_know_yet_is_drawn_beside_it() -> None:

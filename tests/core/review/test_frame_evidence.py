@@ -44,12 +44,20 @@ def test_points_of_the_face_are_one_witness() -> None:
     keypoints = of_names(("nose", "ear.L", "ear.R", "wrist.L"))
     keypoints.distance_px[:] = [1.0, 2.0, 30.0, 3.0]
     keypoints.distance_px[1, 0], keypoints.distance_px[2, :3] = np.nan, np.nan
-    keypoints.score[:, 1] = 1.0
+    keypoints.confidence[:, 1] = 1.0
     assert keypoints.parts() == ("head", "wrist.L")
     assert keypoints.by_part(keypoints.distance_px)[:3] == pytest.approx(
         np.array([[2.0, 3.0], [16.0, 3.0], [np.nan, 3.0]]), nan_ok=True
     )
     assert keypoints.quality()[0].tolist() == [1.0, 0.9]
+
+
+def test_points_that_are_left_out_all_along_are_missed_by_nobody() -> None:
+    """They are no part, and neither agree nor disagree."""
+    keypoints = of_names(("wrist.L", "knee.R"))
+    keypoints.expected_px[:, 0], keypoints.confidence[:, 0] = np.inf, 0.0
+    assert keypoints.parts() == ("knee.R",) and keypoints.quality().shape == (FRAMES, 1)
+    assert np.isnan(keypoints.misfit[:, 0]).all() and np.isfinite(keypoints.misfit[:, 1]).all()
 
 
 def test_what_is_thrown_out_has_no_say_in_the_confidence() -> None:
@@ -69,7 +77,7 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
     """A sleeve shows the wrist, elbow and wrist together show the sleeve; one end alone does not."""
     names = ("elbow.L", "wrist.L", "knee.R")
     keypoints = of_names(names)
-    keypoints.score[1, 1] = keypoints.score[1:3, 2] = 0.0
+    keypoints.confidence[1, 1] = keypoints.confidence[1:3, 2] = 0.0
     quality = np.ones((FRAMES, 2))
     quality[:2, 0] = 0.0
     nothing = np.full((FRAMES, 2), np.nan)
