@@ -1,3 +1,4 @@
-"""Step 2 beside the markers: keypoints of a detector, Blender's tracks and clicked points."""
+"""Step 2, what to follow: keypoints of a detector, Blender's tracks, clicked points, contours; the panels."""
 
+PROPERTIES = ("properties",)
 MODULES = ()

@@ -6,21 +6,21 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, footage, idle, markers
+from ..shell.requirements import actor, footage, idle
 from ..shell.takes import active_take, footage_of
 
 
 class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
-    """Save footage, camera, actor, markers and keyframes as a take folder, to convert it elsewhere"""
+    """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
 
     bl_idname = "keymark.save_take"
     bl_label = "Save Take"
     bl_options = {"REGISTER"}
-    requirements = (footage, actor, markers, idle)
+    requirements = (footage, actor, idle)
 
     directory: bpy.props.StringProperty(
         name="Folder",
@@ -48,7 +48,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
                 footage_of(context.scene, scene_take),
                 scene_take.armature,
                 scene_take.keyframe_action,
-                marker_styles(scene_take),
+                scene_evidence(scene_take),
                 known_matches(scene_take),
             )
         )
