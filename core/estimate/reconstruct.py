@@ -28,6 +28,7 @@ from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
+from .keypoint_fit import KeypointFit
 from .match_error import undetermined_covariance
 from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .unobserved_variance import unobserved_variance
@@ -57,6 +58,11 @@ class Reconstruction:
     """The markers' region model: calibrated on the keyframes, or of average placements."""
     solution: WholeClipResult | None = None
     """Result of method `map`, for another to start from."""
+
+    @property
+    def keypoint_fit(self) -> KeypointFit | None:
+        """How the keypoints agree with the motion, point by point; None without keypoints or `map`."""
+        return self.solution.keypoints if self.solution is not None and self.keypoints.names else None
 
     @property
     def tracks(self) -> RegionTracks:
