@@ -16,6 +16,12 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
     return "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
 
 
+def keypoint_files(context: bpy.types.Context) -> str | None:
+    """The take has a file of keypoints."""
+    take = find_take(context.scene)
+    return None if take and len(take.follow.files) else "Load keypoints first"
+
+
 def points_to_follow(context: bpy.types.Context) -> str | None:
     """The take follows markers, keypoints or tracks; contours alone are not enough."""
     take = find_take(context.scene)
