@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from _character_maps import full_map, full_record
 from _libraries import small_library
-from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
+from _synthetic_take import BODY, true_postures, write_json, write_keypoints, write_synthetic_take
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.retarget.maps.character_map_file import map_to_json, read_character_map
@@ -58,6 +58,7 @@ class Format:
 def formats(folder: Path) -> dict[str, Format]:
     """All formats by name; the files around them are written into `folder`."""
     take = write_synthetic_take(folder / "take", FRAMES, 4)
+    write_keypoints(take / "keypoints.json", true_postures(FRAMES))
     said = _said(take)
     all_formats = [
         Format("take", said, _take(take), whole=True),
@@ -96,6 +97,7 @@ def _said(take: Path) -> dict[str, Any]:
     said["actor"]["height_m"] = 1.75
     said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
     said["character"] = dict(CHARACTER)
+    said |= {"keypoints": ["keypoints.json"], "evidence": ["markers", "keypoints", "contours"]}
     return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
 
 
@@ -109,7 +111,7 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
-    settings["character"] = {"file": "anna.VRM"}
+    settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 
@@ -155,6 +157,12 @@ def _record() -> dict[str, Any]:
         "matched": [5],
     }
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
+    value["evidence"] = {
+        "markers": ["trunk"],
+        "keypoints": [{"source": "a detector", "points": ["nose", "wrist.L"], "believed": 0.97}],
+        "depth_hints": False,
+        "contours": True,
+    }
     return value | {"files": {"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32}}
 
 

@@ -259,7 +259,7 @@ def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | Non
     from ...core.prior.marker_speed import marker_speed
 
     reading, review = reading_of(take), review_of(take)
-    if reading is not None and take.clip is not None:
+    if reading is not None and reading.tracks.visible.any() and take.clip is not None:
         footage = footage_of(scene, take)
         key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
 

@@ -1,4 +1,4 @@
-"""COCO's result files, as AlphaPose and many others write them: people in a list, with their images' numbers."""
+"""COCO's result files, as AlphaPose and others write them: people in a list, with their images' numbers."""
 
 import re
 from typing import Any

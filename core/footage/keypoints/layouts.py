@@ -3,8 +3,8 @@
 What the points mean differs between detectors. COCO's points were clicked by people who saw clothes, so that
 hips lie higher and farther apart than the joints; OpenPose's Neck and MidHip are the middles of shoulders and
 hips; Halpe's Head is the top of the head, its Neck and Hip are points of their own; BlazePose's foot index is
-the tip of the big toe, and its mouth and the corners of its eyes are left out. Layouts without a point for the
-head have the ears: what was seen is kept, and the estimate makes of it what it can.
+the tip of the big toe, and its mouth and the corners of its eyes are left out. Layouts without a point for
+the head have the ears: what was seen is kept, and the estimate makes of it what it can.
 """
 
 from collections.abc import Mapping, Sequence

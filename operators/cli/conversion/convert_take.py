@@ -13,10 +13,12 @@ from ....core.library.library import Library
 from ....core.library.library_file import library_digest
 from ....core.matching.match_take import take_to_match
 from ....core.progress import run
+from ....core.report.body_outlines import performer_contours
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
 from ....core.retarget.maps.choose_map import map_digests
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import RetargetRecord
+from ....core.review.compare_keypoints import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 from ....core.take.conversion_record import find_record, write_record
@@ -140,7 +142,15 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     write_made_digests(staging_folder, curves)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
-        write_pictures(staging_folder / REPORT, take, result.motion, result.tracks, result.speed)
+        write_pictures(
+            staging_folder / REPORT,
+            take,
+            result.motion,
+            result.tracks,
+            result.speed,
+            compare_keypoints(result),
+            performer_contours(result),
+        )
     made = [name for name in (*RESULT_FILES, KEYFRAMES) if (staging_folder / name).exists()]
     prepared.kept_names.update(
         changed_files(
@@ -193,13 +203,13 @@ def _recorded_files(output: Path) -> Mapping[str, str]:
 
 def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:
     if settings.library is None:
-        return read_described(description, settings.keyframes)
+        return read_described(description, settings.keyframes, settings=settings)
     if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
             f"{output}: is the take's own folder, whose {KEYFRAMES} the matched keyframes would replace; "
             "name another folder"
         )
-    return take_to_match(description, settings.keyframes)
+    return take_to_match(description, settings.keyframes, settings)
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:

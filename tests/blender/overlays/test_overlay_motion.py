@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from _review import made_up_keypoints
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review.review import Review
@@ -54,6 +55,7 @@ def review() -> Review:
         confidence=np.ones(FRAMES),
         keyframe_indices=np.array([0, 12, 39]),
         weak_frames=(),
+        keypoints=made_up_keypoints(FRAMES),
     )
 
 
