@@ -59,26 +59,16 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
     """
     readouts = []
     for people in take.keypoints:
-        performer = None
-        with findings.catching():
-            performer = _performer(take, people, frames)
-        if performer is not None:
-            readouts.append(_readout(take, people, performer, findings))
+        performer = _performer(take, people, frames)
+        findings.warn(*people.notes)
+        readouts.append(_readout(take, people, performer, findings))
     return tuple(readouts)
 
 
-def _performer(take: Take, people: People, frames: int) -> Keypoints | None:
-    """The performer's keypoints; None where several people are seen and no keyframe says who performs."""
-    if len(take.keyframes) > 1:
-        return performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, frames))
-    if people.most_people > 1:
-        return None
-    score = np.zeros((len(people.frames), len(people.names)))
-    pixel, hint = np.full((*score.shape, 2), np.nan), np.full((*score.shape, 3), np.nan)
-    for index, seen in enumerate(people.frames):
-        if len(seen.pixel):
-            pixel[index], score[index], hint[index] = seen.pixel[0], seen.score[0], seen.hint_m[0]
-    return Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint)
+def _performer(take: Take, people: People, frames: int) -> Keypoints:
+    """The performer's keypoints of one file: of whom the keyframes show, or is seen best."""
+    prior = interpolate(take.keyframes, frames) if len(take.keyframes) > 1 else None
+    return performer_keypoints(replace(take, keypoints=(people,), frame_count=frames), prior)
 
 
 def _readout(take: Take, people: People, performer: Keypoints, findings: Findings) -> KeypointReadout:
@@ -89,9 +79,11 @@ def _readout(take: Take, people: People, performer: Keypoints, findings: Finding
         findings.problem(f"{name}: the performer is seen in no frame; are they keypoints of this clip?")
     elif share < FEWEST_FRAMES:
         findings.warn(f"{name}: the performer is seen in {share:.0%} of the frames only")
-    error = None
-    if found.any():
-        error = _check_agreement(take, performer, name, findings)
+    if people.most_people > 1 and not take.keyframes and not people.by_hand:
+        findings.warn(
+            f"{name}: shows up to {people.most_people} people, and no keyframe says which of them performs"
+        )
+    error = _check_agreement(take, performer, name, findings) if found.any() else None
     return KeypointReadout(
         file=name,
         source=people.source,
