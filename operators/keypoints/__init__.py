@@ -2,6 +2,7 @@
 
 PROPERTIES = ("properties",)
 MODULES = (
+    "detect_keypoints",
     "load_keypoints",
     "remove_keypoints",
     "click_point",

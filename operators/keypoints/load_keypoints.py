@@ -12,7 +12,7 @@ from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of
-from .keypoint_paths import keypoint_path, set_keypoint_path
+from .keypoint_paths import add_keypoint_file
 from .keypoint_readings import clear_readings
 
 if TYPE_CHECKING:
@@ -58,6 +58,8 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         path = _whole(Path(bpy.path.abspath(self.filepath)))
         people = _read(context.scene, take, path)
         add_keypoint_file(take, path, self.replace)
+        take.follow.use_keypoints = True
+        clear_readings()
         redraw_footage(context)
         for note in people.notes:
             self.report({"WARNING"}, note)
@@ -70,27 +72,6 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
             found=sum(len(frame.pixel) > 0 for frame in people.frames),
             count=len(people.frames),
         )
-
-
-def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
-    """Add a file of keypoints to a take, switched on and chosen; one that it has is not added twice.
-
-    Args:
-        take: The take.
-        path: The file or folder.
-        replace: Whether it takes the place of the chosen one.
-    """
-    follow = take.follow
-    known = [keypoint_path(entry) for entry in follow.files]
-    if path in known:
-        follow.active_file = known.index(path)
-    elif not (replace and follow.active_file < len(follow.files)):
-        follow.files.add()
-        follow.active_file = len(follow.files) - 1
-    entry = follow.files[follow.active_file]
-    entry.is_used = follow.use_keypoints = True
-    set_keypoint_path(entry, path)
-    clear_readings()
 
 
 def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":

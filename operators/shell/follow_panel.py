@@ -1,4 +1,4 @@
-"""Bases of the panels inside What to Follow: a switch in the header, and a readout of this frame beside it."""
+"""Bases of the panels inside What to Follow: a switch in the header, beside it a readout of this frame."""
 
 import bpy
 

@@ -16,7 +16,7 @@ NOISE_PX = 0.7
 
 
 def seen_people(take: Take, motion: Motion, noise_px: float = NOISE_PX, others: int = 0) -> People:
-    """The principal points of a motion in its take's pictures, and of others who stand 40 pixels to the right."""
+    """The principal points of a motion in its take's pictures, and of others, each 40 pixels to the right."""
     rng = np.random.default_rng(7)
     names = take.body.skeleton.point_names
     pixel, _ = take.camera.project(motion.points)

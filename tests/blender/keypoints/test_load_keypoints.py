@@ -4,7 +4,6 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-import pytest
 from keymark.core.take.motion import Motion
 from keymark.operators.keypoints.frame_keypoints import keypoints_at
 from keymark.operators.shell.takes import active_take
