@@ -35,7 +35,9 @@ KEYPOINT_ERROR_M = 0.04
 HINT_ERROR_M = 0.12
 """Error of a network's depths: 6 to 18 cm, alike for many frames."""
 INDEPENDENT_POINTS = 5.0
-"""Number of points in which performers differ independently: one for each limb, and the trunk's."""
+"""Number of points in space in which postures differ independently: one for each limb, and the trunk's."""
+INDEPENDENT_KEYPOINTS = 8.0
+"""Number of keypoints that say different things of a posture: upper and lower parts of the limbs."""
 LEAST_QUALITY = 0.05
 
 
@@ -119,7 +121,7 @@ class MatchEvidence:
         """Weight of each of the A: many points of one body differ from a library's together."""
         if not len(self.points):
             return 1.0
-        return min(1.0, INDEPENDENT_POINTS / (self.marker_count + len(self.points)))
+        return min(1.0, INDEPENDENT_KEYPOINTS / (self.marker_count + len(self.points)))
 
     def exchanged(self, frames: BoolArray) -> "MatchEvidence":
         """The evidence with left and right of the keypoints exchanged in some frames (F,)."""
