@@ -22,3 +22,11 @@ def test_a_plain_take_is_reconstructed(
         errors.append(np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=1))
     print([n.text for n in take.notes], np.mean(errors))
     assert np.mean(errors) < 0.04
+
+
+def test_proposals_without_markers(plain, keypoint_file):
+    take = active_take(plain)
+    bpy.ops.keymark.load_keypoints(filepath=str(keypoint_file))
+    take.keyframe_count = 4
+    assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
+    assert len(take.proposals) == 4
