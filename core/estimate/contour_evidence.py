@@ -8,6 +8,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
@@ -17,7 +18,8 @@ from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
 from ..observation.part_map import part_map
-from .contour_search import Edges, find_edges
+from .contour_schedule import BY_MARKERS, Schedule
+from .contour_search import NARROW, Edges, SearchRange, find_edges
 from .keyframe_evidence import evenly_spread
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
 from .terms.term import student_weight
@@ -46,20 +48,27 @@ class ContourEvidence:
     """The look of performer and background."""
     model: ContourModel
     """The contours of the performer's own parts."""
+    schedule: Schedule = BY_MARKERS
+    """How far from the contours edges are looked for."""
 
-    def measure(self, posture: Posture, frame: IndexArray) -> Generator[float, None, ContourTerm]:
+    def measure(
+        self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
+    ) -> Generator[float, None, ContourTerm]:
         """Measure the edges near the contours of F postures; yields the fraction done.
 
         Args:
             posture: The F postures.
             frame: (F,) their indices in the clip.
+            search: How far from the contours.
         """
         model, album = self.model, self.album
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
         for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
             pictures = album.pictures(frame[chunk])
-            predicted, edges = _measure(model, album, self.appearance, posture[chunk], frame[chunk], pictures)
+            predicted, edges = _measure(
+                model, album, self.appearance, posture[chunk], frame[chunk], pictures, search
+            )
             found = np.isfinite(edges.variance)
             place = predicted.pixel + edges.distance[..., None] * predicted.normal
             edge[chunk] = np.where(found[..., None], place, np.nan)
@@ -70,7 +79,12 @@ class ContourEvidence:
 
 
 def learn_contours(
-    body: Body, camera: Camera, album: Album, posture: Posture, keyframes: IndexArray
+    body: Body,
+    camera: Camera,
+    album: Album,
+    posture: Posture,
+    keyframes: IndexArray,
+    schedule: Schedule = BY_MARKERS,
 ) -> Generator[None, None, ContourEvidence | None]:
     """Learn the look of performer and background, and the shapes of the performer's parts.
 
@@ -82,6 +96,8 @@ def learn_contours(
         album: Pictures of the clip's frames.
         posture: The postures of all F frames, by their markers.
         keyframes: Frames whose posture is known best.
+        schedule: How far from the contours edges are to be looked for; a wide one says that only the keyframes'
+            postures are known.
 
     Returns:
         None where no background can be trusted: before a moving camera, or where most pictures are missing.
@@ -92,12 +108,15 @@ def learn_contours(
         return None
     frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
+    known = keyframes[evenly_spread(keyframes, MOST_KEYFRAMES)]
     appearance = yield from _learn_appearance(model, album, posture[frame], frame)
+    if schedule.is_wide:
+        labeled = yield from _labeled(model, album, posture[known], known)
+        appearance = appearance.with_parts(*labeled, model.parts.segments).where_steady()
     if not appearance.steady:
         return None
-    known = keyframes[evenly_spread(keyframes, MOST_KEYFRAMES)]
     fitted = yield from _fit_shapes(model, album, appearance, posture[known], known)
-    return ContourEvidence(album, appearance, fitted)
+    return ContourEvidence(album, appearance, fitted, schedule)
 
 
 def _learn_appearance(
@@ -105,13 +124,21 @@ def _learn_appearance(
 ) -> Generator[None, None, Appearance]:
     count = min(APPEARANCE_FRAMES, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
-    parts = model.part_outlines(model.body.pose(posture[chosen]), frame[chosen])
-    images = [album.picture(int(index)) for index in frame[chosen]]
+    images, labels = yield from _labeled(model, album, posture[chosen], frame[chosen])
+    return learn_appearance(images, labels, len(model.parts.segments))
+
+
+def _labeled(
+    model: ContourModel, album: Album, posture: Posture, frame: IndexArray
+) -> Generator[None, None, tuple[list[Image], list[NDArray[np.int8]]]]:
+    """Pictures of frames, and which part of the body each pixel shows at their postures."""
+    parts = model.part_outlines(model.body.pose(posture), frame)
+    images = [album.picture(int(index)) for index in frame]
     size = images[0].shape[1], images[0].shape[0]
     yield
-    labels = [part_map(parts, i, size, album.factor) for i in range(len(chosen))]
+    labels = [part_map(parts, i, size, album.factor) for i in range(len(frame))]
     yield
-    return learn_appearance(images, labels, len(model.parts.segments))
+    return images, labels
 
 
 def _measure(
@@ -121,11 +148,12 @@ def _measure(
     posture: Posture,
     frame: IndexArray,
     pictures: tuple[Image, BoolArray],
+    search: SearchRange = NARROW,
 ) -> tuple[ContourPrediction, Edges]:
     pose = model.body.pose(posture)
     predicted = model.evaluate(pose, frame)
     image, known = pictures
-    edges = find_edges(model, predicted, pose, frame, image, album.factor, appearance)
+    edges = find_edges(model, predicted, pose, frame, image, album.factor, appearance, search)
     edges.distance[~known], edges.variance[~known] = 0.0, np.inf
     return predicted, edges
 

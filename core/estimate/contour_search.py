@@ -16,16 +16,26 @@ from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
 from ..observation.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 
-REACH = 6
-"""Reach of the search along the normal, in pixels of the pictures."""
-LARGEST_DISTANCE = 4.0
-"""A more distant edge is likelier another part's."""
-PRIOR_STD = 3.0
-"""Prior standard deviation of the edge's distance; it is taken out of the measurement again."""
 INNER, OUTER = 2.0, 2.5
 """Distances inside and outside the contour at which occlusion is decided."""
 LARGEST_LOG_RATIO = 4.0
 """Bound of a single pixel's log likelihood ratio."""
+
+
+@dataclass(frozen=True)
+class SearchRange:
+    """How far from its prediction an edge is looked for, in pixels of the pictures."""
+
+    reach: int
+    """Reach of the search along the normal."""
+    prior_std: float
+    """Prior standard deviation of the edge's distance; it is taken out of the measurement again."""
+    farthest: float
+    """A more distant edge is likelier another part's."""
+
+
+NARROW = SearchRange(6, 3.0, 4.0)
+"""Once the body is known to a few pixels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +56,7 @@ def find_edges(
     pictures: Image,
     factor: int,
     appearance: Appearance,
+    search: SearchRange = NARROW,
 ) -> Edges:
     """Search for the edges near predicted contours.
 
@@ -57,22 +68,32 @@ def find_edges(
         pictures: (F, rows, columns, 3) small pictures of the frames.
         factor: Pixels of the camera to one of the pictures.
         appearance: The look of parts and background in them.
+        search: How far from the prediction edges are looked for.
     """
     behind, shown = _occlusion(model, predicted, model.part_outlines(pose, frame), factor)
-    offset = np.arange(-REACH, REACH + 1.0)
+    offset = np.arange(-search.reach, search.reach + 1.0)
     rows, columns = pictures.shape[1:3]
     middle = predicted.pixel / factor
-    reach = REACH * np.abs(predicted.normal)
+    reach = min(search.reach, NARROW.reach) * np.abs(predicted.normal)
+    import os
+
+    skip = os.environ.get("SKIP", "")
+    if skip:
+        bad = np.array([any(n.startswith(k) for k in skip.split(",")) for n in model.parts.segments])
+        shown &= ~bad[model.part_of]
     shown &= ((middle >= reach) & (middle + reach < [columns, rows])).all(axis=-1)
     # From here on only the E visible samples, about half of all.
     picture, sample = np.nonzero(shown)
     places = middle[shown][:, None] + offset[:, None] * predicted.normal[shown][:, None]
-    column, row = np.moveaxis(places.astype(np.intp), -1, 0)
+    column, row = np.moveaxis(np.floor(places).astype(np.intp), -1, 0)
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    column, row = np.clip(column, 0, columns - 1), np.clip(row, 0, rows - 1)
     evidence, comparable = _log_likelihood_ratios(
         appearance, model.part_of[sample], behind[shown], row, column, pictures[picture[:, None], row, column]
     )
-    mean, variance = _edge(evidence, offset)
-    found = comparable & (variance < PRIOR_STD**2) & (np.abs(mean) < LARGEST_DISTANCE)
+    evidence[~inside] = 0.0
+    mean, variance = _edge(evidence, offset, search.prior_std)
+    found = comparable & (variance < search.prior_std**2) & (np.abs(mean) < search.farthest)
     edges = Edges(np.zeros(shown.shape), np.full(shown.shape, np.inf))
     edges.distance[picture[found], sample[found]] = mean[found] * factor
     edges.variance[picture[found], sample[found]] = variance[found] * factor**2
@@ -94,21 +115,25 @@ def _log_likelihood_ratios(
     other[covered] = appearance.part(behind[covered, None], seen[covered])
     other[free] = appearance.background(row[free], column[free], seen[free])
     # A background that was never free is guessed, and a guess would draw edges outwards.
-    comparable = covered | appearance.known[row, column][:, REACH + 1 :].all(axis=-1)
-    return np.clip(own - other, -LARGEST_LOG_RATIO, LARGEST_LOG_RATIO), comparable
+    outer = row.shape[1] // 2 + 1
+    known = appearance.known[row, column]
+    comparable = covered | known[:, outer : outer + NARROW.reach].all(axis=-1)
+    ratio = np.clip(own - other, -LARGEST_LOG_RATIO, LARGEST_LOG_RATIO)
+    ratio[:, outer:] = np.where(known[:, outer:] | covered[:, None], ratio[:, outer:], 0.0)
+    return ratio, comparable
 
 
-def _edge(evidence: Array, offset: Array) -> tuple[Array, Array]:
+def _edge(evidence: Array, offset: Array, prior_std: float) -> tuple[Array, Array]:
     """Mean and variance (...) of the edge's distance, by log ratios (..., K) at offsets (K,) alone."""
     between = offset + 0.5
     likelihood = np.cumsum(evidence, axis=-1)  # of the edge after each pixel, up to a constant
-    log = likelihood - 0.5 * (between / PRIOR_STD) ** 2
+    log = likelihood - 0.5 * (between / prior_std) ** 2
     weight = np.exp(log - log.max(axis=-1, keepdims=True))
     weight /= weight.sum(axis=-1, keepdims=True)
     mean = weight @ between
     # An edge lies anywhere in its pixel.
     variance = np.sum(weight * (between - mean[..., None]) ** 2, axis=-1) + 1.0 / 12.0
-    added = np.maximum(1.0 / variance - PRIOR_STD**-2, 1e-9)
+    added = np.maximum(1.0 / variance - prior_std**-2, 1e-9)
     return mean / (variance * added), 1.0 / added
 
 

@@ -26,6 +26,7 @@ from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
+from .contour_schedule import contour_schedule
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
@@ -225,7 +226,16 @@ def _solve_windows(
     if earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-        learning = learn_contours(problem.body, known, album, Posture.concatenate(kept), problem.keyframes)
+        schedule = contour_schedule(
+            problem.body,
+            known,
+            album.factor,
+            tuple(one.segment for one in problem.evidence.model.placements),
+            problem.prior,
+        )
+        learning = learn_contours(
+            problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
+        )
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()

@@ -20,8 +20,6 @@ MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(
 """From matched keyframes the descent is longer and has more local minima."""
 CONTOUR_TEMPERATURES = (1.0, 1.0)
 """Of the steps with contours, once the markers have brought these within reach of their edges."""
-CONTOUR_ROUNDS = 2
-"""Times that edges are measured, each time nearer to the contours."""
 LARGEST_STEP = 0.5
 """Largest change of a posture's unknown in one step [m, rad]."""
 CONVERGED = 3e-3
@@ -50,12 +48,13 @@ class WindowProblem:
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
         others = list(self.terms)
-        for number in range(CONTOUR_ROUNDS):
-            measuring = contours.measure(self.state.posture, self.state.frame)
-            begun, measured = number / CONTOUR_ROUNDS, (number + MEASURING_SHARE) / CONTOUR_ROUNDS
+        looks = len(contours.schedule.looks)
+        for number, search in enumerate(contours.schedule.looks):
+            measuring = contours.measure(self.state.posture, self.state.frame, search)
+            begun, measured = number / looks, (number + MEASURING_SHARE) / looks
             term = yield from scaled(measuring, begun, measured)
             self.terms = with_contours(others, term)
-            yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / CONTOUR_ROUNDS)
+            yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
         """Gauss-Newton steps until convergence."""

@@ -7,7 +7,7 @@ always occludes it.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -44,6 +44,10 @@ STEADY_SHARE = 0.9
 """Share of static pixels in a static background."""
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
+LEAST_KNOWN_SHARE = 0.2
+"""Least share of static pixels among all, where each is judged by itself."""
+ALIKE = 0.5
+"""Least overlap (Bhattacharyya's coefficient) of colors that are taken for one garment's on both sides."""
 CHANGED = 0.1
 """Prior share of pixels that differ from the background's usual color."""
 
@@ -62,6 +66,35 @@ class Appearance:
     """(rows, columns) whether the background was visible in enough frames."""
     steady: bool
     """Whether the background is static, so that pixels that differ from it are foreground."""
+
+    def with_parts(
+        self, images: list[Image], labels: list[NDArray[np.int8]], names: tuple[str, ...]
+    ) -> "Appearance":
+        """This appearance with the parts' colors learned from frames in which the body is known best.
+
+        What is worn left and right is mostly alike: both sides share their colors where those overlap.
+
+        Args:
+            images: Frames (rows, columns, 3).
+            labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
+            names: The parts' segments, O of them.
+        """
+        nothing = np.ones(labels[0].shape, dtype=np.bool_)
+        seen = [_seen(image, label, nothing, len(names)) for image, label in zip(images, labels, strict=True)]
+        counts = _counts(seen, len(names))[:-1]
+        own = _log_densities(counts)
+        for left, right in _pairs(names):
+            if _overlap(own[left], own[right]) > ALIKE:
+                own[[left, right]] = _log_densities(counts[[left]] + counts[[right]])
+        return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
+
+    def where_steady(self) -> "Appearance":
+        """This appearance with only those pixels of the background known that stand still.
+
+        Before a flickering screen or waving leaves these are left out, and the others keep what they tell.
+        """
+        known = self.known & (self.deviation < STEADY)
+        return replace(self, known=known, steady=bool(np.mean(known) >= LEAST_KNOWN_SHARE))
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
@@ -101,7 +134,7 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
     wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
     body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
-    counts = np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
+    counts = _counts(seen, parts)
     color, spread = _middle_and_spread(np.stack(images), ~body)
     known = np.count_nonzero(~body, axis=0) >= FEWEST_FREE
     steady = bool(known.any() and np.mean(spread[known] < STEADY) >= STEADY_SHARE)
@@ -115,6 +148,22 @@ def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) ->
     inside = label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns])
     sparse = slice(None, None, SPARSE), slice(None, None, SPARSE)
     return np.concatenate([inside, parts * CELLS + _cells(image[sparse][~near[sparse]])])
+
+
+def _counts(seen: list[IndexArray], parts: int) -> IndexArray:
+    """(O + 1, cells) how often each cell was seen on each part and, last, in the background."""
+    return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
+
+
+def _pairs(names: tuple[str, ...]) -> list[tuple[int, int]]:
+    """Indices of the left and right of each pair of segments."""
+    left = [name for name in names if name.endswith(".L")]
+    return [(names.index(name), names.index(name[:-2] + ".R")) for name in left]
+
+
+def _overlap(one: Array, other: Array) -> float:
+    """Bhattacharyya's coefficient of two log densities (cells,), 0 to 1."""
+    return float(np.exp(0.5 * (one.astype(np.float64) + other)).sum() * CELL_VOLUME)
 
 
 def _cells(pixels: Image) -> IndexArray:
