@@ -84,9 +84,6 @@ def _distances(points: ObservedKeypoints, predicted: Array, scale: Array, frame:
 
 
 def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray, own: BoolArray) -> int:
-def _lag(
-    points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray, own: BoolArray
-) -> int:
     frames, misfit = len(points.pixel), {}
     for lag in range(-LONGEST_LAG, LONGEST_LAG + 1):
         inside = (frame + lag >= 0) & (frame + lag < frames)
