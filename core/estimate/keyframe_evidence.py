@@ -132,8 +132,8 @@ def read_keyframes(
         seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
-            judging, own = _judging(markers, keypoints, len(size) > markers)
-            scale, timing = yield from _most_likely_sizes(seen.part(judging, own), weight[:, judging])
+            judging, tied = _judging(markers, keypoints, len(size) > markers)
+            scale, timing = yield from _most_likely_sizes(seen.part(judging, tied), weight[:, judging])
         change, left = seen.calibrated(weight, scale, timing)
         squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
