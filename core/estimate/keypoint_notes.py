@@ -20,10 +20,10 @@ def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
     notes: list[str] = []
     for source, trust in fit.source_trust.items():
         own = np.array([name == source for name in fit.keypoints.sources])
-        notes += _exchanged(source, fit.swapped[:, own])
         if trust == 0.0:
             notes.append(_left_out(source, fit.lag.get(source, 0)))
             continue
+        notes += _exchanged(source, fit.swapped[:, own])
         doubted = np.flatnonzero(own & (fit.trust == 0.0))
         if len(doubted):
             named = listed([fit.keypoints.names[i] for i in doubted], MOST_NAMED)
