@@ -3,7 +3,8 @@
 A hidden Markov model for each source over four states: nothing exchanged, the arms, the legs, or both
 (Rabiner 1989, *A tutorial on hidden Markov models*). A state is held against where the keyframes have the
 limbs, which says much near them and little midway, and against how the points move on from frame to frame:
-limbs that pass each other keep their velocities, where an exchange makes both turn about. The most probable sequence is Viterbi's.
+limbs that pass each other keep their velocities, where an exchange makes both turn about. The most probable
+sequence is Viterbi's.
 """
 
 from dataclasses import replace
@@ -26,7 +27,7 @@ LEAST_SPEED_M_PER_S, SPEED_QUANTILE = 0.3, 0.8
 """Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
 interpolated, and at least so fast: a running leg is anywhere a few frames later."""
 JITTER_STD_M, ACCELERATION_M_PER_S2 = 0.04, 40.0
-"""How far a point is from where its velocity takes it: a detector's jitter, and accelerations of fast limbs."""
+"""How far a point is from where its velocity takes it: a detector's jitter, and fast limbs."""
 ALIKE = 0.5
 """The points of a limb err alike: each counts as half."""
 CHANGE = 1.0 / 60.0
