@@ -68,11 +68,14 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
 
 
 def _performer(take: Take, people: People, frames: int) -> Keypoints | None:
-    """The performer's keypoints; None where several people are seen and no keyframe says who performs."""
-    if len(take.keyframes) > 1:
-        return performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, frames))
+    """The performer's keypoints; None where several people are seen and no keyframe says who performs.
+
+    A single person's are all taken: those that do not fit the keyframes are what is looked for.
+    """
     if people.most_people > 1:
-        return None
+        if len(take.keyframes) < 2:
+            return None
+        return performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, frames))
     score = np.zeros((len(people.frames), len(people.names)))
     pixel, hint = np.full((*score.shape, 2), np.nan), np.full((*score.shape, 3), np.nan)
     for index, seen in enumerate(people.frames):
