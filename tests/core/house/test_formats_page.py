@@ -16,7 +16,14 @@ from keymark.core.retarget import retarget_record
 from keymark.core.retarget.maps import character_map_file
 from keymark.core.shoot import shoot
 from keymark.core.shoot.discovery import take_list
-from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
+from keymark.core.take import (
+    conversion_record,
+    conversion_settings,
+    keyframe_file,
+    motion_file,
+    shoot_file,
+    take_file,
+)
 
 MIB = 2**20
 LIMITS = {
@@ -38,6 +45,7 @@ LIMITS = {
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
     f"{take_file.MOST_MARKERS}; "
     f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
+    f"{conversion_settings.MOST_KEYPOINT_FILES} ": "files of keypoints of a take",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
     f"{posture_fields.FARTHEST_M:.0f} m": "distance of keyframes from the origin",
