@@ -21,6 +21,11 @@ LARGEST_FILE_BYTES = 4 * 2**20
 _NUMBER = re.compile(r"(\d{1,15})(?:_keypoints)?\.json$", re.IGNORECASE)
 
 
+def is_one_frame(value: Any) -> bool:
+    """Whether a JSON value is a single frame, whose folder has the others."""
+    return is_openpose_frame(value) or (bool(value) and is_instances(value))
+
+
 def read_frame_folder(folder: Path) -> DetectedFrames:
     """Read the numbered files of a folder; further files are ignored.
 
