@@ -86,7 +86,7 @@ class ComparedKeypoints:
     def quality(self) -> Array:
         """(F, K) confidence of the best keypoint of each part, 0 where none is seen.
 
-        A part that is seen in few frames, as where points were clicked, has 1 in the others: nobody misses it.
+        A part that is seen in few frames, as clicked points are, has 1 in the others: nobody misses it.
         """
         best = [self.confidence[:, own].max(axis=1) for own in self._columns().values()]
         if not best:

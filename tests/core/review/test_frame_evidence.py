@@ -103,7 +103,8 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
 
 def test_contours_are_evidence_as_markers_are() -> None:
     """Their segments come after the markers, before the body points; keypoints may show what they miss."""
-    contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), np.full((FRAMES, 2), 7.0))
+    far, nothing = np.full((FRAMES, 2), 7.0), ContourSight.none(FRAMES)
+    contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), far, nothing.lines)
     keypoints = of_names(("elbow.L", "wrist.L"))
     none = MarkerSight((), np.zeros((FRAMES, 0)), np.zeros((FRAMES, 0)))
     alike = np.ones(FRAMES)
