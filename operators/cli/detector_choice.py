@@ -3,9 +3,8 @@
 import sys
 
 from ...core.errors import InputError
-from ..bridge.detector.detect_keypoints import DEFAULT_TIME_LIMIT_S, Detector
 from ..bridge.detector.detector_command import EXAMPLE, parse_command
-from ..bridge.detector.detector_setting import VARIABLE, environment_command
+from ..bridge.detector.detector_setting import DEFAULT_TIME_LIMIT_S, VARIABLE, Detector, environment_command
 from .usage import UsageError
 
 OPTION = "--detector"

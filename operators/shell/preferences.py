@@ -2,9 +2,8 @@
 
 import bpy
 
-from ..bridge.detector.detect_keypoints import DEFAULT_TIME_LIMIT_S, Detector
 from ..bridge.detector.detector_command import parse_command
-from ..bridge.detector.detector_setting import environment_command
+from ..bridge.detector.detector_setting import DEFAULT_TIME_LIMIT_S, Detector, environment_command
 
 EXTENSION = __package__.removesuffix(".operators.shell")
 """The name that Blender knows the extension by."""

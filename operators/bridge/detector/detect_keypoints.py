@@ -14,15 +14,16 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.footage.clips.clip import Clip
+from ....core.footage.keypoints.keypoint_file import read_keypoints
 from ....core.footage.keypoints.people import People
 from ....core.progress import Job, Progress
-from .detector_command import FOLDER, DetectorCommand
+from ....core.take.clip_check import LONGEST_FRAMES, open_footage
+from .detector_command import FOLDER
 from .detector_output import OUTPUT_NAME, find_output, folder_excess
 from .detector_process import DetectorProcess
+from .detector_setting import Detector
 from .progress_lines import ProgressLines
 
-DEFAULT_TIME_LIMIT_S = 2.0 * 3600.0
-"""The longest clips take a network on a processor about this long."""
 LONGEST_SAID_BYTES = 16 * 2**20
 """Of a program's words on both standard streams."""
 POLL_S = 0.04
@@ -32,14 +33,6 @@ COUNTED_SHARE, RUN_SHARE = 0.04, 0.95
 """Of the progress, at which the frames are counted, and the program has ended."""
 FRAMES_A_STEP = 100
 COUNTING, DETECTING, READING = "Counting the frames", "Detecting keypoints", "Reading the keypoints"
-
-
-@dataclass(frozen=True)
-class Detector:
-    """A detector and how it is run."""
-
-    command: DetectorCommand
-    time_limit_s: float = DEFAULT_TIME_LIMIT_S
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +69,6 @@ def detect_keypoints(
         InputError: The clip cannot be read, the program cannot be started, or its keypoints are unusable.
         ConversionError: The program failed, took too long, wrote nothing or too much.
     """
-    from ....core.take.clip_check import open_footage
-
     yield Progress(COUNTING, 0.0)
     clip = open_footage(clip_path, fps)
     count = yield from _frame_count(clip)
@@ -109,8 +100,6 @@ def detect_keypoints(
 
 def _frame_count(clip: Clip) -> Job[int]:
     """Count the frames that can be decoded: a file's own number may be wrong."""
-    from ....core.take.clip_check import LONGEST_FRAMES
-
     count = 0
     for count, _ in enumerate(islice(clip.source.time_stamps(), LONGEST_FRAMES + 1), 1):
         if count % FRAMES_A_STEP == 0:
@@ -168,8 +157,6 @@ def _watch(
 
 def _read(path: Path, clip: Clip, count: int, frame_start: int, name: str) -> People:
     """Read what the program wrote, checked against the clip."""
-    from ....core.footage.keypoints.keypoint_file import read_keypoints
-
     try:
         people = read_keypoints(path, count, clip.size, fps=clip.fps, frame_start=frame_start)
     except InputError as error:

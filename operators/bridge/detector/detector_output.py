@@ -66,8 +66,8 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
         real = Path(os.path.realpath(file))
         if not real.is_relative_to(folder):
             raise InputError(
-                f"{clip}: the detector {detector} wrote {file.relative_to(folder)} as a link to {real}; it must "
-                "write a file"
+                f"{clip}: the detector {detector} wrote {file.relative_to(folder)} as a link to {real}; it "
+                "must write a file"
             )
     return found
 

@@ -1,10 +1,21 @@
-"""The detector that the environment names, for the command line and for Blender alike."""
+"""A detector as it is set: its command, its time limit, and the variable that may name it."""
 
 import os
+from dataclasses import dataclass
 
 from .detector_command import DetectorCommand, parse_command
 
 VARIABLE = "KEYMARK_DETECTOR"
+DEFAULT_TIME_LIMIT_S = 2.0 * 3600.0
+"""The longest clips take a network on a processor about this long."""
+
+
+@dataclass(frozen=True)
+class Detector:
+    """A detector and how it is run."""
+
+    command: DetectorCommand
+    time_limit_s: float = DEFAULT_TIME_LIMIT_S
 
 
 def environment_command() -> DetectorCommand | None:

@@ -17,7 +17,8 @@ from ....core.shoot.shoot import ShootTake
 from ....core.take.description import TAKE_FILE, Description, sidecar_file
 from ....core.take.shoot_file import find_shoot_files
 from ....core.text import pluralize
-from ...bridge.detector.detect_keypoints import Detection, Detector, detect_keypoints
+from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
+from ...bridge.detector.detector_setting import Detector
 from ..console import Console, arguments_console
 from ..detector_choice import chosen_detector
 from ..refuse_existing import refuse_existing

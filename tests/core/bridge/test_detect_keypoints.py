@@ -14,8 +14,9 @@ from _shoot import write_video
 from _synthetic_take import SIZE, true_postures
 from keymark.core.errors import ConversionError, InputError
 from keymark.core.progress import Progress, run
-from keymark.operators.bridge.detector.detect_keypoints import Detection, Detector, detect_keypoints
+from keymark.operators.bridge.detector.detect_keypoints import Detection, detect_keypoints
 from keymark.operators.bridge.detector.detector_command import parse_command
+from keymark.operators.bridge.detector.detector_setting import Detector
 
 FRAMES = 8
 FAKE = Path(__file__).parents[2] / "_fake_detector.py"
