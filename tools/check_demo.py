@@ -2,8 +2,9 @@
 
 OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures that are not
 blank, a motion near the take's truth, and a character whose feet stand still on the floor; and once more,
-from contours and keypoints instead of markers, such a motion, files and pictures. Both motions must come nearer to
-the truth than straight lines between the keyframes. The exit status is 1 on errors, with one line for each.
+from contours and keypoints instead of markers, such a motion, files and pictures. Both motions must come
+nearer to the truth than straight lines between the keyframes. The exit status is 1 on errors, with one line
+for each.
 """
 
 import json
