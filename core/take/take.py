@@ -62,11 +62,6 @@ class Take:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on keyframes and keypoints that are usable but look wrong."""
-        return self.keyframe_notes + tuple(note for people in self.keypoints for note in people.notes)
-
-    @property
-    def keyframe_notes(self) -> tuple[str, ...]:
         """Sentences on keyframes that are usable but look wrong."""
         return tuple(
             f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "

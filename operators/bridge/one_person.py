@@ -1,4 +1,4 @@
-"""One person's keypoints in arrays, as the people whom a source saw."""
+"""Keypoints that a person placed, all of them the performer's, as the people whom a source saw."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from ...core.footage.keypoints.people import People, SeenPeople
 def one_person(
     names: Sequence[str], source: str, size: tuple[int, int], pixel: Array, score: Array
 ) -> People:
-    """The people of a source that sees the performer alone.
+    """The people of a source that shows the performer alone.
 
     Args:
         names: (N,) the body points.
@@ -21,10 +21,10 @@ def one_person(
         score: (F, N) confidence, 0 to 1.
     """
     unknown = np.full((1, len(names), 3), np.nan)
-    nobody = SeenPeople(pixel[:0, :, :].reshape(0, len(names), 2), score[:0], unknown[:0])
+    nobody = SeenPeople(pixel[:0], score[:0], unknown[:0])
     there = np.isfinite(pixel).all(axis=-1).any(axis=-1)
     frames = tuple(
         SeenPeople(pixel[[index]], score[[index]], unknown) if there[index] else nobody
         for index in range(len(pixel))
     )
-    return People(tuple(names), source, size, frames)
+    return People(tuple(names), source, size, frames, by_hand=True)

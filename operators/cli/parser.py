@@ -9,13 +9,14 @@ from .commands import COMMANDS
 from .usage import UsageError, program_name
 from .version import version
 
-DESCRIPTION = "Turns one video of a performer wearing colored markers into an animated armature."
+DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
 EXAMPLES = """\
 examples:
   {program} demo
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
   {program} convert takes/walk --output out/walk --library walking --floor 0
+  {program} convert takes/walk --output out/walk --keypoints pose.json --evidence keypoints,contours
   {program} new shoot
   {program} check shoot
   {program} batch shoot --output out --jobs 4

@@ -7,7 +7,7 @@ import bpy
 
 from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import all_colors, footage, idle
@@ -45,22 +45,23 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Return the job; a clip that was read for these markers before is not read again."""
-        from ...core.footage.keypoints.keypoints import Keypoints
         from ...core.footage.read_clip import read_clip
         from ...core.footage.reading_key import of_same_footage, reading_key
         from ...core.prior.evidence_speed import evidence_speed
         from ...core.prior.keyframe_proposals import propose_keyframes
+        from ..bridge.scene_performer import keypoints_without_keyframes
 
         take = active_take(scene)
-        identifier, count = take.identifier, take.keyframe_count or None
-        footage, styles, reading = footage_of(scene, take), marker_styles(take), reading_of(take)
+        identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
+        footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
+        styles = evidence.markers
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
         if reading is None or not of_same_footage(
             reading.key, reading_key(clip.path, clip.fps, styles, None)
         ):
             reading = yield from within("Following the performer", read_clip(clip, styles), 0.0, READ)
         segments = tuple(style.segment for style in styles)
-        keypoints = Keypoints.none(reading.tracks.frame_count)
+        keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
         speed = yield from within("Measuring the speed", moved, READ, 1.0)
         chosen = propose_keyframes(speed.values, count)

@@ -44,16 +44,13 @@ def followed_markers(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]"
 
 def clicked_points(take: bpy.types.PropertyGroup) -> tuple[ClickedPoint, ...]:
     """The points that were clicked on."""
-    clicks = (click for click in take.follow.clicks if click.point)
-    return tuple(ClickedPoint(click.point, click.frame, tuple(click.pixel)) for click in clicks)
+    return tuple(ClickedPoint(click.point, click.frame, tuple(click.pixel)) for click in take.follow.clicks)
 
 
 def has_keypoints(take: bpy.types.PropertyGroup) -> bool:
     """Whether a take follows any keypoints: files, motion tracks or clicked points."""
     follow = take.follow
-    loaded = follow.use_keypoints and (
-        any(entry.is_used for entry in follow.files) or any(click.point for click in follow.clicks)
-    )
+    loaded = follow.use_keypoints and (any(entry.is_used for entry in follow.files) or len(follow.clicks))
     return bool(loaded or (follow.use_tracks and assigned_tracks(take)))
 
 

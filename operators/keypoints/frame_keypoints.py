@@ -8,10 +8,9 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.footage.keypoints.people import People
 from ..bridge.clicked_keypoints import SOURCE as CLICKS
-from ..bridge.scene_frames import scene_frames, shown_index
 from ..bridge.track_keypoints import SOURCE as TRACKS
 from ..bridge.track_keypoints import tracks_at
-from ..shell.results import reading_of
+from ..shell.shown_frame import clip_index
 from ..shell.takes import footage_of
 from .assigned_tracks import assigned_tracks
 from .evidence import clicked_points
@@ -33,6 +32,9 @@ class FrameKeypoints:
     """(H, N, 2) [px] of the footage as it is, NaN where a point is not seen."""
     score: Array
     """(H, N) confidence, 0 to 1; 0 where not seen."""
+
+    is_tracked: bool = False
+    """Whether they are motion tracks of the clip."""
 
     @property
     def seen_count(self) -> int:
@@ -58,7 +60,7 @@ def keypoints_at(take: bpy.types.PropertyGroup, scene_frame: int) -> tuple[Frame
                 found.append(people_at(people, index))
     if follow.use_tracks:
         tracked = tracks_at(footage_of(take.id_data, take), scene_frame, assigned_tracks(take))
-        found.append(_one_person(TRACKS, tracked))
+        found.append(_one_person(TRACKS, tracked, is_tracked=True))
     return tuple(each for each in found if each.names)
 
 
@@ -78,21 +80,7 @@ def people_at(people: People, index: int) -> FrameKeypoints:
     return FrameKeypoints(people.source, people.names, seen.pixel, seen.score)
 
 
-def clip_index(take: bpy.types.PropertyGroup, scene_frame: int) -> int:
-    """Index of the clip's frame that is shown in a scene frame; -1 outside the clip.
-
-    Where the rate varies and the clip was not read yet, the frame is a guess.
-    """
-    footage = footage_of(take.id_data, take)
-    reading = reading_of(take)
-    if reading is not None:
-        frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
-    else:
-        frames = footage.first_frame + np.arange(max(1, take.clip.frame_duration), dtype=np.float64)
-    return int(shown_index(frames, scene_frame))
-
-
-def _one_person(source: str, seen: Seen) -> FrameKeypoints:
+def _one_person(source: str, seen: Seen, is_tracked: bool = False) -> FrameKeypoints:
     pixel = np.array([place for _, place, _ in seen], dtype=np.float64).reshape(1, len(seen), 2)
     score = np.array([value for _, _, value in seen], dtype=np.float64).reshape(1, len(seen))
-    return FrameKeypoints(source, tuple(point for point, _, _ in seen), pixel, score)
+    return FrameKeypoints(source, tuple(point for point, _, _ in seen), pixel, score, is_tracked)

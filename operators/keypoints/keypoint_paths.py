@@ -30,3 +30,23 @@ def set_keypoint_path(entry: bpy.types.PropertyGroup, path: Path) -> None:
     entry.filepath = stored_path(path)
     entry.absolute_path = str(real_path(path))
     entry.contents = file_state(path) or ""
+
+
+def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
+    """Add a file of keypoints to a take, switched on and chosen; one that it has is not added twice.
+
+    Args:
+        take: The take.
+        path: The file or folder.
+        replace: Whether it takes the place of the chosen one.
+    """
+    follow = take.follow
+    known = [keypoint_path(entry) for entry in follow.files]
+    if path in known:
+        follow.active_file = known.index(path)
+    elif not (replace and follow.active_file < len(follow.files)):
+        follow.files.add()
+        follow.active_file = len(follow.files) - 1
+    entry = follow.files[follow.active_file]
+    entry.is_used = True
+    set_keypoint_path(entry, path)

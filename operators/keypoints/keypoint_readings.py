@@ -8,6 +8,7 @@ from pathlib import Path
 from time import monotonic
 
 import bpy
+import numpy as np
 
 from ...core.errors import InputError
 from ...core.footage.keypoints.people import People
@@ -29,8 +30,11 @@ class KeypointReading:
     """Everyone in it, frame by frame of the file; None where it cannot be read."""
     problem: str = ""
     """Why it cannot be read, for people."""
+    is_missing: bool = False
     has_changed: bool = False
     """Whether it has been written since it was loaded."""
+    has_hints: bool = False
+    """Whether it guesses depths."""
 
 
 _readings: LruCache[KeypointReading] = LruCache(MOST_FILES)
@@ -50,8 +54,9 @@ def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGro
         try:
             people = read_keypoint_file(path, None, size, footage.rate, footage.first_frame)
         except InputError as error:
-            return KeypointReading(None, str(error))
-        return KeypointReading(people, has_changed=state != entry.contents)
+            return KeypointReading(None, str(error), is_missing=state is None)
+        hints = any(bool(np.isfinite(frame.hint_m).any()) for frame in people.frames)
+        return KeypointReading(people, has_changed=state != entry.contents, has_hints=hints)
 
     return _readings.get(key, read) or KeypointReading(None)
 

@@ -2,9 +2,8 @@
 
 import bpy
 
-from ...core.footage.keypoints.body_points import BODY_POINTS
-from ..markers.properties import segment_title
 from ..shell.redraw import redraw_footage
+from .body_point_items import body_point_items
 
 
 def _changed(_group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -47,9 +46,7 @@ class KEYMARK_PG_track_choice(bpy.types.PropertyGroup):
 class KEYMARK_PG_clicked_point(bpy.types.PropertyGroup):
     """A body point that was clicked on in one frame."""
 
-    point: bpy.props.StringProperty(
-        name="Body Point", description="The point of the body; empty for the performer as a whole"
-    )
+    point: bpy.props.StringProperty(name="Body Point", description="The point of the body")
     frame: bpy.props.IntProperty(name="Frame", description="Frames after the clip's first one")
     pixel: bpy.props.FloatVectorProperty(
         name="Pixel", description="Where, in pixels of the footage from its top left corner", size=2
@@ -100,7 +97,7 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
     clicked_point: bpy.props.EnumProperty(
         name="Body Point",
         description="The point of the body to click on next; left and right are the performer's own",
-        items=[(point, segment_title(point), "") for point in BODY_POINTS],
+        items=body_point_items(),
         default="wrist.L",
     )
 

@@ -37,6 +37,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Read the take from the scene and write the folder."""
         from ...core.shoot.discovery.take_path import check_hides_no_take
+        from ...core.take.evidence import evidence_of
         from ...core.take.take_file import write_take
         from ..bridge.take_from_scene import read_scene_take
 
@@ -55,7 +56,9 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
         folder = Path(bpy.path.abspath(self.directory))
         check_hides_no_take(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        write_take(take, folder)
+        has = evidence_of(take)
+        # A camera that stands still brings contours, unless the take says that they are not followed.
+        write_take(take, folder, has if has and not take.contours else None)
         for note in notes:
             self.report({"WARNING"}, note)
         say(self, "INFO", "Saved the take in {folder}", folder=folder)

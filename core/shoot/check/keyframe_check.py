@@ -36,13 +36,12 @@ def check_keyframes(take: Take, frames: int, with_library: bool, findings: Findi
 
 
 def _check_fit(take: Take, findings: Findings) -> None:
-    notes = take.keyframe_notes
-    if len(notes) <= MOST_NAMED:
-        findings.warn(*notes)
+    if len(take.notes) <= MOST_NAMED:
+        findings.warn(*take.notes)
         return
     residual = [keyframe.residual_m for keyframe in take.keyframes]
     findings.warn(
-        f"the points of {len(notes)} of {len(take.keyframes)} keyframes are up to "
+        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
         f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's lengths, "
         "and whether these are the performer's own keyframes"
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.errors import InputError
+from ....core.estimate.reconstruct import check_method
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
@@ -123,11 +124,12 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     """Make every file of the result in the staging folder; the record comes last."""
     settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
     take = _read_take(prepared.description, settings, output)
+    method = settings.method or METHODS[0]
+    check_method(take, method)
     if settings.character is not None:
         console.stage("Opening the character")
         with opened_character(settings.character.file, settings.character.map, debug):
             pass  # what is wrong with it is better known before the work
-    method = settings.method or METHODS[0]
     job = reconstruct_or_match(take, prepared.libraries, method, settings.floor_m)
     matched = run(job, console.progress)
     take, result = matched.take, matched.reconstruction

@@ -11,10 +11,13 @@ from ....core.prior.keyframe_proposals import propose_keyframes
 from ....core.progress import Job, run, stretch, within
 from ....core.report.canvas import write_png
 from ....core.report.speed_plot import speed_plot
+from ....core.shoot.discovery.take_path import take_path
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.description import describe
 from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
-from ....core.take.take_file import read_take
+from ....core.take.take_file import read_described
 from ..console import arguments_console
 
 READING_SHARE = 0.9
@@ -24,7 +27,7 @@ READING_SHARE = 0.9
 def propose_command(arguments: argparse.Namespace) -> None:
     """Print the frames that are worth posing, with the performer's speed for `--json`."""
     with arguments_console(arguments) as console:
-        take = read_take(arguments.take, keyframes_required=False)
+        take = _read(arguments)
         moved = run(_speed_job(take), console.progress)
         speed = moved.values
         indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
@@ -36,6 +39,16 @@ def propose_command(arguments: argparse.Namespace) -> None:
         lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
         result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}
         console.finish(result, "\n".join(lines))
+
+
+def _read(arguments: argparse.Namespace) -> Take:
+    description = describe(take_path(arguments.take))
+    given = ConversionSettings(
+        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
+        evidence=arguments.evidence,
+    )
+    settings = given.with_defaults(description.settings)
+    return read_described(description, keyframes_required=False, settings=settings)
 
 
 def _speed_job(take: Take) -> Job[EvidenceSpeed]:
