@@ -48,12 +48,6 @@ def errors(performance: Performance, people: People) -> tuple[Array, Array]:
     for index, frame in enumerate(people.frames):
         if len(frame.pixel):
             seen[index] = np.concatenate([frame.pixel[0, rows], frame.hint_m[0, rows]], axis=-1)
-    place = np.stack(
-        [f.pixel[0, rows] if ok else missing[:, :2] for f, ok in zip(people.frames, found, strict=True)]
-    )
-    hint = np.stack(
-        [f.hint_m[0, rows] if ok else missing for f, ok in zip(people.frames, found, strict=True)]
-    )
     return seen[..., :2] - pixel, seen[..., 4] - depth
 
 
